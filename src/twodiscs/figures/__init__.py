@@ -1,0 +1,1 @@
+"""Figures: one module for each, and the style that they share."""
