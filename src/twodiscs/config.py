@@ -1,0 +1,469 @@
+"""From the configuration file to the scenes: what to compute, how accurately, with which seeds.
+
+Quick to import, for the Snakefile reads it: no numerical package. What a file may say, its units
+and its defaults stand in ``config.schema.yaml`` and nowhere else; ``python -m twodiscs.config``
+prints that as the page config/README.md.
+"""
+
+import math
+import re
+import reprlib
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from twodiscs import grid
+from twodiscs.scene import EVENTS, Scene, largest_radius
+
+#: Relative standard errors of the mean times, by name.
+PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
+
+#: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
+HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
+
+#: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
+TRAJECTORY_FRACTION = 0.24
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+class ConfigError(ValueError):
+    """A mistake in a configuration, told in one sentence."""
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What a scene computes and measures; an empty tuple, ``False`` or ``None`` means not at all.
+
+    ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
+    radii, ``trajectory`` a radius.
+    """
+
+    volume: bool
+    areas: tuple
+    mean_times: tuple
+    hop_histogram: tuple
+    trajectory: float | None
+
+    @property
+    def quantities(self):
+        """Everything watched, as a set of names: those of theory.csv, and the two others.
+
+        Such as {"volume", "right_wall_area", "right_wall_time", "hop_histogram", "trajectory"}.
+        """
+        names = {f"{event}_area" for event in self.areas}
+        names |= {f"{event}_time" for event in self.mean_times}
+        names |= {n for n in ("volume", "hop_histogram", "trajectory") if getattr(self, n)}
+        return frozenset(names)
+
+
+@dataclass(frozen=True)
+class SceneRequest:
+    """One scene of the configuration, checked and with every default filled in.
+
+    ``radii`` ascend, and ``accuracy`` is {event: relative standard error} for the watched mean
+    times. Each ``…_parameters`` method returns what one job depends on and nothing else, as a dict
+    of plain Python values with sorted keys, so that an edit reruns the jobs it concerns and no
+    other. A job for one radius is named by its key; the jobs that exist are ``monte_carlo_keys``,
+    ``dynamics_keys`` and ``intervals_keys``.
+    """
+
+    name: str
+    width: float
+    height: float
+    radii: tuple
+    watch: Watch
+    accuracy: dict
+    event_budget: int
+    monte_carlo_samples: int
+    shell_fraction: float
+    histogram_event: str
+    histogram_samples: int
+    seed: int
+
+    @property
+    def keys(self):
+        """The text keys of ``radii``."""
+        return tuple(map(grid.key, self.radii))
+
+    @property
+    def monte_carlo_keys(self):
+        """Keys of the radii at which volume or areas are sampled; empty if neither is watched."""
+        return self.keys if self.watch.volume or self.watch.areas else ()
+
+    @property
+    def dynamics_keys(self):
+        """Keys of the radii at which mean times are simulated; empty if none is watched."""
+        return self.keys if self.watch.mean_times else ()
+
+    @property
+    def intervals_keys(self):
+        """Keys of the radii of the hop histograms."""
+        return tuple(map(grid.key, self.watch.hop_histogram))
+
+    def scene_parameters(self):
+        """Return the box and the scene's radii: height, radii, width."""
+        return {"height": self.height, "radii": list(self.radii), "width": self.width}
+
+    def theory_parameters(self):
+        """Return height, radii (the scene's and those of its hop histograms), width."""
+        radii = sorted({*self.radii, *self.watch.hop_histogram})
+        return {"height": self.height, "radii": radii, "width": self.width}
+
+    def monte_carlo_parameters(self, key):
+        """Return areas, height, radius, samples, seed, shell, volume, width.
+
+        ``areas`` lists events and ``volume`` is a bool; ``shell`` is None where no area is watched.
+        """
+        return {
+            "areas": list(self.watch.areas),
+            "height": self.height,
+            "radius": self._radius(key, self.monte_carlo_keys),
+            "samples": self.monte_carlo_samples,
+            "seed": grid.stream_seed(self.seed, self.name, "monte_carlo", key),
+            "shell": self.shell_fraction if self.watch.areas else None,
+            "volume": self.watch.volume,
+            "width": self.width,
+        }
+
+    def dynamics_parameters(self, key):
+        """Return accuracy, event_budget, height, radius, seed, width.
+
+        ``accuracy`` is {event: relative standard error}, and its events are those to watch.
+        """
+        return {
+            "accuracy": dict(sorted(self.accuracy.items())),
+            "event_budget": self.event_budget,
+            "height": self.height,
+            "radius": self._radius(key, self.dynamics_keys),
+            "seed": grid.stream_seed(self.seed, self.name, "dynamics", key),
+            "width": self.width,
+        }
+
+    def intervals_parameters(self, key):
+        """Return event (the hop), height, intervals (their number), radius, seed, width."""
+        return {
+            "event": self.histogram_event,
+            "height": self.height,
+            "intervals": self.histogram_samples,
+            "radius": self._radius(key, self.intervals_keys),
+            "seed": grid.stream_seed(self.seed, self.name, "intervals", key),
+            "width": self.width,
+        }
+
+    def trajectory_parameters(self):
+        """Return height, radius, seed, width; raise ``ValueError`` if no trajectory is watched."""
+        radius = self.watch.trajectory
+        if radius is None:
+            raise ValueError(f"scene {self.name} watches no trajectory")
+        return {
+            "height": self.height,
+            "radius": radius,
+            "seed": grid.stream_seed(self.seed, self.name, "trajectory", grid.key(radius)),
+            "width": self.width,
+        }
+
+    def _radius(self, key, keys):
+        if key not in keys:
+            raise ValueError(f"key must be one of {', '.join(keys) or 'none'}, not {key!r}")
+        return float(key)
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A whole configuration: the folder of results, the root seed and the scenes in their order."""
+
+    results: str
+    seed: int
+    scenes: tuple
+
+    def scene(self, name):
+        """Return the scene called ``name``, or raise ``ValueError``."""
+        for scene in self.scenes:
+            if scene.name == name:
+                return scene
+        names = ", ".join(scene.name for scene in self.scenes)
+        raise ValueError(f"name must be one of {names}, not {name!r}")
+
+
+def load(mapping):
+    """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
+
+    Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
+    with one sentence that names the key, what it may hold and what it holds.
+    """
+    if not isinstance(mapping, Mapping):
+        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {_shown(mapping)}")
+    settled = _settled(mapping, schema(), "")
+    _validate(settled)
+    _fill_defaults(settled, schema())
+    scenes = tuple(
+        _scene(block, f"scenes[{i}]", settled["seed"]) for i, block in enumerate(settled["scenes"])
+    )
+    names = [scene.name for scene in scenes]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise ConfigError(
+                f"scenes[{i}].name must differ from every other scene's, not {name!r}"
+            )
+    return Configuration(settled["results"], settled["seed"], scenes)
+
+
+def read(path):
+    """Return the mapping in the YAML file ``path``.
+
+    Raises ``ConfigError`` where YAML itself would keep silent about a key given twice (the last one
+    would win), and for a file that holds no mapping; ``OSError`` for one that cannot be read.
+    """
+    with open(path, encoding="utf-8") as file:
+        try:
+            mapping = yaml.load(file, _StrictLoader)
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
+    if not isinstance(mapping, dict):
+        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {_shown(mapping)}")
+    return mapping
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML as usual, but a key given twice is a mistake."""
+
+    def compose_mapping_node(self, anchor):
+        node = super().compose_mapping_node(anchor)
+        seen = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    line = key.start_mark.line + 1
+                    raise yaml.YAMLError(f"the key {key.value!r} is given again on line {line}")
+                seen.add(key.value)
+        return node
+
+
+@cache
+def schema():
+    """Return the schema of the configuration."""
+    text = Path(__file__).with_name("config.schema.yaml").read_text(encoding="utf-8")
+    return yaml.safe_load(text)
+
+
+def _types(node):
+    types = node.get("type", [])
+    return [types] if isinstance(types, str) else types
+
+
+def _settled(value, node, path):
+    """Copy ``value`` with every number in one form: float, or int where an integer is asked."""
+    if isinstance(value, Mapping):
+        known = node.get("properties", {})
+        return {k: _settled(v, known.get(k, {}), f"{path}.{k}") for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        items = node.get("items", {})
+        return [_settled(v, items, f"{path}[{i}]") for i, v in enumerate(value)]
+    types = _types(node)
+    if isinstance(value, bool) or not {"number", "integer"} & set(types):
+        return value
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value) if re.search(r"[.eE]", value) else int(value)
+    if isinstance(value, float) and math.isnan(value):
+        # A comparison with NaN is never true, so no limit of the schema would catch it.
+        raise ConfigError(f"{path.lstrip('.')} must be {node['allowed']}, not nan")
+    if "integer" in types:
+        return int(value) if isinstance(value, float) and value.is_integer() else value
+    try:
+        return float(value) if isinstance(value, int) else value
+    except OverflowError:
+        return value
+
+
+def _validate(settled):
+    from jsonschema import Draft202012Validator
+
+    errors = list(Draft202012Validator(schema()).iter_errors(settled))
+    # A misspelt key often explains a missing one, so it goes first.
+    errors.sort(key=lambda error: error.validator != "additionalProperties")
+    if errors:
+        raise ConfigError(_sentence(errors[0]))
+
+
+def _sentence(error):
+    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.absolute_path)
+    path = "".join(steps).lstrip(".") or "the configuration"
+    node, value = error.schema, error.instance
+    if error.validator == "required":
+        missing = next(key for key in error.validator_value if key not in value)
+        return f"{path} needs the key {missing!r}"
+    if error.validator == "additionalProperties":
+        known = list(node["properties"])
+        unknown = next(key for key in value if key not in known)
+        hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
+        return f"{path} has an unknown key {unknown!r}{hint}"
+    hint = _nearest(value, node.get("enum", ()))
+    return f"{path} must be {node['allowed']}, not {_shown(value)}{hint}"
+
+
+def _nearest(word, known):
+    near = get_close_matches(str(word), known, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def _shown(value):
+    return "empty" if value is None else reprlib.repr(value)
+
+
+def _fill_defaults(value, node):
+    if isinstance(value, dict):
+        for key, below in node.get("properties", {}).items():
+            if "default" in below:
+                value.setdefault(key, deepcopy(below["default"]))
+            if key in value:
+                _fill_defaults(value[key], below)
+    elif isinstance(value, list):
+        for item in value:
+            _fill_defaults(item, node.get("items", {}))
+
+
+def _scene(block, path, seed):
+    box = block["box"]["width"], block["box"]["height"]
+    watched = block.get("watch", dict.fromkeys(Watch.__dataclass_fields__, True))
+    histogram = _histogram(watched["hop_histogram"], box, f"{path}.watch.hop_histogram")
+    watch = Watch(
+        volume=watched["volume"],
+        areas=_events(watched["areas"]),
+        mean_times=_events(watched["mean_times"]),
+        hop_histogram=histogram["radii"],
+        trajectory=_trajectory(watched["trajectory"], box, f"{path}.watch.trajectory"),
+    )
+    if not watch.quantities:
+        known = ", ".join(Watch.__dataclass_fields__)
+        raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    accuracy = block["accuracy"]
+    if not isinstance(accuracy, dict):
+        accuracy = {"default": accuracy}
+    precisions = {event: accuracy.get(event, accuracy["default"]) for event in watch.mean_times}
+    return SceneRequest(
+        name=block["name"],
+        width=box[0],
+        height=box[1],
+        radii=_radii(block["radii"], box, f"{path}.radii"),
+        watch=watch,
+        accuracy={event: PRESETS.get(value, value) for event, value in precisions.items()},
+        event_budget=block["event_budget"],
+        monte_carlo_samples=block["monte_carlo"]["samples"],
+        shell_fraction=block["monte_carlo"]["shell"],
+        histogram_event=histogram["event"],
+        histogram_samples=histogram["intervals"],
+        seed=seed,
+    )
+
+
+def _radii(asked, box, path):
+    if isinstance(asked, list):
+        return _checked(asked, box, path)
+    smallest = asked.get("smallest", _short(min(box) / 100))
+    _checked([smallest], box, f"{path}.smallest")
+    include = _checked(asked.get("include", []), box, f"{path}.include")
+    try:
+        generated = grid.radii(*box, smallest, asked["count"])
+    except ValueError as error:
+        raise ConfigError(f"{path}: {error}") from None
+    return tuple(sorted({*generated, *include}))
+
+
+def _histogram(asked, box, path):
+    """Return the histogram's radii (a tuple, empty if it is off), event and number of intervals."""
+    if isinstance(asked, bool):
+        asked = {} if asked else {"radii": []}
+    elif isinstance(asked, list):
+        asked = {"radii": asked}
+    scene = schema()["properties"]["scenes"]["items"]
+    _fill_defaults(asked, scene["properties"]["watch"]["properties"]["hop_histogram"])
+    event = asked["event"]
+    threshold = min(box[0 if event == "vertical_hop" else 1] / 4, largest_radius(*box))
+    default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
+    radii = _checked(asked.get("radii", default), box, path)
+    for radius in radii:
+        if not Scene(*box, radius).is_possible(event):
+            raise ConfigError(
+                f"{path} must keep to radii below {threshold!r}, where {event} is possible, "
+                f"not {radius!r}"
+            )
+    return {**asked, "radii": radii}
+
+
+def _trajectory(asked, box, path):
+    if asked is False:
+        return None
+    radius = _short(TRAJECTORY_FRACTION * min(box)) if asked is True else asked
+    return _checked([radius], box, path)[0]
+
+
+def _events(asked):
+    if isinstance(asked, bool):
+        return EVENTS if asked else ()
+    return tuple(event for event in EVENTS if event in asked)
+
+
+def _checked(radii, box, path):
+    """Return ``radii`` as an ascending tuple if all of them fit and none appears twice."""
+    for i, radius in enumerate(radii):
+        try:
+            Scene(*box, radius)
+        except ValueError as error:
+            raise ConfigError(f"{path}: {error}") from None
+        if radius in radii[:i]:
+            raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
+    return tuple(sorted(radii))
+
+
+def _short(value):
+    return float(f"{value:.3g}")
+
+
+def document():
+    """Return the page config/README.md, in Markdown."""
+    lines = [
+        f"# {schema()['title']}",
+        "",
+        schema()["description"],
+        "",
+        "This page is made from `src/twodiscs/config.schema.yaml` by"
+        " `python -m twodiscs.config > config/README.md`.",
+    ]
+    lines += _section(schema(), "")
+    return "\n".join(lines) + "\n"
+
+
+def _section(node, path):
+    lines = ["", f"## {f'`{path}`' if path else 'Top level'}", ""]
+    lines += ["| key | meaning | may be | unit | default |", "|---|---|---|---|---|"]
+    below = []
+    for key, child in node["properties"].items():
+        unit = child.get("unit", "–")
+        default = child.get("computed") or _default(child, key in node.get("required", []))
+        lines.append(
+            f"| `{key}` | {child['description']} | {child['allowed']} | {unit} | {default} |"
+        )
+        place = f"{path}.{key}".lstrip(".")
+        for inner, suffix in ((child, ""), (child.get("items", {}), "[]")):
+            if "properties" in inner:
+                below += _section(inner, place + suffix)
+    return lines + below
+
+
+def _default(node, required):
+    if required:
+        return "none: the key is required"
+    value = node["default"]
+    if value == {}:
+        return "the defaults of its keys"
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+
+
+if __name__ == "__main__":
+    print(document(), end="")

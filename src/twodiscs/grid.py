@@ -1,0 +1,98 @@
+"""The radii of a scene, the text keys that name them, and the random streams that belong to them.
+
+Standard library only: the grid is computed while the Snakefile is read.
+"""
+
+import math
+from hashlib import blake2b
+from itertools import pairwise
+
+from twodiscs.scene import largest_radius, length
+
+#: The stochastic stages, each with random streams of its own.
+METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory")
+
+#: Regimes narrower than this fraction of the largest radius get no points of their own.
+NARROWEST = 1e-6
+
+
+def key(radius):
+    """Return the text that names ``radius`` in file names and seeds: its shortest repr."""
+    return repr(length("radius", radius))
+
+
+def thresholds(width, height):
+    """Return, ascending, the radii below the largest one at which a hop becomes blocked.
+
+    These are the ones among h/4 (horizontal hops) and w/4 (vertical hops) that still fit the box.
+    """
+    largest = largest_radius(width, height)
+    return tuple(sorted({t for t in (height / 4, width / 4) if t < largest}))
+
+
+def radii(width, height, smallest, count):
+    """Return ``count`` ascending radii from ``smallest`` up to just below the largest that fits.
+
+    Every regime has its share of the points, placed like Chebyshev nodes, so that they crowd
+    quadratically towards both sides of h/4 and w/4 and below the largest radius without touching
+    any of the three; from the smallest radius they start evenly. Each is then rounded to the
+    fewest digits that leave it near its place.
+
+    Raises ``ValueError`` if ``count`` is not a positive integer, or ``smallest`` is not a length
+    below the largest radius or lies on a threshold.
+    """
+    largest = largest_radius(width, height)
+    smallest = length("smallest", smallest)
+    if isinstance(count, bool) or not isinstance(count, int) or count < 1:
+        raise ValueError(f"count must be a positive integer, not {count!r}")
+    if smallest >= largest * (1 - NARROWEST):
+        raise ValueError(
+            f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
+        )
+    limits = thresholds(width, height)
+    if smallest in limits:
+        raise ValueError(f"smallest must not be {smallest!r}, where a hop becomes blocked")
+
+    edges = [smallest]
+    for limit in (*limits, largest):
+        if limit - edges[-1] > NARROWEST * largest:
+            edges.append(limit)
+    regimes = list(pairwise(edges))
+    places = []
+    shared = 0.0
+    for low, high in regimes:
+        # Half of the points are shared equally between the regimes, half by length.
+        shared += 1 / len(regimes) + (high - low) / (largest - smallest)
+        n = max(1, round(count * shared / 2)) - len(places)
+        if not places:
+            fractions = [math.sin(math.pi / 2 * j / n) for j in range(n)]
+        else:
+            fractions = [math.sin(math.pi / 2 * (j + 0.5) / n) ** 2 for j in range(n)]
+        places += [low + fraction * (high - low) for fraction in fractions]
+
+    result = [smallest]
+    for i in range(1, len(places)):
+        near = [*edges, places[i - 1], *places[i + 1 : i + 2]]
+        room = min(abs(places[i] - other) for other in near)
+        result.append(_shortest_decimal(places[i], room / 4, avoid=limits))
+    return tuple(result)
+
+
+def _shortest_decimal(value, distance, avoid):
+    """Return the number of fewest digits within ``distance`` of ``value`` and not in ``avoid``."""
+    candidates = (float(f"{value:.{digits}g}") for digits in range(1, 18))
+    return next(c for c in candidates if abs(c - value) <= distance and c not in avoid)
+
+
+def stream_seed(root, scene, method, key):
+    """Return the integer in [0, 2**63) that seeds the streams of one job.
+
+    It depends on the configured ``root`` seed, the scene's name, the method (one of ``METHODS``)
+    and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
+    """
+    if isinstance(root, bool) or not isinstance(root, int) or root < 0:
+        raise ValueError(f"root must be a non-negative integer, not {root!r}")
+    if method not in METHODS:
+        raise ValueError(f"method must be one of {', '.join(METHODS)}, not {method!r}")
+    text = "\n".join((str(root), scene, method, key))
+    return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1
