@@ -1,27 +1,40 @@
 """Event-driven molecular dynamics of an ensemble in lock step.
 
-Some tens of independent trajectories are kept as arrays, one entry a lane, and each pass of the inner
-loop advances every lane by one event. The loop has no branch, so it is compiled to vector instructions.
-A lane whose trajectory has ended idles for a few passes and is then given the next start.
+Some tens of independent trajectories are kept as arrays, one entry a lane, and each pass of the
+inner loop advances every lane by one event. The loop has no branch, so it is compiled to vector
+instructions. A lane whose trajectory has ended idles for a few passes and is then given the next
+start.
 
-Two experiments use it. ``count_events`` starts from the invariant measure and runs for a fixed time T:
-the mean count is then rate × T exactly, for every T and without burn-in. ``hop_intervals`` starts on the
-surface of a hop, weighted by the flux through it, and records the next returns: each of them is an
-exact draw of the interval between hops, with no window that could cut it off.
+Two experiments use it. ``count_events`` starts from the invariant measure and runs for a fixed
+time T: the mean count is then rate × T exactly, for every T and without burn-in. ``hop_intervals``
+starts on the surface of a hop, weighted by the flux through it, and records the next returns: each
+of them is an exact draw of the interval between hops, with no window that could cut it off.
 
-Starts come from streams keyed by block, and sums are integers or taken in the order of the starts. So a
-result depends on the scene, the seed and the blocks, not on lanes, processors or shards.
+Starts come from streams keyed by block, and sums are integers or taken in the order of the starts.
+So a result depends on the scene, the seed and the blocks, not on lanes, processors or shards.
 """
 
 import math
 
 import numpy as np
 
-from twodiscs.events import DISC, END_OF_TIME, WALL_X1, WALL_Y1
-from twodiscs.events import after_event, crosses, crossing_time, next_event
+from twodiscs import theory
+from twodiscs.checks import one_of, proportion, whole
+from twodiscs.events import (
+    DISC,
+    END_OF_TIME,
+    WALL_X1,
+    WALL_X2,
+    WALL_Y1,
+    WALL_Y2,
+    after_event,
+    crosses,
+    crossing_time,
+    next_event,
+)
 from twodiscs.invariant import draw_configuration, draw_constants, draw_crossing, draw_velocity
 from twodiscs.jit import compiled
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.scene import EVENTS, HOPS, Scene
 from twodiscs.streams import open_stream
 
 LANES = 64
@@ -29,13 +42,29 @@ LANES = 64
 #: Passes between two looks at which lanes have ended; a packed count must stay below 256.
 PASSES = 16
 
+#: Wall and disc events that a replica is meant to last.
+EVENTS_PER_REPLICA = 128
+
+#: Blocks of the first round.
+FIRST_ROUND = 32
+
 #: Replicas that share a random stream.
 REPLICAS = 1024
+
+#: Successive intervals that a chain records, chains that share a stream, bins of a histogram.
+RETURNS = 256
+CHAINS = 256
+BINS = 512
+
+#: Wall and disc events that a trajectory for people lasts at most, on average.
+LONGEST_TRAJECTORY = 6000
 
 # A lane counts in one double: six fields of eight bits, in the order of EVENTS. The last one takes
 # every event, disc collisions included.
 FIELD = tuple(256.0**i for i in range(6))
 VERTICAL, HORIZONTAL, COLLISION, RIGHT, TOP, ANY = FIELD
+
+COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
 
 @compiled
@@ -49,14 +78,16 @@ def draw_starts(state, draw, side_x, side_y, starts):
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, lanes, duration, sigma, draw, sides, blocked, hops, walls):
-    """Run the replicas of blocks ``first`` … ``stop`` − 1 for ``duration`` each and add up their counts.
+def count_blocks(
+    seed, first, stop, replicas, lanes, duration, sigma, draw, sides, blocked, hops, walls
+):
+    """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products, eligible): Σ N_e (6), Σ N_e N_f (6, 6) over all replicas, and how many
-    replicas can see each event (6), all int64, in the order of EVENTS. ``sides`` chooses components
-    as in ``draw_configuration``; ``blocked`` says which hops are blocked, so that only starts with disc 1
-    on the right (on top) see the right (top) wall. ``hops`` and ``walls`` are True or None: what is
-    None is not compiled.
+    replicas can see each event (6), all int64, in the order of EVENTS. ``sides`` chooses
+    components as in ``draw_configuration``; ``blocked`` says which hops are blocked, so that only
+    starts with disc 1 on the right (on top) see the right (top) wall. ``hops`` and ``walls`` are
+    True or None: what is None is not compiled.
     """
     x1, y1, x2, y2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     u1, v1, u2, v2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -89,8 +120,18 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, sigma, draw, side
                 draw_starts(open_stream(seed, block), draw, sides[0], sides[1], starts)
                 block, used = block + 1, 0
             if used < replicas:
-                x1[i], y1[i], x2[i], y2[i] = starts[0, used], starts[1, used], starts[2, used], starts[3, used]
-                u1[i], v1[i], u2[i], v2[i] = starts[4, used], starts[5, used], starts[6, used], starts[7, used]
+                x1[i], y1[i], x2[i], y2[i] = (
+                    starts[0, used],
+                    starts[1, used],
+                    starts[2, used],
+                    starts[3, used],
+                )
+                u1[i], v1[i], u2[i], v2[i] = (
+                    starts[4, used],
+                    starts[5, used],
+                    starts[6, used],
+                    starts[7, used],
+                )
                 remaining[i] = duration
                 used += 1
                 busy[i] = True
@@ -134,12 +175,149 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, sigma, draw, side
                 counts[e, i] += (tally >> (8 * e)) & 255
 
 
+def nearest_power_of_two(value):
+    """Return the power of two next to ``value`` > 0 on a logarithmic scale.
+
+    Durations and bin widths come from the exact theory, whose last digit may depend on the math
+    library; rounded like this they are the same on every machine.
+    """
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(1.0, exponent if mantissa > math.sqrt(0.5) else exponent - 1)
+
+
+def replica_duration(scene):
+    """Return the time T of one replica: some ``EVENTS_PER_REPLICA`` events, a power of two.
+
+    Short enough that counts with heavy tails and the two-state wall counts near h/4 average over
+    many independent starts, long enough that drawing a start does not cost more than following it.
+    """
+    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    return nearest_power_of_two(EVENTS_PER_REPLICA / rate)
+
+
+def blocked_hops(scene):
+    """Return whether the discs are confined to their sides of x and of y."""
+    return not scene.horizontal_hops, not scene.vertical_hops
+
+
+def run_blocks(
+    scene, events, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES, sides=(0, 0)
+):
+    """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
+
+    A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
+    ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
+    detected: without a hop among them no crossing is looked for. Returns (sums, products,
+    eligible) as ``count_blocks`` does. They are integers: two shards add up to the whole.
+    """
+    hops = True if any(event in HOPS for event in events) else None
+    walls = True if {"right_wall", "top_wall"} & set(events) else None
+    return count_blocks(
+        np.uint64(seed), first, stop, replicas, lanes, duration, scene.contact_distance,
+        draw_constants(scene), sides, blocked_hops(scene), hops, walls,
+    )  # fmt: skip
+
+
+def relative_errors(sums, products, eligible):
+    """Return the relative standard error of each mean count (6), inf where nothing was counted.
+
+    Replicas are independent, so the error is √(var N / R) / ⟨N⟩ over the replicas that can see the
+    event.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = sums / eligible
+        variance = np.maximum(np.diag(products) / eligible - mean**2, 0.0)
+        errors = np.sqrt(variance / eligible) / mean
+    return np.where(sums > 0, errors, np.inf)
+
+
+def count_events(scene, target, budget, seed, report=None):
+    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
+
+    ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
+    blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
+    events to simulate. Work goes in rounds: the first one is small, the next ones as long as the
+    errors seen so far predict, at most eight times all before. ``report``, if given, is called
+    after each round with a dict of events, error (the worst in units of its target) and the events
+    still needed.
+
+    Returns a dict for a JSON file; see ``docs/files.md``. Raises ``ValueError`` for an unknown
+    event or a number out of range.
+    """
+    if not target:
+        raise ValueError("target must name at least one event, not none")
+    target = {
+        one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
+    }
+    budget, seed = whole("budget", budget), whole("seed", seed, 0)
+
+    duration = replica_duration(scene)
+    events = [event for event in EVENTS if event in target]
+    waited = [event for event in events if scene.is_possible(event)]
+    index = [EVENTS.index(event) for event in waited]
+    goals = np.array([target[event] for event in waited])
+
+    sums, products, eligible = (
+        np.zeros(6, np.int64),
+        np.zeros((6, 6), np.int64),
+        np.zeros(6, np.int64),
+    )
+    done, blocks, rounds, simulated = 0, FIRST_ROUND, 0, 0
+    while True:
+        for total, part in zip(
+            (sums, products, eligible),
+            run_blocks(scene, events, seed, done, done + blocks, duration),
+            strict=True,
+        ):
+            total += part
+        done, rounds = done + blocks, rounds + 1
+        simulated = int(sums[COLLISIONS] + sums[ANY_WALLS])
+        if not waited:
+            break
+        excess = relative_errors(sums, products, eligible)[index] / goals
+        worst = float(np.max(excess))
+        missing = 8.0 if worst > 3.0 else 1.05 * worst**2 - 1.0
+        affordable = (budget - simulated) / simulated
+        if report is not None:
+            report({"events": simulated, "error": worst, "needed": missing * simulated})
+        if worst <= 1.0 or affordable * done < 1.0:
+            break
+        blocks = max(1, math.ceil(min(missing, affordable) * done - 1e-9))
+        blocks = min(blocks, max(1, int(affordable * done)))
+
+    watched = [EVENTS.index(event) for event in events]
+    reached = dict(zip(waited, excess <= 1.0, strict=True)) if waited else {}
+    return {
+        "radius": scene.radius,
+        "duration": duration,
+        "replicas": done * REPLICAS,
+        "rounds": rounds,
+        "events": simulated,
+        "eligible": {EVENTS[e]: int(eligible[e]) for e in watched},
+        "counts": {EVENTS[e]: int(sums[e]) for e in watched},
+        "products": {
+            f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
+            for e in watched
+            for f in watched
+            if e <= f
+        },
+        "target": {event: target[event] for event in events},
+        "status": {
+            e: ("reached" if reached[e] else "budget") if e in reached else "impossible"
+            for e in events
+        },
+    }
+
+
 @compiled
-def record_returns(seed, first, stop, chains, lanes, returns, sigma, draw, beyond_x, width, histogram):
+def record_returns(
+    seed, first, stop, chains, lanes, returns, sigma, draw, beyond_x, width, histogram
+):
     """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` vertical hops each.
 
-    Adds the intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what is
-    longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in order.
+    Adds the intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what
+    is longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in
+    order.
     """
     x1, y1, x2, y2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     u1, v1, u2, v2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -168,7 +346,8 @@ def record_returns(seed, first, stop, chains, lanes, returns, sigma, draw, beyon
                 state, half_x, half_y, beyond_x
             )
             chain[i], elapsed[i], age[i] = started, 0.0, 0.0
-            # A start that falls through y1 = y2 is seen to cross it at time 0; that is not a return.
+            # A start that falls through y1 = y2 is seen to cross it at time 0; that is not a
+            # return.
             left[i] = wanted + (1.0 if v1[i] < v2[i] else 0.0)
             started += 1
             running += 1
@@ -200,3 +379,90 @@ def record_returns(seed, first, stop, chains, lanes, returns, sigma, draw, beyon
                 n += 1 if intervals[i] >= 0.0 else 0
             for k in range(n):
                 histogram[min(np.int64(found[k] * per_width), last_bin)] += 1
+
+
+def hop_intervals(scene, event, intervals, seed):
+    """Draw intervals between hops of one kind, each one exact, and count them in bins.
+
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least.
+    Chains of ``RETURNS`` successive intervals start on the hop's surface with the flux-weighted
+    measure, which the map from hop to hop preserves: so every interval of a chain has the law of
+    the interval between hops. Intervals within a chain are correlated, chains are independent.
+
+    Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
+    number of intervals and of chains, and the mean with its standard error over chains. Raises
+    ``ValueError`` for a hop that is unknown or blocked, or a number out of range.
+    """
+    one_of("event", event, HOPS)
+    if not scene.is_possible(event):
+        raise ValueError(
+            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
+        )
+    blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
+    seed = whole("seed", seed, 0)
+    width = nearest_power_of_two(theory.mean_times(scene)[event] / 16)
+    # A horizontal hop is a vertical one of the box on its side.
+    upright = scene if event == "vertical_hop" else Scene(scene.height, scene.width, scene.radius)
+    draw = draw_constants(upright)
+    histogram = np.zeros(BINS + 1, np.int64)
+    totals = record_returns(
+        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, scene.contact_distance, draw,
+        draw.beyond_x, width, histogram,
+    )  # fmt: skip
+    means = totals / RETURNS
+    return {
+        "radius": scene.radius,
+        "event": event,
+        "bin_width": width,
+        "counts": [int(n) for n in histogram[:-1]],
+        "overflow": int(histogram[-1]),
+        "intervals": totals.size * RETURNS,
+        "chains": totals.size,
+        "mean": math.fsum(means) / means.size,
+        "stderr": float(np.std(means, ddof=1) / math.sqrt(means.size)),
+    }
+
+
+#: Names of what ends a flight, by code; only disc 1 on the right and on top has a name as an event.
+_NAMES = {WALL_X1: "wall_x1", WALL_Y1: "wall_y1", WALL_X2: "wall_x2", WALL_Y2: "wall_y2"}
+_NAMES |= {DISC: "disc_collision", END_OF_TIME: "end"}
+
+
+def follow(scene, state, duration):
+    """Yield (time, x1, y1, x2, y2, event) for all that happens within ``duration``.
+
+    ``state`` of the ``Scene`` is (x1, y1, x2, y2, u1, v1, u2, v2). Hops are events here, reported
+    where they occur in a flight; walls are named by disc and axis; the first row is the start, the
+    last one the end.
+    """
+    half_x, half_y, time = scene.range_x / 2, scene.range_y / 2, 0.0
+    yield (time, *state[:4], "start")
+    while True:
+        flight, code = next_event(*state, duration - time, half_x, half_y, scene.contact_distance)
+        after = after_event(*state, flight, code, half_x, half_y)
+        hops = []
+        for name, axis in (("vertical_hop", 1), ("horizontal_hop", 0)):
+            before = state[axis] - state[axis + 2]
+            if crosses(before, after[axis] - after[axis + 2]):
+                hops.append((crossing_time(before, state[axis + 4] - state[axis + 6]), name))
+        for until, name in sorted(hops):
+            places = (q + v * until for q, v in zip(state[:4], state[4:], strict=True))
+            yield (time + until, *places, name)
+        time, state = time + flight, after
+        yield (time, *state[:4], _NAMES[code])
+        if code == END_OF_TIME:
+            return
+
+
+def trajectory(scene, seed):
+    """Return one trajectory of a ``Scene`` from the invariant measure, as rows of ``follow``.
+
+    It lasts some eight mean times of the rarest hop that is open, but no longer than
+    ``LONGEST_TRAJECTORY`` wall and disc events on average.
+    """
+    stream = open_stream(np.uint64(whole("seed", seed, 0)), 0)
+    start = (*draw_configuration(stream, draw_constants(scene), 0, 0), *draw_velocity(stream))
+    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    hops = [theory.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
+    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
+    return list(follow(scene, start, nearest_power_of_two(duration)))

@@ -2,9 +2,9 @@
 
 The state of the two discs is (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities, with the
 origin at the centre of the box; centres stay within ±half_x and ±half_y. Every function here is
-compiled into the lock-step ensemble, into the audit and into the trajectories for people, so the law
-stands in this file only. There are no branches, only selections, so that an ensemble advances in vector
-instructions.
+compiled into the lock-step ensemble, into the audit and into the trajectories for people, so the
+law stands in this file only. There are no branches, only selections, so that an ensemble advances
+in vector instructions.
 
 A time is kept as a quotient ``gap / speed`` and quotients are compared by cross-multiplication: one
 division an event instead of five.
@@ -14,7 +14,8 @@ import math
 
 from twodiscs.jit import compiled
 
-#: What ended a free flight. Codes are floats because they travel in the same registers as the state.
+#: What ended a free flight. Codes are floats because they travel in the same registers as the
+#: state.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 
 #: Normal speeds of approach below this (four roundings of the speed scale, 1) are rest. A collision
@@ -34,12 +35,13 @@ def wall_quotient(position, velocity, limit):
 
 @compiled
 def contact_quotient(dx, dy, du, dv, sigma):
-    """Return (gap, speed, approach) of two discs at separation (dx, dy), relative velocity (du, dv).
+    """Return (gap, speed, approach) for a separation (dx, dy) and relative velocity (du, dv).
 
     They touch after gap / speed, if the approach counts and ``speed`` is a number. The equation is
-    a t² + 2 b t + c = 0 with c = |Δx|² − σ², b = Δx·Δv, a = |Δv|². Its discriminant b² − a c is taken
-    as a σ² − (Δx ∧ Δv)², which does not cancel where discs graze; it is negative, and ``speed`` NaN,
-    where they miss. The root is taken as c / (√disc − b), which does not cancel near contact.
+    a t² + 2 b t + c = 0 with c = |Δx|² − σ², b = Δx·Δv, a = |Δv|². Its discriminant b² − a c is
+    taken as a σ² − (Δx ∧ Δv)², which does not cancel where discs graze; it is negative, and
+    ``speed`` NaN, where they miss. The root is taken as c / (√disc − b), which does not cancel
+    near contact.
 
     Whether there is a contact at all is a matter of direction, b < 0, not of a tolerance on the
     distance: discs that touch and part are left alone, discs that touch and approach collide now.
@@ -100,9 +102,9 @@ def next_event(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sigma)
 def after_event(x1, y1, x2, y2, u1, v1, u2, v2, time, code, half_x, half_y):
     """Return the state after a free flight of ``time`` and the event ``code`` that ends it.
 
-    A disc that hits a wall is put on the wall exactly. Discs that collide exchange the components of
-    their velocities along the line of centres; dividing by the |Δx|² of this very moment, not by σ²,
-    keeps the energy to a rounding whose sign is random.
+    A disc that hits a wall is put on the wall exactly. Discs that collide exchange the components
+    of their velocities along the line of centres; dividing by the |Δx|² of this very moment, not
+    by σ², keeps the energy to a rounding whose sign is random.
     """
     du, dv = u1 - u2, v1 - v2
     x1, y1, x2, y2 = x1 + u1 * time, y1 + v1 * time, x2 + u2 * time, y2 + v2 * time

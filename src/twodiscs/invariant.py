@@ -1,4 +1,4 @@
-"""Exact draws from the invariant measure: configurations, velocities, and crossings of a hop surface.
+"""Exact draws from the invariant measure: configurations, velocities, crossings of a hop surface.
 
 Rejection from the whole prism dies out as the radius grows. Here the separations u = |x1 − x2| and
 v = |y1 − y2| are drawn instead; their density is (A − u)(B − v) outside the circle u² + v² = σ².
@@ -94,10 +94,7 @@ def draw_separation(state, draw):
         while part < 6 and choice >= draw.weights[part]:
             part += 1
         pair = (part - 1) // 2
-        if draw.beyond_y > 0.0:
-            power = 2 * pair
-        else:
-            power = 2 + pair
+        power = 2 * pair if draw.beyond_y > 0.0 else 2 + pair
         if part % 2 == 1:
             s = draw.span * largest_of(state, power + 1)
         else:
@@ -169,11 +166,11 @@ def draw_velocity(state):
 
 @compiled
 def draw_crossing(state, half_x, half_y, beyond_x):
-    """Return (x1, y1, x2, y2, u1, v1, u2, v2) on the surface y1 = y2, weighted by the flux through it.
+    """Return a state (x1, y1, x2, y2, u1, v1, u2, v2) on y1 = y2, weighted by the flux through it.
 
     Positions are uniform on the surface (|x1 − x2| ≥ σ has slack (A − σ)√U). The component of the
-    velocity along the surface's normal, n = (v1 − v2)/√2, has density ∝ |n| √(1 − n²): then 1 − n² is
-    the square of the largest of three uniform numbers.
+    velocity along the surface's normal, n = (v1 − v2)/√2, has density ∝ |n| √(1 − n²): then 1 − n²
+    is the square of the largest of three uniform numbers.
     """
     slack = beyond_x * math.sqrt(uniform(state))
     bits = next_bits(state)

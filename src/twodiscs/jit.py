@@ -1,7 +1,8 @@
 """Numba, set up in one place: which arithmetic, which vector width, where compiled code is kept.
 
-Arithmetic is plain IEEE 754: no fastmath, no contraction, and kernels call nothing of a math library
-but the square root, which is correctly rounded. So every processor and vector width gives the same bits.
+Arithmetic is plain IEEE 754: no fastmath, no contraction, and kernels call nothing of a math
+library but the square root, which is correctly rounded. So every processor and vector width gives
+the same bits.
 
 Import this module, not numba, wherever something is compiled: the settings must precede the import.
 """
@@ -17,7 +18,7 @@ KEPT_CACHES = 4
 
 
 def _use_wide_vectors():
-    """Lift LLVM's preference for 256-bit vectors where the processor has 512; a user's choice wins."""
+    """Lift LLVM's preference for 256-bit vectors on a processor with 512; a user's choice wins."""
     if "NUMBA_CPU_NAME" in os.environ or "NUMBA_CPU_FEATURES" in os.environ:
         return
     from llvmlite import binding
@@ -30,8 +31,8 @@ def _use_wide_vectors():
 def _use_keyed_cache():
     """Keep compiled code in a folder named by the hash of all sources of this package.
 
-    Numba compares the time stamp of the file that holds a function, so it would go on using a kernel
-    whose imported event law has been edited.
+    Numba compares the time stamp of the file that holds a function, so it would go on using a
+    kernel whose imported event law has been edited.
     """
     home = os.environ.get("NUMBA_CACHE_DIR")
     caches = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

@@ -1,8 +1,9 @@
 """Random numbers that are the same on every machine: one stream for each block of work.
 
-The generator is xoshiro256++ (Blackman and Vigna, ACM Trans. Math. Softw. 47, 36 (2021)), its state
-filled by SplitMix64 from the seed of the stream and the number of the block. So a block gives the same
-numbers whoever computes it, in whatever order, and a shard of the work is a range of blocks.
+The generator is xoshiro256++ (Blackman and Vigna, ACM Trans. Math. Softw. 47, 36 (2021)), its
+state filled by SplitMix64 from the seed of the stream and the number of the block. So a block
+gives the same numbers whoever computes it, in whatever order, and a shard of the work is a range
+of blocks.
 """
 
 import numpy as np
@@ -26,7 +27,7 @@ def splitmix(counter):
 
 @compiled
 def open_stream(seed, block):
-    """Return the state, 4 uint64, of the stream with this ``seed`` (uint64) for this ``block`` (≥ 0)."""
+    """Return the state, 4 uint64, of the stream of ``seed`` (uint64) for ``block`` (≥ 0)."""
     state = np.empty(4, np.uint64)
     counter = splitmix(np.uint64(seed) + GOLDEN) ^ splitmix(np.uint64(block) * MIX_2 + MIX_1)
     for i in range(4):

@@ -1,1 +1,1 @@
-"""Command-line entry points: one thin module for each workflow rule, and ``twodiscs`` for people."""
+"""Command lines: one thin module for each workflow rule, and ``twodiscs`` for people."""

@@ -1,0 +1,34 @@
+"""What the jobs of one radius share: their scene, their JSON files, and the seconds they took."""
+
+import json
+import time
+
+from twodiscs.cli.arguments import Parser, parameters
+from twodiscs.scene import Scene
+
+
+def arguments(description):
+    """Return (parameters, scene, path of the point file, path of the cost file or None)."""
+    parser = Parser(description=description)
+    parser.add_argument("--parameters", required=True, help="all the job depends on, a dict")
+    parser.add_argument("--output", required=True, help="the point file to write, JSON")
+    parser.add_argument("--cost", help="where to write the number of events and the seconds, JSON")
+    given = parser.parse_args()
+    point = parameters(given.parameters)
+    missing = {"width", "height", "radius", "seed"} - point.keys()
+    if missing:
+        raise ValueError(f"parameters need {', '.join(sorted(missing))}, not only {sorted(point)}")
+    return point, Scene(point["width"], point["height"], point["radius"]), given.output, given.cost
+
+
+def write_json(path, content):
+    """Write ``content`` with sorted keys, one entry a line; floats keep all their digits."""
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(content, file, sort_keys=True, indent=1, allow_nan=False)
+        file.write("\n")
+
+
+def timed(work):
+    """Return (result, seconds) of ``work()``, in processor time so that other jobs do not count."""
+    start = time.process_time()
+    return work(), time.process_time() - start
