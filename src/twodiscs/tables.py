@@ -1,0 +1,326 @@
+"""Every table of a scene: its columns, their units and meaning, declared once.
+
+Tables are CSV files with one row for each thing said. Floats are written with all their digits,
+integers as integers, truth values as ``true`` and ``false``; an empty cell is a value that does not
+exist. Lengths are in the unit of the box and the speed √(v1² + v2²) is one, so times have it too.
+Nothing but the standard library is imported here.
+"""
+
+import csv
+import math
+from dataclasses import dataclass
+from numbers import Integral, Real
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: its name, the unit of its values ("" for none), what it means, and its type."""
+
+    name: str
+    unit: str
+    meaning: str
+    kind: type = float
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: what a row of it says, and its columns in order."""
+
+    meaning: str
+    columns: tuple[Column, ...]
+
+    @property
+    def names(self):
+        """The names of the columns, in order."""
+        return [column.name for column in self.columns]
+
+
+RADIUS = Column("radius", "length", "radius of the discs")
+COMPONENTS = Column("ergodic_components", "", "disjoint parts of configuration space", int)
+Z = Column("z", "", "standard normal deviate of the comparison, positive when the estimate is high")
+TEST = Column(
+    "test",
+    "",
+    "how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled), "
+    "cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the "
+    "probability is 0 or 1), chi-square (sum of squared scores)",
+    str,
+)
+
+
+def _sampled(unit, quantity):
+    return (
+        RADIUS,
+        Column("quantity", "", quantity, str),
+        Column("method", "", "monte_carlo: rejection from the prism, areas by a thin shell", str),
+        Column("exact", unit, "exact value"),
+        Column("estimate", unit, "measure × hits/samples; empty without a hit"),
+        Column("stderr", unit, "binomial standard error; empty below 100 hits or misses"),
+        Z,
+        Column("samples", "", "configurations drawn from the prism A²B²", int),
+        Column("hits", "", "configurations that count", int),
+        Column(
+            "epsilon",
+            "length",
+            "thickness of the shell in configuration space (to either side, for a hop); empty for "
+            "the volume, and for any_wall_area = 4 (right + top), which joins two shells",
+        ),
+        Column("expectation", unit, "exact expectation of the estimate; z is against it"),
+        Column("bias", unit, "expectation − exact: what the thickness of the shell adds"),
+        Column(
+            "status",
+            "",
+            "sampled; too-few: under 100 hits or misses, no honest error; none-seen; impossible: "
+            "blocked by geometry",
+            str,
+        ),
+        TEST,
+    )
+
+
+TABLES = {
+    "grid": Table(
+        "One row a radius: what the scene computes.",
+        (
+            RADIUS,
+            Column("regime", "", "all-hops, vertical-hops, horizontal-hops or no-hops", str),
+            COMPONENTS,
+            Column("largest_radius", "length", "radius at which the discs have no room left"),
+        ),
+    ),
+    "theory": Table(
+        "One row a radius and quantity: the exact values.",
+        (
+            RADIUS,
+            Column("quantity", "", "volume, <event>_area or <event>_time", str),
+            Column(
+                "exact",
+                "length⁴, length³ or time",
+                "exact value; no time where the event is impossible",
+            ),
+        ),
+    ),
+    "volume": Table(
+        "One row a radius: the volume of configuration space, exact and by Monte Carlo.",
+        _sampled("length⁴", "volume"),
+    ),
+    "areas": Table(
+        "One row a radius and event: the area of the event's surface, exact and by Monte Carlo. A "
+        "shell of finite thickness is not a surface, so its exact expectation has a column.",
+        _sampled("length³", "<event>_area"),
+    ),
+    "mean_times": Table(
+        "One row a radius and event: the mean time between events, exact and by dynamics.",
+        (
+            RADIUS,
+            Column("event", "", "the event", str),
+            Column("exact", "time", "exact mean time; empty where the event is impossible"),
+            Column("estimate", "time", "T · replicas/count; empty where none was seen"),
+            Column(
+                "stderr",
+                "time",
+                "standard error from the spread between replicas; empty when too few to be honest",
+            ),
+            Column(
+                "z",
+                "",
+                "standard normal deviate, positive when the time is too long; of the mean count, "
+                "which is unbiased for every T",
+            ),
+            Column("count", "", "events counted in all replicas", int),
+            COMPONENTS,
+            Column("replicas", "", "independent trajectories that can see the event", int),
+            Column("duration", "time", "length T of a replica"),
+            Column("relative_stderr", "", "stderr/estimate"),
+            Column("target", "", "relative standard error asked for"),
+            Column(
+                "status",
+                "",
+                "reached: the target; budget: stopped by the event budget; too-few: under 100 "
+                "replicas or 100 effective events (clusters count once), no honest error; "
+                "none-seen; impossible: blocked by geometry",
+                str,
+            ),
+            Column(
+                "bound",
+                "time",
+                "where none was seen: lower bound on the mean time at 95 %, allowing for clusters "
+                "of four events",
+            ),
+            TEST,
+        ),
+    ),
+    "hop_histogram": Table(
+        "One row a radius and bin: intervals between hops, from one crossing to the next.",
+        (
+            RADIUS,
+            Column("event", "", "the hop", str),
+            Column("left", "time", "lower edge of the bin"),
+            Column("right", "time", "upper edge of the bin"),
+            Column("count", "", "intervals in the bin", int),
+            Column("density", "1/time", "count/(intervals × width of the bin)"),
+            Column(
+                "stderr",
+                "1/time",
+                "binomial standard error of the density, as if intervals were independent; empty "
+                "for an empty bin",
+            ),
+            Column("intervals", "", "intervals in all, those beyond the last bin included", int),
+            Column("exact_mean", "time", "exact mean interval"),
+            Column("mean", "time", "mean of all intervals"),
+            Column(
+                "mean_stderr",
+                "time",
+                "its standard error from the spread between independent chains; empty below 100",
+            ),
+            Z,
+        ),
+    ),
+    "check": Table(
+        "One row a comparison with the exact theory.",
+        (
+            Column(
+                "comparison",
+                "",
+                "volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and "
+                "z_spread",
+                str,
+            ),
+            Column("quantity", "", "what is compared", str),
+            Column("radius", "length", "radius of the discs; empty for a statement on all radii"),
+            Column("method", "", "monte_carlo, dynamics or intervals", str),
+            Column("exact", "see quantity", "exact value; for an area, the shell's expectation"),
+            Column("estimate", "see quantity", "estimate; empty where there is none"),
+            Column("stderr", "see quantity", "its standard error; empty where there is none"),
+            Z,
+            Column("p", "", "probability of a |z| as large, or larger, if all is right"),
+            Column("bound", "", "largest |z| that passes"),
+            Column("passed", "", "whether |z| ≤ bound; empty where nothing can be compared", bool),
+            Column("status", "", "status of the estimate in its own table", str),
+            TEST,
+        ),
+    ),
+    "cost": Table(
+        "One row a job: what it took. The only table of a scene that holds wall-clock seconds.",
+        (
+            Column("stage", "", "monte_carlo, dynamics or intervals", str),
+            RADIUS,
+            Column("events", "", "events simulated, or configurations drawn", int),
+            Column("seconds", "s", "wall-clock seconds"),
+            Column("forecast_seconds", "s", "seconds forecast before the run; empty without one"),
+        ),
+    ),
+    "trajectory": Table(
+        "One row an event of one trajectory, in order: the state at the event.",
+        (
+            Column("time", "time", "time of the event"),
+            Column("x1", "length", "disc 1, from the centre of the box"),
+            Column("y1", "length", "disc 1, from the centre of the box"),
+            Column("x2", "length", "disc 2, from the centre of the box"),
+            Column("y2", "length", "disc 2, from the centre of the box"),
+            Column("event", "", "what happens", str),
+        ),
+    ),
+}
+
+READING_THE_CHECK = """\
+## How to read check.csv
+
+Each row compares one estimate with the exact theory. `z` is the deviation in standard errors or,
+where a normal law would not be right, the standard normal deviate with the same two-sided
+probability `p`. A row has `passed` when |z| ≤ `bound`.
+
+The bounds are Bonferroni's. If everything is right, a scene fails with a probability of one in a
+thousand at most: half of that is shared equally by all comparisons at a radius, and half by the
+statements on all radii. `z_mean` says whether the scores of one quantity, by one method, scatter
+about zero (√n times their mean), and `z_spread` whether they scatter by one (their sum of squares,
+a χ² of n degrees): errors that are too small or too large show there. Both take the scores whose
+`test` is `normal`, and are exact for any number of them; tails of discrete laws are conservative
+by design and would look too narrow.
+
+A row without an honest error says so in `status`. It is still compared wherever a bound holds: no
+hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
+"""
+
+
+def _text(column, value):
+    """Return the text of a cell, or raise ``ValueError`` for a value of another kind."""
+    if value is None:
+        return ""
+    if column.kind is bool and isinstance(value, bool):
+        return "true" if value else "false"
+    if column.kind is str and isinstance(value, str) and value:
+        return value
+    number = isinstance(value, Real) and not isinstance(value, bool) and value == value
+    if column.kind is float and number:
+        return repr(float(value))
+    if column.kind is int and number and isinstance(value, Integral):
+        return repr(int(value))
+    raise ValueError(f"{column.name} must be a {column.kind.__name__} or None, not {value!r}")
+
+
+def _value(column, text):
+    if text == "":
+        return None
+    if column.kind is bool:
+        return {"true": True, "false": False}[text]
+    value = column.kind(text)
+    if column.kind is float and math.isnan(value):
+        raise ValueError
+    return value
+
+
+def _table(name):
+    if name not in TABLES:
+        raise ValueError(f"table must be one of {', '.join(TABLES)}, not {name!r}")
+    return TABLES[name]
+
+
+def write(path, table, rows):
+    """Write ``rows`` (mappings from column to value) as the CSV file of ``table`` at ``path``.
+
+    Every row has exactly the table's columns; ``None`` becomes an empty cell. Raises ``ValueError``
+    for another set of columns, a value of another type, and NaN, before anything is written.
+    """
+    columns = _table(table).columns
+    names = _table(table).names
+    lines = [names]
+    for row in rows:
+        if set(row) != set(names):
+            odd = ", ".join(sorted(set(row) ^ set(names)))
+            raise ValueError(f"rows must have the columns of {table}.csv, but see {odd}")
+        lines.append([_text(column, row[column.name]) for column in columns])
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
+
+
+def read(path, table):
+    """Return the rows of the CSV file at ``path`` as dicts, with ``None`` for empty cells.
+
+    Raises ``ValueError`` if its columns are not those of ``table``, or a cell is not of its type.
+    """
+    columns = _table(table).columns
+    with open(path, encoding="utf-8", newline="") as file:
+        lines = list(csv.reader(file))
+    if not lines or lines[0] != _table(table).names:
+        raise ValueError(f"{path} must be a {table} table with the columns {_table(table).names}")
+    rows = []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            row = {c.name: _value(c, text) for c, text in zip(columns, line, strict=True)}
+        except (ValueError, KeyError):
+            raise ValueError(f"{path} has a bad row in line {number}: {line}") from None
+        rows.append(row)
+    return rows
+
+
+def documentation():
+    """Return the description of every table, and how to read check.csv, as Markdown."""
+    parts = [f"# Tables\n\n{__doc__.split(chr(10), 2)[2].rsplit('Nothing but', 1)[0].strip()}\n"]
+    for name, table in TABLES.items():
+        lines = [f"| `{c.name}` | {c.unit or '–'} | {c.meaning} |\n" for c in table.columns]
+        parts.append(
+            f"## {name}.csv\n\n{table.meaning}\n\n| column | unit | meaning |\n|---|---|---|\n"
+            + "".join(lines)
+        )
+    return "\n".join([*parts, READING_THE_CHECK])
