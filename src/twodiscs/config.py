@@ -223,6 +223,9 @@ def read(path):
     with open(path, encoding="utf-8") as file:
         try:
             mapping = yaml.load(file, _StrictLoader)
+        except yaml.MarkedYAMLError as error:
+            line = error.problem_mark.line + 1
+            raise ConfigError(f"{path}, line {line}: {error.problem}") from None
         except (yaml.YAMLError, UnicodeDecodeError) as error:
             raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
     if not isinstance(mapping, dict):
@@ -239,8 +242,8 @@ class _StrictLoader(yaml.SafeLoader):
         for key, _ in node.value:
             if isinstance(key, yaml.ScalarNode):
                 if key.value in seen:
-                    line = key.start_mark.line + 1
-                    raise yaml.YAMLError(f"the key {key.value!r} is given again on line {line}")
+                    problem = f"the key {key.value!r} is given a second time"
+                    raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
                 seen.add(key.value)
         return node
 

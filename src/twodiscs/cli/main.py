@@ -24,9 +24,9 @@ def _main():
     exact.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args()
 
+    scene = Scene(options.width, options.height, options.radius)
     from twodiscs import theory
 
-    scene = Scene(options.width, options.height, options.radius)
     numbers = theory.exact(scene)
     print(
         json.dumps(numbers, indent=2, allow_nan=False) if options.json else _table(scene, numbers)
