@@ -1,0 +1,46 @@
+# make        sets up .venv, then builds everything that config/config.yaml asks for
+# make test   the same set-up, then everything that decides whether a change is good
+#
+# CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
+
+CORES ?= 2
+CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
+IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
+
+.PHONY: all test
+
+all: .venv/ready
+	$(IN_VENV) snakemake --cores $(CORES)
+	@echo
+	@echo "Figures      results/<scene>/figures/"
+	@echo "Tables       results/<scene>/*.csv"
+	@echo "The paper    results/paper.pdf"
+	@echo "The report   results/report.html"
+
+test: .venv/ready
+	$(IN_VENV) ruff check src tests
+	$(IN_VENV) ruff format --check src tests
+	$(IN_VENV) snakefmt --check Snakefile workflow
+	$(IN_VENV) pytest
+
+# The exact packages of requirements.lock, then this one; again whenever either list changes.
+.venv/ready: requirements.lock pyproject.toml
+	@echo "Setting up .venv"
+	@rm -rf .venv
+	@if command -v uv > /dev/null; then \
+	  uv venv --quiet --python "$(or $(PYTHON),>=3.11)" .venv && \
+	  export VIRTUAL_ENV="$(CURDIR)/.venv" && \
+	  uv pip install --quiet --require-hashes -r requirements.lock && \
+	  uv pip install --quiet --no-deps --no-build-isolation --editable . ; \
+	else \
+	  for python in $(CANDIDATES) none; do \
+	    if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then break; fi; \
+	  done; \
+	  if [ $$python = none ]; then \
+	    echo "This needs Python 3.11 or newer; make PYTHON=<path> says where it is." >&2; exit 1; \
+	  fi; \
+	  $$python -m venv .venv && \
+	  .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock && \
+	  .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . ; \
+	fi
+	@touch $@

@@ -1,0 +1,115 @@
+# What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
+
+RESULTS = CONFIGURATION.results
+MAIN = CONFIGURATION.scenes[0]  # the scene that the manuscript is about
+METHODS = ("monte_carlo", "dynamics", "intervals")
+SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
+
+# The Python that runs Snakemake also runs the jobs.
+os.environ.update(
+    PATH=os.pathsep.join(
+        [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
+    )
+)
+
+
+wildcard_constraints:
+    scene="|".join(SCENES),
+    key=r"[0-9][0-9.e+-]*",
+
+
+def code(*modules):
+    """Return the source files that these modules of the package, or what they import, stand in."""
+    return sorted(
+        {os.path.relpath(path) for name in modules for path in imported(name)}
+    )
+
+
+def point_files(scene, *methods):
+    """Return what the jobs of these methods found, a file for each method and radius."""
+    return [
+        f"{RESULTS}/{scene.name}/points/{method}/{key}.json"
+        for method in methods
+        for key in getattr(scene, f"{method}_keys")
+    ]
+
+
+def cost_files(scene):
+    """Return what the jobs of a scene took, a file for each method and radius."""
+    return [
+        f"{RESULTS}/{scene.name}/points/cost/{method}-{key}.json"
+        for method in METHODS
+        for key in getattr(scene, f"{method}_keys")
+    ]
+
+
+def table_files(scene):
+    """Return {name: path} of the tables that a scene calls for."""
+    measured = {
+        "volume": scene.watch.volume,
+        "areas": scene.watch.areas,
+        "mean_times": scene.watch.mean_times,
+        "hop_histogram": scene.watch.hop_histogram,
+        "trajectory": scene.watch.trajectory,
+        "check": any(point_files(scene, *METHODS)),
+        "cost": any(cost_files(scene)),
+    }
+    names = ["grid", "theory", *(name for name, called in measured.items() if called)]
+    return {name: f"{RESULTS}/{scene.name}/{name}.csv" for name in names}
+
+
+def table_points(scene, table):
+    """Return the files of points that a table of a scene is gathered from."""
+    takes = {
+        "volume": ["monte_carlo"],
+        "areas": ["monte_carlo"],
+        "mean_times": ["dynamics"],
+        "hop_histogram": ["intervals"],
+        "check": METHODS,
+    }
+    return cost_files(scene) if table == "cost" else point_files(scene, *takes[table])
+
+
+def table_parameters(scene):
+    """Return what the tables of a scene need beside the files that they read."""
+    return {
+        "areas": list(scene.watch.areas),
+        "height": scene.height,
+        "width": scene.width,
+    }
+
+
+def figure_parameters(scene, figure):
+    """Return what a figure of a scene needs beside the tables that it reads."""
+    box = {"height": scene.height, "width": scene.width}
+    if "trajectory" in FIGURES[figure].tables:
+        box["radius"] = scene.watch.trajectory
+    return dict(sorted(box.items()))
+
+
+def figure_files(scene):
+    """Return {name: paths} of the figures that a scene calls for: all that they need is watched."""
+    return {
+        name: multiext(f"{RESULTS}/{scene.name}/figures/{name}", ".pdf", ".png")
+        for name, figure in FIGURES.items()
+        if figure.needs <= scene.watch.quantities
+    }
+
+
+def manuscript_parameters():
+    """Return what the manuscript needs beside the tables and figures that it reads."""
+    return {
+        "results": RESULTS,
+        "scenes": [
+            {
+                "figures": {
+                    name: FIGURES[name].caption for name in figure_files(scene)
+                },
+                "height": scene.height,
+                "name": scene.name,
+                "tables": list(table_files(scene)),
+                "width": scene.width,
+            }
+            for scene in SCENES.values()
+        ],
+    }
