@@ -39,11 +39,13 @@ from twodiscs.streams import open_stream
 
 LANES = 64
 
-#: Passes between two looks at which lanes have ended; a packed count must stay below 256.
-PASSES = 16
+#: Passes between two looks at which lanes have ended, and looks between two unpackings of the counts:
+#: a packed count must stay below 256.
+PASSES = 8
+LOOKS = 31
 
 #: Wall and disc events that a replica is meant to last.
-EVENTS_PER_REPLICA = 128
+EVENTS_PER_REPLICA = 192
 
 #: Blocks of the first round.
 FIRST_ROUND = 32
@@ -78,6 +80,15 @@ def draw_starts(state, draw, side_x, side_y, starts):
 
 
 @compiled
+def unpack(packed, counts, lane):
+    """Move the packed counts of a ``lane`` to ``counts`` (6, lanes)."""
+    tally = np.int64(packed[lane])
+    packed[lane] = 0.0
+    for e in range(6):
+        counts[e, lane] += (tally >> (8 * e)) & 255
+
+
+@compiled
 def count_blocks(
     seed, first, stop, replicas, lanes, duration, sigma, draw, sides, blocked, hops, walls
 ):
@@ -99,20 +110,21 @@ def count_blocks(
     starts = np.zeros((8, replicas))
     one = np.zeros(6, np.int64)
     half_x, half_y = draw.half_x, draw.half_y
-    block, used, running = first, replicas, 0
+    block, used, running, looks = first, replicas, 0, 0
 
     while True:
         for i in range(lanes):
             if remaining[i] > 0.0:
                 continue
             if busy[i]:
+                unpack(packed, counts, i)
                 for e in range(6):
                     one[e] = counts[e, i]
                     counts[e, i] = 0
                 one[5] -= one[2]
                 for e in range(6):
                     sums[e] += one[e]
-                    for f in range(6):
+                    for f in range(e, 6):
                         products[e, f] += one[e] * one[f]
                 busy[i] = False
                 running -= 1
@@ -168,11 +180,11 @@ def count_blocks(
                     tally += RIGHT if (code == WALL_X1) & (u > 0.0) else 0.0
                     tally += TOP if (code == WALL_Y1) & (v > 0.0) else 0.0
                 packed[i] = tally
-        for i in range(lanes):
-            tally = np.int64(packed[i])
-            packed[i] = 0.0
-            for e in range(6):
-                counts[e, i] += (tally >> (8 * e)) & 255
+        looks += 1
+        if looks == LOOKS:
+            looks = 0
+            for i in range(lanes):
+                unpack(packed, counts, i)
 
 
 def nearest_power_of_two(value):

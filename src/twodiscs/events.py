@@ -27,10 +27,10 @@ RESTING_SPEED = 4 * 2.0**-52
 def wall_quotient(position, velocity, limit):
     """Return (gap, speed) towards the wall ahead, at ±``limit``; the time to it is gap / speed.
 
-    ``gap`` may be negative by a rounding, and ``speed`` is 0 for a disc that never gets there.
+    ``speed`` is 0 for a disc that never gets there. A disc that a rounding has put behind the wall
+    it moves to reaches it after a rounding of time.
     """
-    ahead = position if velocity >= 0.0 else -position
-    return limit - ahead, abs(velocity)
+    return abs(math.copysign(limit, velocity) - position), abs(velocity)
 
 
 @compiled
@@ -94,7 +94,7 @@ def next_event(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sigma)
     code = DISC if sooner else code
 
     time = gap / speed
-    # A gap that is negative by a rounding is due now; so is 0/0, a disc at rest on a wall.
+    # Discs that overlap by a rounding and approach collide now.
     return time if time > 0.0 else 0.0, code
 
 

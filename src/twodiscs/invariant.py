@@ -37,6 +37,7 @@ class Draw(NamedTuple):
     beyond_y: float  # (B − σ)₊
     least_k: float  # k₁ = √(σ² − u₁²)
     weights: tuple  # cumulative probabilities of the seven parts of the proposal
+    mass: float  # integral of the proposal; the accepted share is V/2 over it
 
 
 def draw_constants(scene):
@@ -73,7 +74,7 @@ def draw_constants(scene):
     cumulative = tuple(float(sum(parts[: i + 1]) / total) for i in range(len(parts)))
     return Draw(
         range_x / 2, range_y / 2, range_y, sigma, start, stop, span, beyond_x, beyond_y, least_k,
-        cumulative,
+        cumulative, float(total),
     )  # fmt: skip
 
 
