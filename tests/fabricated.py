@@ -1,0 +1,142 @@
+"""Points as the jobs write them, drawn from the exact theory by simple laws."""
+
+import json
+import math
+
+import numpy as np
+
+from twodiscs import theory
+from twodiscs.scene import EVENTS, HOPS, Scene
+
+BOX = {"width": 1.5, "height": 1.0}
+RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
+SHELLS = EVENTS[:5]
+
+
+def scenes(radii=RADII):
+    return [Scene(**BOX, radius=radius) for radius in radii]
+
+
+def theory_rows(radii=RADII):
+    """Return the rows of theory.csv."""
+    rows = []
+    for scene in scenes(radii):
+        exact = theory.exact(scene)
+        values = {"volume": exact["volume"]}
+        values |= {f"{event}_area": exact["areas"][event] for event in EVENTS}
+        values |= {f"{event}_time": exact["mean_times"][event] for event in EVENTS}
+        rows += [
+            {"radius": scene.radius, "quantity": quantity, "exact": value}
+            for quantity, value in values.items()
+        ]
+    return rows
+
+
+class Laws:
+    """The exact numbers behind the points of one radius, computed once."""
+
+    def __init__(self, scene, shell=0.02):
+        self.scene = scene
+        self.times = {e: t for e, t in theory.mean_times(scene).items() if t is not None}
+        prism = (scene.range_x * scene.range_y) ** 2
+        self.parts = {"volume": (theory.volume(scene) / prism, prism, None)}
+        for event in SHELLS:
+            epsilon = shell * scene.radius
+            measure = prism / (epsilon * (2 if event in HOPS else 1))
+            expectation = theory.shell_expectation(scene, event, epsilon)
+            self.parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
+
+    def monte_carlo(self, rng, samples):
+        """Return a Monte Carlo point; the shells are hit independently of each other."""
+        found = {
+            quantity: {
+                "hits": int(rng.binomial(samples, p)),
+                "measure": measure,
+                "epsilon": epsilon,
+            }
+            for quantity, (p, measure, epsilon) in self.parts.items()
+        }
+        right, top = (found[f"{event}_area"]["hits"] for event in ("right_wall", "top_wall"))
+        share = self.parts["top_wall_area"][0]
+        # Given the hits of both shells, their overlap is hypergeometric; binomial serves here.
+        both = min(right, top, int(rng.binomial(right, share)))
+        return {
+            "radius": self.scene.radius,
+            "samples": samples,
+            "quantities": found,
+            "right_and_top": both,
+        }
+
+    def dynamics(self, rng, replicas=1024, relative=3e-4, events=EVENTS):
+        """Return a dynamics point; counts are Poisson, as precise as ``relative`` or more."""
+        slowest = max(self.times[event] for event in events if event in self.times)
+        duration = 2 * slowest / (relative**2 * replicas)
+        counts = {}
+        halves = {"right_wall": "horizontal_hop", "top_wall": "vertical_hop"}
+        eligible = {}
+        for event in events:
+            mean = duration / self.times[event] if event in self.times else 0.0
+            counts[event] = rng.poisson(mean, replicas)
+            blocked = event in halves and not self.scene.is_possible(halves[event])
+            eligible[event] = replicas // 2 if blocked else replicas
+            if blocked:
+                # The starts in a component alternate for one wall, and come in pairs for the other.
+                turn = np.arange(replicas) // (1 if event == "right_wall" else 2)
+                counts[event][turn % 2 == 1] = 0
+        return {
+            "radius": self.scene.radius,
+            "duration": duration,
+            "replicas": replicas,
+            "rounds": 1,
+            "events": 10**6,
+            "eligible": eligible,
+            "counts": {event: int(counts[event].sum()) for event in events},
+            "products": {
+                f"{a}*{b}": int((counts[a] * counts[b]).sum())
+                for i, a in enumerate(events)
+                for b in events[i:]
+            },
+            "target": dict.fromkeys(events, relative),
+            "status": {e: "reached" if e in self.times else "impossible" for e in events},
+        }
+
+    def intervals(self, rng, chains=1024, relative=3e-4):
+        """Return an intervals point of the vertical hop, with exponential intervals."""
+        mean = self.times["vertical_hop"]
+        stderr = relative * mean
+        width, intervals = mean / 4, math.ceil(relative**-2)
+        edges = np.exp(-0.25 * np.arange(13))
+        counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
+        return {
+            "radius": self.scene.radius,
+            "event": "vertical_hop",
+            "bin_width": width,
+            "counts": [int(n) for n in counts[:-1]],
+            "overflow": int(counts[-1]),
+            "intervals": intervals,
+            "chains": chains,
+            "mean": mean + stderr * rng.standard_normal(),
+            "stderr": stderr,
+        }
+
+
+def store(folder, points):
+    """Write ``points`` as JSON files, a name each, and return their paths as texts."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, point in points.items():
+        path = folder / f"{name}.json"
+        path.write_text(json.dumps(point, sort_keys=True))
+        paths.append(str(path))
+    return paths
+
+
+def command(monkeypatch, module, *arguments):
+    """Run the command line of ``module`` in this process and return its exit status."""
+    from twodiscs.cli.arguments import run
+
+    monkeypatch.setattr("sys.argv", ["command", *map(str, arguments)])
+    try:
+        run(module.main)
+    except SystemExit as leave:
+        return leave.code or 0
