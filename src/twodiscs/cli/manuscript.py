@@ -9,10 +9,10 @@ from twodiscs.cli import arguments
 def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
-    ``contents`` is what the template finds under ``sys.inputs.contents``, as JSON; its entry
-    ``results`` is the folder of results, which the template sees as a path from the common root. The
-    same inputs give the same bytes on every machine: fonts are those that come with Typst. Raises
-    ``ValueError`` if the template does not compile.
+    The template finds ``contents`` under ``sys.inputs.contents``, as JSON; the entry ``results``,
+    the folder of results, is there a path from the root that the template and the results have in
+    common. The same inputs give the same bytes on every machine: fonts are those that come with
+    Typst. Raises ``ValueError`` if the template does not compile.
     """
     import typst
 

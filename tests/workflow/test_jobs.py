@@ -1,0 +1,114 @@
+"""Which jobs run after which edit: what depends on the edit, and nothing else."""
+
+import os
+
+import pytest
+
+SIX, WALLS = "scene=six", "scene=walls"
+
+
+def expected(*jobs):
+    """Return the sorted jobs, each given as its rule and its wildcards."""
+    return sorted((rule, tuple(wildcards)) for rule, *wildcards in jobs)
+
+
+def test_after_a_full_build_there_is_nothing_to_do(complete):
+    run = complete.snakemake("--dry-run")
+    assert "Nothing to be done" in run.stdout + run.stderr
+    assert complete.jobs() == []
+
+
+def test_touching_everything_reruns_nothing(built):
+    for folder, _, names in os.walk(built.path):
+        if ".snakemake" not in folder:
+            for name in names:
+                os.utime(os.path.join(folder, name))
+    assert built.jobs() == []
+
+
+def test_one_more_radius_is_one_more_job_of_each_kind(built):
+    built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
+    jobs = built.jobs()
+    new = [("monte_carlo", (SIX, "key=0.1234")), ("dynamics", (SIX, "key=0.1234"))]
+    assert [job for job in jobs if any("key=" in part for part in job[1])] == sorted(new)
+    assert not [job for job in jobs if WALLS in job[1]]
+    assert {rule for rule, _ in jobs} == {
+        *("monte_carlo", "dynamics", "grid", "theory", "table", "check_table", "check"),
+        *("figure", "paper", "report"),
+    }
+
+
+def test_edit_of_a_figure_redraws_that_figure(built):
+    built.edit("src/twodiscs/figures/volume.py", "# a remark\n")
+    assert built.jobs() == expected(("figure", SIX, "figure=volume"), ("paper",), ("report",))
+
+
+def test_comment_in_the_engine_reruns_dynamics_and_what_follows(built):
+    built.edit("src/twodiscs/dynamics.py", "# a remark\n")
+    jobs = built.jobs()
+    rules = {rule for rule, _ in jobs}
+    assert {"compile", "dynamics", "intervals", "trajectory", "check", "paper"} <= rules
+    assert not {"monte_carlo", "grid", "theory"} & rules
+    assert ("compile", ("kernels=montecarlo",)) not in jobs
+    assert len([job for job in jobs if job[0] == "dynamics"]) == 6 + 2
+    assert ("table", (SIX, "table=volume")) not in jobs
+    assert ("figure", (SIX, "figure=volume")) not in jobs
+
+
+def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
+    built.configure(lambda mapping: mapping["scenes"][0].update(accuracy=9e-4))
+    jobs = built.jobs()
+    rules = {rule for rule, _ in jobs}
+    assert len([job for job in jobs if job[0] == "dynamics"]) == 6
+    assert not {"monte_carlo", "intervals", "trajectory", "grid", "theory", "compile"} & rules
+    assert not [job for job in jobs if WALLS in job[1]]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("1e-3", "0.001"), ("2e7", "20000000"), ("height: 1.0", "height: 1")]
+)
+def test_another_spelling_of_a_number_reruns_nothing(built, old, new):
+    text = built.configuration.read_text()
+    assert old in text
+    built.configuration.write_text(text.replace(old, new))
+    assert {rule for rule, _ in built.jobs()} <= {"report"}
+
+
+def test_a_third_box_leaves_the_others_alone(built):
+    third = {"name": "third", "box": {"width": 1, "height": 2}, "radii": [0.1]}
+    built.configure(lambda mapping: mapping["scenes"].append(third))
+    jobs = built.jobs()
+    assert {part for _, wildcards in jobs for part in wildcards if "scene" in part} == {
+        "scene=third"
+    }
+    assert len([job for job in jobs if job[0] == "dynamics"]) == 1
+
+
+def test_a_scene_that_watches_wall_times_runs_nothing_else(unbuilt):
+    jobs = [job for job in unbuilt.jobs() if WALLS in job[1]]
+    assert {rule for rule, _ in jobs} == {
+        *("grid", "theory", "dynamics", "table", "check_table", "figure"),
+    }
+    drawn = {part for rule, wildcards in jobs for part in wildcards if part.startswith("figure=")}
+    assert "figure=mean_wall_time" in drawn
+    assert not {f"figure={name}" for name in ("mean_hop_time", "hop_histogram", "volume")} & drawn
+
+
+@pytest.mark.parametrize("name", ["volume", "mean_wall_time", "model", "hopping_trajectory"])
+def test_a_figure_is_a_target_by_its_name(unbuilt, name):
+    jobs = unbuilt.jobs(name)
+    drawn = [job for job in jobs if job[0] == "figure"]
+    scenes = [SIX, WALLS] if name in ("mean_wall_time", "model") else [SIX]
+    assert drawn == expected(*(("figure", scene, f"figure={name}") for scene in scenes))
+
+
+def test_a_drawing_needs_no_simulation(unbuilt):
+    jobs = unbuilt.jobs("results/six/figures/model.pdf")
+    assert [rule for rule, _ in jobs] == ["figure"]
+
+
+def test_draft_does_not_touch_the_results_of_the_default(built):
+    before = built.results()
+    jobs = built.jobs("--configfile", "config/draft.yaml", "--", "check")
+    assert ("check", ()) in jobs
+    assert built.results() == before
