@@ -201,13 +201,13 @@ TABLES = {
         ),
     ),
     "cost": Table(
-        "One row a job: what it took. The only table of a scene that holds wall-clock seconds.",
+        "One row a job: what it took. The only table of a scene that differs from run to run.",
         (
             Column("stage", "", "monte_carlo, dynamics or intervals", str),
             RADIUS,
             Column("events", "", "events simulated, or configurations drawn", int),
-            Column("seconds", "s", "wall-clock seconds"),
-            Column("forecast_seconds", "s", "seconds forecast before the run; empty without one"),
+            Column("seconds", "s", "processor time of the work itself, without start-up"),
+            Column("forecast_seconds", "s", "the same, forecast before the run; empty without one"),
         ),
     ),
     "trajectory": Table(
