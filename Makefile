@@ -4,7 +4,9 @@
 # CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
 
 CORES ?= 2
+PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
+PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 
 .PHONY: all test
@@ -26,8 +28,8 @@ test: .venv/ready
 # The exact packages of requirements.lock, then this one; again whenever either list changes.
 .venv/ready: requirements.lock pyproject.toml
 	@echo "Setting up .venv"
-	@rm -rf .venv
 	@if command -v uv > /dev/null; then \
+	  rm -rf .venv && \
 	  uv venv --quiet --python "$(or $(PYTHON),>=3.11)" .venv && \
 	  export VIRTUAL_ENV="$(CURDIR)/.venv" && \
 	  uv pip install --quiet --require-hashes -r requirements.lock && \
@@ -39,8 +41,9 @@ test: .venv/ready
 	  if [ $$python = none ]; then \
 	    echo "This needs Python 3.11 or newer; make PYTHON=<path> says where it is." >&2; exit 1; \
 	  fi; \
+	  rm -rf .venv && \
 	  $$python -m venv .venv && \
-	  .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock && \
-	  .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . ; \
+	  $(PIP) --require-hashes -r requirements.lock && \
+	  $(PIP) --no-deps --no-build-isolation --editable . ; \
 	fi
 	@touch $@

@@ -1,0 +1,77 @@
+"""A checkout to build in: the repository's files with a configuration of six radii."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import yaml
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper")
+
+
+class Checkout:
+    """A copy of the repository at ``path`` whose own sources do the work."""
+
+    def __init__(self, path):
+        self.path = path
+        self.configuration = path / "config" / "config.yaml"
+
+    def snakemake(self, *arguments, passes=True):
+        """Run snakemake here; by default it must succeed. Returns the completed process."""
+        environment = os.environ | {"PYTHONPATH": str(self.path / "src")}
+        run = subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments],
+            cwd=self.path,
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+        if passes:
+            assert run.returncode == 0, run.stdout + run.stderr
+        return run
+
+    def jobs(self, *arguments):
+        """Return the jobs of a dry run, sorted: (rule, wildcards as a tuple of "name=value")."""
+        found = []
+        for line in self.snakemake("--dry-run", *arguments).stdout.splitlines():
+            if start := re.match(r"(?:local)?rule (\w+):$", line):
+                found.append([start[1], ()])
+            elif wildcards := re.match(r"    wildcards: (.+)$", line):
+                found[-1][1] = tuple(wildcards[1].split(", "))
+        return sorted((rule, wildcards) for rule, wildcards in found if rule != "all")
+
+    def edit(self, path, text):
+        """Append ``text`` to a file."""
+        with open(self.path / path, "a", encoding="utf-8") as file:
+            file.write(text)
+
+    def configure(self, change):
+        """Pass the configuration, as a mapping, to ``change`` and write it back."""
+        mapping = yaml.safe_load(self.configuration.read_text())
+        change(mapping)
+        self.configuration.write_text(yaml.safe_dump(mapping))
+
+    def results(self):
+        """Return {path: bytes} of everything under results/."""
+        folder = self.path / "results"
+        files = (path for path in folder.rglob("*") if path.is_file())
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def fresh(path):
+    """Return a checkout at ``path`` in which nothing is built."""
+    for part in PARTS:
+        source, target = REPOSITORY / part, path / part
+        if source.is_dir():
+            shutil.copytree(
+                source, target, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+            )
+        else:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source, target)
+    shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
+    return Checkout(path)

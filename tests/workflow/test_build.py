@@ -1,0 +1,72 @@
+"""A whole build: all is there, the same bytes come out again, and a wrong formula is found."""
+
+import csv
+
+import pytest
+from checkout import fresh
+from twodiscs.figures.catalogue import FIGURES
+
+#: What holds wall-clock seconds, or the date.
+TIMED = ("cost.csv", "report.html", "benchmarks/", "logs/", "points/cost/")
+
+
+def test_everything_that_is_called_for_is_built(complete):
+    results = complete.results()
+    tables = ("grid", "theory", "volume", "areas", "mean_times", "hop_histogram", "check", "cost")
+    assert {f"six/{name}.csv" for name in (*tables, "trajectory")} <= set(results)
+    assert {f"six/figures/{name}.{kind}" for name in FIGURES for kind in ("pdf", "png")} <= set(
+        results
+    )
+    walls = {name for name in results if name.startswith("walls/") and name.endswith(".csv")}
+    assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
+    assert {"check.passed", "paper.pdf", "report.html", "configuration.json"} <= set(results)
+    assert all(text for name, text in results.items() if not name.startswith("logs/"))
+
+
+def test_report_holds_every_figure_and_table_and_asks_for_nothing_from_outside(complete):
+    page = (complete.path / "results" / "report.html").read_text()
+    for name, entry in FIGURES.items():
+        assert f"results/six/figures/{name}.png" in page
+        assert entry.category in page
+    for name in ("volume", "areas", "mean_times", "hop_histogram", "check"):
+        assert f"results/six/{name}.csv" in page
+    assert "results/paper.pdf" in page
+    assert 'src="http' not in page
+
+
+def test_one_core_and_another_run_give_the_same_bytes(complete, tmp_path_factory):
+    again = fresh(tmp_path_factory.mktemp("again") / "checkout")
+    again.snakemake("--cores", "1")
+    first, second = (
+        {
+            name: content
+            for name, content in checkout.results().items()
+            if not any(mark in name for mark in TIMED)
+        }
+        for checkout in (complete, again)
+    )
+    assert first.keys() == second.keys()
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
+    source = built.path / "src" / "twodiscs" / "cli" / "theory.py"
+    text = source.read_text()
+    wrong = text.replace('"exact": x}', '"exact": 1.01 * x if q == "disc_collision_time" else x}')
+    assert wrong != text
+    source.write_text(wrong)
+    run = built.snakemake("--cores", "2", "check", passes=False)
+    assert run.returncode != 0
+    said = run.stdout + run.stderr
+    assert "mean_time of disc_collision at radius 0.2 by dynamics" in said
+    assert "Traceback" not in said
+    with open(built.path / "results" / "six" / "check.csv", newline="") as file:
+        failed = [row["quantity"] for row in csv.DictReader(file) if row["passed"] == "false"]
+    assert "disc_collision" in failed
+    assert not (built.path / "results" / "check.passed").exists()
+
+
+@pytest.mark.parametrize("lost", ["six/figures/volume.pdf", "paper.pdf", "six/mean_times.csv"])
+def test_what_is_deleted_comes_back(built, lost):
+    (built.path / "results" / lost).unlink()
+    assert built.jobs()

@@ -1,0 +1,61 @@
+"""Mistakes in the configuration: one sentence, before anything runs, and nothing is changed."""
+
+import pytest
+
+MISTAKES = {
+    "an unknown key": ("seeed: 1\n", "unknown key 'seeed'"),
+    "a key given twice": ("seed: 1\nseed: 2\n", "second time"),
+    "a radius that does not fit": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, radii: [0.4]}]\n",
+        "radius 0.4 does not fit",
+    ),
+    "a negative length": (
+        "scenes: [{name: a, box: {width: -1, height: 1}}]\n",
+        "scenes[0].box.width must be",
+    ),
+    "no number": ("scenes: [{name: a, box: {width: .nan, height: 1}}]\n", "width must be"),
+    "a name with a slash": ("scenes: [{name: a/b, box: {width: 1, height: 1}}]\n", "'a/b'"),
+    "a name used twice": (
+        "scenes: [{name: a, box: {width: 1, height: 1}}, {name: a, box: {width: 1, height: 2}}]\n",
+        "'a'",
+    ),
+    "an unknown event": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, watch: {areas: [hop]}}]\n",
+        "'hop'",
+    ),
+    "no scenes": ("scenes: []\n", "scenes must be"),
+    "results in the sources": ("results: src\n", "results must be"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_one_sentence(unbuilt, mistake, tmp_path):
+    text, said = MISTAKES[mistake]
+    (tmp_path / "bad.yaml").write_text(text)
+    (unbuilt.path / "results").mkdir(exist_ok=True)
+    before = unbuilt.results()
+    run = unbuilt.snakemake(
+        "--cores", "1", "--configfile", str(tmp_path / "bad.yaml"), passes=False
+    )
+    assert run.returncode != 0
+    sentences = [line for line in run.stderr.splitlines() if line.startswith("Configuration: ")]
+    assert len(sentences) == 1
+    assert said in sentences[0]
+    assert run.stderr.rstrip().endswith(sentences[0])
+    assert "Traceback" not in run.stdout + run.stderr
+    assert unbuilt.results() == before
+
+
+@pytest.mark.parametrize("text", ["scenes: [\n", "", "- a list\n"])
+def test_a_file_that_is_no_mapping(unbuilt, tmp_path, text):
+    (tmp_path / "bad.yaml").write_text(text)
+    run = unbuilt.snakemake("-n", "--configfile", str(tmp_path / "bad.yaml"), passes=False)
+    assert run.returncode != 0
+    assert "onfig file" in run.stderr
+    assert "Traceback" not in run.stderr
+
+
+def test_a_mistake_on_the_command_line(unbuilt):
+    run = unbuilt.snakemake("-n", "--config", "seed=abc", passes=False)
+    assert run.returncode != 0
+    assert "Configuration: seed must be" in run.stderr
