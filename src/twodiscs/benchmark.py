@@ -1,0 +1,255 @@
+"""How fast the engines are, measured side by side: ``python -m twodiscs.benchmark``.
+
+Every variant of a benchmark runs in turn, again and again, and the medians are compared, so that a
+machine that slows down slows them all. All numbers are for one core, processor time, but the speed-up of
+two processes, which is of wall-clock time. The scene is the paper's box at r = 0.2.
+"""
+
+import math
+import multiprocessing
+import time
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+from twodiscs import dynamics, montecarlo, scalar
+from twodiscs.cli.arguments import Parser, run
+from twodiscs.invariant import draw_constants
+from twodiscs.scene import EVENTS, Scene
+from twodiscs.streams import open_stream
+from twodiscs.tables import write
+
+SCENE = Scene(1.5, 1.0, 0.2)
+REPETITIONS = 7
+
+#: Blocks of one timed run of the lock-step ensemble and of the scalar engine.
+BLOCKS = 200
+
+
+def timed(work):
+    """Return (result, processor seconds) of ``work()``."""
+    start = time.process_time()
+    result = work()
+    return result, time.process_time() - start
+
+
+def interleaved(variants, repetitions=REPETITIONS):
+    """Return {name: median speed} of ``variants``, {name: function that returns (units, seconds)}."""
+    for work in variants.values():
+        work()
+    speeds = {name: [] for name in variants}
+    for _ in range(repetitions):
+        for name, work in variants.items():
+            units, seconds = work()
+            speeds[name].append(units / seconds)
+    return {name: median(values) for name, values in speeds.items()}
+
+
+def wall_and_disc_events(sums):
+    """Return how many wall and disc events a count of all events (6) holds."""
+    return int(sums[EVENTS.index("any_wall")] + sums[EVENTS.index("disc_collision")])
+
+
+def lockstep(blocks=BLOCKS):
+    """Count all events and both hops, fixed end time, statistics by replica."""
+    duration = dynamics.replica_duration(SCENE)
+    counted, seconds = timed(lambda: dynamics.run_blocks(SCENE, EVENTS, 1, 0, blocks, duration))
+    return wall_and_disc_events(counted[0]), seconds
+
+
+def lockstep_intervals(blocks=BLOCKS):
+    """Record exact intervals between vertical hops; events are as many as their time holds."""
+    found, seconds = timed(
+        lambda: dynamics.hop_intervals(SCENE, "vertical_hop", blocks * 25_000, 1)
+    )
+    return found["intervals"] * found["mean"] * total_rate(), seconds
+
+
+def total_rate():
+    """Return wall and disc events per unit of time, from one count of many."""
+    duration = dynamics.replica_duration(SCENE)
+    sums, _, eligible = dynamics.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
+    return wall_and_disc_events(sums) / (int(eligible[0]) * duration)
+
+
+def scalar_engine(blocks=BLOCKS // 8):
+    """Do the same as ``lockstep`` one trajectory at a time."""
+    duration = dynamics.replica_duration(SCENE)
+    draw = draw_constants(SCENE)
+    arguments = (dynamics.REPLICAS, duration, SCENE.contact_distance, draw, (0, 0), (False, False))
+    counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
+    return wall_and_disc_events(counted[0]), seconds
+
+
+def plain_python(replicas=200):
+    """Do the same without a compiler."""
+    starts = np.zeros((8, replicas))
+    dynamics.draw_starts(open_stream(np.uint64(1), 0), draw_constants(SCENE), 0, 0, starts)
+    states = [tuple(map(float, state)) for state in starts.T]
+    end = dynamics.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in states])
+    return sum(map(wall_and_disc_events, counts)), seconds
+
+
+QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
+
+
+def sampling_engine(blocks=100):
+    """Sample the volume and all shells with the compiled kernel."""
+    samples = blocks * montecarlo.BLOCK
+    point, seconds = timed(lambda: montecarlo.sample_point(SCENE, QUANTITIES, samples, 0.02, 1))
+    return point["samples"], seconds
+
+
+def numpy_sampler(chunks=1000, chunk=16384):
+    """Sample the same sets with numpy, in pieces that stay in the cache, the fastest way known."""
+    shells = [montecarlo.shell_thickness(SCENE, event, 0.02) for event in montecarlo.SHELLS]
+    range_x, range_y, sigma = SCENE.range_x, SCENE.range_y, SCENE.contact_distance
+    generator = np.random.Generator(np.random.SFC64(1))
+    hits = np.zeros(6, np.int64)
+
+    def sample():
+        for _ in range(chunks):
+            x1, x2, y1, y2 = generator.random((4, chunk))
+            uu, vv = ((x1 - x2) * range_x) ** 2, ((y1 - y2) * range_y) ** 2
+            square = uu + vv
+            free = square >= sigma**2
+            sets = (
+                free,
+                free & (vv <= 2 * shells[0] ** 2),
+                free & (uu <= 2 * shells[1] ** 2),
+                free & (square <= (sigma + math.sqrt(2) * shells[2]) ** 2),
+                free & (x1 >= 1 - shells[3] / range_x),
+                free & (y1 >= 1 - shells[4] / range_y),
+            )
+            hits[:] += [np.count_nonzero(members) for members in sets]
+
+    _, seconds = timed(sample)
+    return chunks * chunk, seconds
+
+
+def count_until(error):
+    """Return processor seconds until counting knows the mean vertical hop time to ``error``."""
+    result, seconds = timed(
+        lambda: dynamics.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
+    )
+    return result["events"], seconds
+
+
+def intervals_until(error):
+    """Return processor seconds until drawn intervals know the mean vertical hop time to ``error``."""
+
+    def work():
+        intervals = 500_000
+        while True:
+            found = dynamics.hop_intervals(SCENE, "vertical_hop", intervals, 1)
+            excess = found["stderr"] / found["mean"] / error
+            if excess <= 1:
+                return found
+            intervals = math.ceil(1.05 * excess**2 * found["intervals"])
+
+    found, seconds = timed(work)
+    return found["intervals"], seconds
+
+
+def _shard(blocks, ready, go, done):
+    lockstep(1)
+    ready.release()
+    go.acquire()
+    lockstep(blocks)
+    done.release()
+
+
+def shards_at_once(processes, blocks):
+    """Return wall-clock seconds in which ``processes`` processes do ``blocks`` blocks each."""
+    context = multiprocessing.get_context("spawn")
+    ready, go, done = (context.Semaphore(0) for _ in range(3))
+    workers = [
+        context.Process(target=_shard, args=(blocks, ready, go, done)) for _ in range(processes)
+    ]
+    for worker in workers:
+        worker.start()
+    for _ in workers:
+        ready.acquire()
+    start = time.perf_counter()
+    for _ in workers:
+        go.release()
+    for _ in workers:
+        done.acquire()
+    seconds = time.perf_counter() - start
+    for worker in workers:
+        worker.join()
+    return seconds
+
+
+def two_process_speedup(repetitions=5, blocks=600):
+    """Return how much faster two processes do two shards than one process does both."""
+    ratios = []
+    for _ in range(repetitions):
+        alone = shards_at_once(1, 2 * blocks)
+        ratios.append(alone / shards_at_once(2, blocks))
+    return median(ratios)
+
+
+def benchmarks():
+    """Run everything and return the rows of benchmark.csv."""
+    rows = []
+
+    def add(name, values, unit, baseline, larger_is_better=True):
+        for variant, value in values.items():
+            ratio = value / values[baseline] if larger_is_better else values[baseline] / value
+            rows.append(
+                {"benchmark": name, "variant": variant, "value": value, "unit": unit, "ratio": ratio}
+            )
+
+    speeds = interleaved(
+        {
+            "lockstep": lockstep,
+            "lockstep_intervals": lockstep_intervals,
+            "scalar": scalar_engine,
+            "python": plain_python,
+        }
+    )
+    add("md_events_per_second", speeds, "1/s", "scalar")
+    add(
+        "mc_samples_per_second",
+        interleaved({"engine": sampling_engine, "numpy": numpy_sampler}),
+        "1/s",
+        "numpy",
+    )
+    for error in (1e-3, 1e-4):
+        events = count_until(error)[0]
+        seconds = {
+            "lockstep": median(count_until(error)[1] for _ in range(5)),
+            "lockstep_intervals": median(intervals_until(error)[1] for _ in range(5)),
+        }
+        baseline = "lockstep"
+        if error == 1e-3:
+            scalar_blocks = math.ceil(events / (scalar_engine(1)[0]))
+            seconds["scalar"] = median(scalar_engine(scalar_blocks)[1] for _ in range(5))
+            baseline = "scalar"
+            # A run of a minute or more: its length follows from the speed measured above.
+            seconds["python"] = events / speeds["python"]
+        add(f"seconds_to_relative_error_{error:g}", seconds, "s", baseline, larger_is_better=False)
+    add("two_process_speedup", {"lockstep": two_process_speedup()}, "1", "lockstep")
+    return rows
+
+
+def main():
+    """Run the benchmarks and write the table."""
+    parser = Parser(description=__doc__)
+    parser.add_argument("--output", default="results/benchmark.csv")
+    given = parser.parse_args()
+    rows = benchmarks()
+    Path(given.output).parent.mkdir(parents=True, exist_ok=True)
+    write(given.output, "benchmark", rows)
+    for row in rows:
+        print(
+            f"{row['benchmark']:<32}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"
+            f"{row['ratio']:>10.3g}"
+        )
+
+
+if __name__ == "__main__":
+    run(main)
