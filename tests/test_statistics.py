@@ -117,6 +117,7 @@ def test_exact_tail_is_the_doubled_binomial_tail(hits, samples, p):
     assert test == "exact-tail"
     assert statistics.two_sided_p(z) == pytest.approx(doubled, rel=1e-9)
     assert z == 0 or (z > 0) == (hits > samples * p)
+    assert repr(statistics.binomial_z(0, 10, 0.001)[0]) == "0.0"  # not -0.0
 
 
 @pytest.mark.parametrize(("samples", "p"), [(50, 0.3), (400, 0.01), (2000, 0.45), (1500, 0.999)])

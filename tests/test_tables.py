@@ -125,7 +125,11 @@ def test_every_column_is_documented():
         assert f"## {name}.csv" in text
         assert len(set(table.names)) == len(table.names)
         for column in table.columns:
-            assert f"| `{column.name}` | {column.unit or '–'} | {column.meaning} |" in text
+            meaning = column.meaning.replace("|", "\\|").replace("<", "&lt;")
+            assert f"| `{column.name}` | {column.unit or '–'} | {meaning} |" in text
+    for line in text.splitlines():
+        if line.startswith("|"):
+            assert line.replace("\\|", "").count("|") == 4
     assert "How to read check.csv" in text
 
 

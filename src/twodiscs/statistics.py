@@ -152,6 +152,11 @@ def _deviate(log_p):
     return float(-ndtri_exp(log_p - math.log(2))) if log_p < 0 else 0.0
 
 
+def _signed(size, sign):
+    """Return ``size`` with the sign of ``sign``, but no negative zero."""
+    return math.copysign(size, sign) if size else 0.0
+
+
 def _doubled(low, high, log_bound):
     """Return |z| for the smaller of two tails, doubled; ``log_bound`` serves when it underflows."""
     tail = float(min(low, high))
@@ -212,14 +217,14 @@ def binomial_z(hits, samples, probability):
     hits, samples = _hits(hits, samples)
     p = _real("probability", probability, high=1.0, ends=True)
     if p in (0.0, 1.0):
-        return math.copysign(0.0 if hits == p * samples else math.inf, 0.5 - p), "certain"
+        return _signed(0.0 if hits == p * samples else math.inf, 0.5 - p), "certain"
     misses, expected, expected_misses = samples - hits, samples * p, samples * (1 - p)
     if min(expected, expected_misses) >= NORMAL:
         return (hits - expected) / math.sqrt(expected * (1 - p)), "normal"
     low = betainc(misses, hits + 1, 1 - p) if misses else 1.0
     high = betainc(hits, misses + 1, p) if hits else 1.0
     bound = -_entropy(hits, expected) - _entropy(misses, expected_misses)
-    return math.copysign(_doubled(low, high, bound), hits - expected), "exact-tail"
+    return _signed(_doubled(low, high, bound), hits - expected), "exact-tail"
 
 
 def shells_z(hits, both, samples, measures, probabilities):
@@ -250,7 +255,7 @@ def union_z(parts, sign):
     """
     largest = max((abs(z) for z in parts), default=0.0)
     log_p = math.log(2 * max(len(parts), 1)) + float(log_ndtr(-largest))
-    return math.copysign(_deviate(log_p), sign)
+    return _signed(_deviate(log_p), sign)
 
 
 # Molecular dynamics ---------------------------------------------------------------------------
@@ -313,7 +318,7 @@ def mean_time_z(total, squares, replicas, duration, exact):
     cluster = max(CLUSTER, squares / total) if total else CLUSTER
     exponent = _entropy(total / cluster, expected * replicas / cluster)
     size = _deviate(math.log(2) - exponent)
-    return math.copysign(size, expected * replicas - total), "cluster-bound"
+    return _signed(size, expected * replicas - total), "cluster-bound"
 
 
 def mean_time_bound(replicas, duration, confidence=0.95):
@@ -380,4 +385,4 @@ def z_spread(z):
     half, half_chi2 = len(scores) / 2, math.fsum(z * z for z in scores) / 2
     low, high = gammainc(half, half_chi2), gammaincc(half, half_chi2)
     bound = -_entropy(half, half_chi2) if half_chi2 else -math.inf
-    return math.copysign(_doubled(low, high, bound), low - high)
+    return _signed(_doubled(low, high, bound), low - high)

@@ -2,7 +2,8 @@
 
 Tables are CSV files with one row for each thing said. Floats are written with all their digits,
 integers as integers, truth values as ``true`` and ``false``; an empty cell is a value that does not
-exist. Lengths are in the unit of the box and the speed √(v1² + v2²) is one, so times have it too.
+exist. Lengths are in the unit of the box, and the time unit is that in which the speed √(v1² + v2²)
+is one.
 Nothing but the standard library is imported here.
 """
 
@@ -314,11 +315,16 @@ def read(path, table):
     return rows
 
 
+def _plain(text):
+    """Return ``text`` with what Markdown would take for a column or a tag escaped."""
+    return text.replace("|", "\\|").replace("<", "&lt;")
+
+
 def documentation():
     """Return the description of every table, and how to read check.csv, as Markdown."""
     parts = [f"# Tables\n\n{__doc__.split(chr(10), 2)[2].rsplit('Nothing but', 1)[0].strip()}\n"]
     for name, table in TABLES.items():
-        lines = [f"| `{c.name}` | {c.unit or '–'} | {c.meaning} |\n" for c in table.columns]
+        lines = [f"| `{c.name}` | {c.unit or '–'} | {_plain(c.meaning)} |\n" for c in table.columns]
         parts.append(
             f"## {name}.csv\n\n{table.meaning}\n\n| column | unit | meaning |\n|---|---|---|\n"
             + "".join(lines)

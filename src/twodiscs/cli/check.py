@@ -28,12 +28,13 @@ def failure(scene, row):
 
 
 def summary(scene, rows):
-    """Return the sentence on a scene that passed."""
+    """Return the sentence on a scene that passed, with how much of it says little."""
     tested = [row for row in rows if row["passed"] is not None]
+    few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
     largest = max((abs(row["z"]) for row in tested), default=0.0)
     return (
-        f"{scene}: {len(tested)} comparisons passed, largest |z| {largest:.3g}; "
-        f"{len(rows) - len(tested)} had too few events to compare"
+        f"{scene}: {len(tested)} comparisons passed, largest |z| {largest:.3g}; {few} of them had "
+        f"too few events for an error, {len(rows) - len(tested)} more could not be compared"
     )
 
 
