@@ -315,9 +315,9 @@ def closed_form(scene):
     """Return {"volume": V, "areas": {event: area}} from closed forms, in plain doubles.
 
     For reading, for comparisons and to show how they fail: just above a threshold they can lose
-    half of the digits or more, at r = (1 − δ) r_max near the largest radius all of them, like 1e-16/δ⁴
-    for the volume. Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for anything
-    that is not a ``Scene``.
+    half of the digits or more, and near the largest radius, at r = (1 − δ) r_max, all of them (the
+    volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for
+    anything that is not a ``Scene``.
     """
     r = _checked(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
