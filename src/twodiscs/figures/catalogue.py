@@ -1,0 +1,209 @@
+"""Every figure of a scene: what it reads, what it takes to be of use, and what it shows.
+
+A figure is a module of this package with the same name and a function ``draw(scene, tables)``;
+another one needs such a module and an entry here. Standard library only: the Snakefile imports it.
+"""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A figure: ``caption`` in plain text, ``category`` and ``title`` for a report.
+
+    ``tables`` are the names of the tables that it reads. ``needs`` are quantities, named as those
+    of theory.csv or ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are
+    watched, and is of use if any is. A drawing needs nothing: it takes the sides of the box alone.
+    """
+
+    title: str
+    category: str
+    caption: str
+    tables: tuple = ()
+    needs: frozenset = field(default_factory=frozenset)
+
+    def is_called(self, watched):
+        """Say whether a scene that watches the quantities ``watched`` calls for the figure."""
+        return not self.needs or not self.needs.isdisjoint(watched)
+
+    @property
+    def labels(self):
+        """What names the figure in a report, as a dict."""
+        return {"figure": self.title}
+
+
+GEOMETRY, SPACE, DYNAMICS = "Geometry", "Volume and areas", "Mean times and hopping"
+
+SYMBOLS = (
+    "Error bars are one standard error; where none is seen it is smaller than the symbol. "
+    "Crosses mark estimates from too few events for an honest error."
+)
+
+LIMITS = (
+    "Vertical lines mark the radii h/4 and w/4 at which horizontal and vertical hops become "
+    "blocked, and the largest radius that fits."
+)
+
+RESIDUALS = (
+    "Beneath, the residual z is the difference between estimate and expectation in standard "
+    "errors, with guide lines at ±2 and ±5"
+)
+
+MONTE_CARLO = (
+    f"{SYMBOLS} {LIMITS} {RESIDUALS}; a shell of finite thickness has an expectation of its own, "
+    "so z is taken against that and its small bias is no part of z."
+)
+
+SIMULATED = (
+    f"{SYMBOLS} Arrows start at 95 % lower bounds where no event was seen. {LIMITS} {RESIDUALS}."
+)
+
+
+def _area(title, event, caption):
+    return Entry(title, SPACE, f"{caption} {MONTE_CARLO}", ("areas",), frozenset({f"{event}_area"}))
+
+
+def _walls(kind):
+    return frozenset(f"{event}_{kind}" for event in ("right_wall", "top_wall", "any_wall"))
+
+
+FIGURES = {
+    "model": Entry(
+        "The billiard",
+        GEOMETRY,
+        "Two hard discs of radius r in a box of width w and height h. Coordinates start from "
+        "the centre of the box. The centres of the discs keep to the dashed rectangle, of "
+        "half-sides a = w/2 − r and b = h/2 − r.",
+    ),
+    "hopping_trajectory": Entry(
+        "Hopping dynamics",
+        DYNAMICS,
+        "One trajectory: the separation of the discs along the longer side of the box against "
+        "time (along x in a square). Dots mark the hops, at which it changes sign. Below, the "
+        "framed stretch of time is enlarged: a hop is often undone at once, before collisions "
+        "have scrambled the motion.",
+        ("trajectory",),
+        frozenset({"trajectory"}),
+    ),
+    "configuration_space": Entry(
+        "Configuration space",
+        GEOMETRY,
+        "Configuration space is a product of two squares, one for x1 and x2 and one for y1 and "
+        "y2, less the overlaps of the discs. With x = (x1 − x2)/√2, X = (x1 + x2)/√2 and "
+        "likewise y and Y, discs overlap if x² + y² < 2r²: the dotted band of each square is "
+        "what the point shown in the other one excludes, and dashed lines are its widest "
+        "bounds, at ±√2 r. The hatched quarters, where all four coordinates are positive, hold "
+        "a sixteenth of the volume. Each square is drawn to a scale of its own.",
+    ),
+    "volume": Entry(
+        "Volume of configuration space",
+        SPACE,
+        "Volume of configuration space against the radius of the discs: exact (line) and by "
+        f"rejection sampling (symbols). {SYMBOLS} {LIMITS} {RESIDUALS}.",
+        ("volume",),
+        frozenset({"volume"}),
+    ),
+    "vertical_hop_area": _area(
+        "Area of vertical hops",
+        "vertical_hop",
+        "Area of the surface y1 = y2, which is crossed when the discs exchange their vertical "
+        "order: exact (line) and from a thin shell around it (symbols). The area vanishes at r "
+        "= w/4, and beyond, symbols at zero say that no sample fell into the shell.",
+    ),
+    "horizontal_hop_area": _area(
+        "Area of horizontal hops",
+        "horizontal_hop",
+        "Area of the surface x1 = x2, which is crossed when the discs exchange their horizontal "
+        "order: exact (line) and from a thin shell around it (symbols). The area vanishes at r "
+        "= h/4, and beyond, symbols at zero say that no sample fell into the shell.",
+    ),
+    "collision_area": _area(
+        "Area of disc collisions",
+        "disc_collision",
+        "Area of the surface on which the discs touch: exact (line) and from a thin shell "
+        "outside it (symbols).",
+    ),
+    "wall_area": Entry(
+        "Areas of wall hits",
+        SPACE,
+        "Areas of the surfaces on which disc 1 touches the right or the top wall, and of all "
+        "eight such surfaces together: exact (lines) and from thin shells (symbols). The whole "
+        f"is four times the sum of the first two. {MONTE_CARLO}",
+        ("areas",),
+        _walls("area"),
+    ),
+    "mean_hop_time": Entry(
+        "Mean times between hops",
+        DYNAMICS,
+        "Mean times between successive hops: exact (lines) and by event-driven molecular "
+        "dynamics (symbols). Dashed lines in (a) are the laws for small discs, to first order "
+        "in r. In (b) the same times approach the radius r_c at which the hop ends, with their "
+        "leading laws dashed: where a hop becomes blocked before the discs jam its time "
+        f"diverges as (r_c − r)⁻². In a square box both hops have the same mean time. {SIMULATED}",
+        ("mean_times",),
+        frozenset({"vertical_hop_time", "horizontal_hop_time"}),
+    ),
+    "mean_collision_time": Entry(
+        "Mean time between disc collisions",
+        DYNAMICS,
+        "Mean time between collisions of the discs: exact (line) and by event-driven molecular "
+        "dynamics (symbols). Dashed lines are the first two orders of the law for small discs, "
+        f"which starts as 3wh/(8√2 r), and the leading law below the largest radius. {SIMULATED}",
+        ("mean_times",),
+        frozenset({"disc_collision_time"}),
+    ),
+    "mean_wall_time": Entry(
+        "Mean times between wall hits",
+        DYNAMICS,
+        "Mean times between hits of disc 1 on the right wall and on the top wall, over "
+        "trajectories that can reach it, and between hits of any disc on any wall: exact "
+        "(lines) and by event-driven molecular dynamics (symbols). The first halves at r = h/4 "
+        "and the second at w/4, where configuration space falls apart and disc 1 keeps to one "
+        "side. Dashed lines are the laws for small discs and below the largest radius. "
+        f"{SIMULATED}",
+        ("mean_times",),
+        _walls("time"),
+    ),
+    "hop_histogram": Entry(
+        "Times between hops",
+        DYNAMICS,
+        "Density of the time t between successive hops for several radii, both in units of the "
+        "exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen "
+        "with t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; "
+        "error bars are one standard error.",
+        ("hop_histogram",),
+        frozenset({"hop_histogram"}),
+    ),
+    "largest_radius": Entry(
+        "The largest radius",
+        GEOMETRY,
+        "(a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − "
+        "2r and 2r are the sides of a right triangle, unless one side of the box is at least "
+        "twice the other: then each disc spans the shorter one. (b) Which hops are possible in "
+        "boxes of any shape, with this box marked.",
+    ),
+    "integration_regimes": Entry(
+        "Regimes of the integration",
+        GEOMETRY,
+        "The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r "
+        "and B = h − 2r but for the quarter circle of radius σ = 2r in which the discs overlap. "
+        "The arc is the surface of collisions; coloured pieces of the axes are those of "
+        "vertical hops (below) and horizontal hops (on the left). Where σ exceeds a side, that "
+        "hop is blocked and the overlaps are a sector (hatched) and triangles (dotted).",
+    ),
+    "surface_shell": Entry(
+        "Shells around surfaces",
+        GEOMETRY,
+        "The area of a surface is measured by the samples within a distance ε of it. (a) The "
+        "surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and "
+        "extends √2 ε to either side along y1. (b) The surface of collisions, with x = |x1 − "
+        "x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only.",
+    ),
+}
+
+
+def caption(name):
+    """Return the caption of the figure ``name`` as plain text; raise ``ValueError`` without one."""
+    if name not in FIGURES:
+        raise ValueError(f"name must be one of {', '.join(FIGURES)}, not {name!r}")
+    return FIGURES[name].caption

@@ -1,0 +1,98 @@
+"""What all figures share: size, fonts, colours, and files whose bytes depend on the content alone.
+
+Everything is drawn and saved inside ``context()``, which overrides whatever matplotlib settings the
+machine has. pyplot is not used: nothing here needs windows, and importing it takes time.
+"""
+
+from contextlib import contextmanager
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+#: Width of one column of a two-column journal, in inches.
+COLUMN = 3.4
+
+#: Dots per inch of the PNG files.
+DPI = 300
+
+# The palette of Okabe and Ito, which readers of any colour vision can tell apart.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+GREY = "#6E6E6E"
+
+#: (colour, marker) of the first, second, … series of a figure: either of the two tells it apart.
+SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
+
+#: Sizes of the markers, in points: where two series coincide, both show.
+SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3}
+
+SETTINGS = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 8,
+    "axes.labelsize": 8,
+    "axes.labelpad": 2,
+    "axes.linewidth": 0.6,
+    "axes.unicode_minus": True,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "legend.borderpad": 0.2,
+    "legend.borderaxespad": 0.4,
+    "legend.handlelength": 1.6,
+    "legend.handletextpad": 0.5,
+    "legend.labelspacing": 0.25,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 3.2,
+    "lines.markeredgewidth": 0.6,
+    "errorbar.capsize": 0,
+    "hatch.linewidth": 0.4,
+    "figure.dpi": DPI,
+    "savefig.dpi": DPI,
+    "pdf.fonttype": 42,
+}
+
+
+@contextmanager
+def context():
+    """Draw and save in the style of this package, and restore matplotlib's settings afterwards."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(SETTINGS)
+        yield
+
+
+def new_figure(height, width=COLUMN):
+    """Return an empty figure of ``width`` × ``height`` inches."""
+    figure = Figure(figsize=(width, height))
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure, path):
+    """Write ``figure`` to ``path``, a .pdf or .png file without dates or names of programs in it.
+
+    Raises ``ValueError`` for a file name with another ending.
+    """
+    kind = str(path).rpartition(".")[2]
+    metadata = {
+        "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+        "png": {"Software": None},
+    }
+    if kind not in metadata:
+        raise ValueError(f"output must be a .pdf or .png file, not {str(path)!r}")
+    figure.savefig(path, format=kind, metadata=metadata[kind])
