@@ -35,32 +35,28 @@ class Entry:
 GEOMETRY, SPACE, DYNAMICS = "Geometry", "Volume and areas", "Mean times and hopping"
 
 SYMBOLS = (
-    "Error bars are one standard error; where none is seen it is smaller than the symbol. "
-    "Crosses mark estimates from too few events for an honest error."
+    "Error bars are one standard error, and hidden where smaller than the symbols; crosses are "
+    "estimates from too few events to give one."
 )
 
 LIMITS = (
-    "Vertical lines mark the radii h/4 and w/4 at which horizontal and vertical hops become "
-    "blocked, and the largest radius that fits."
+    "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius. "
+    "Residuals "
+    "z beneath are in standard errors, with guide lines at ±2 and ±5"
 )
 
-RESIDUALS = (
-    "Beneath, the residual z is the difference between estimate and expectation in standard "
-    "errors, with guide lines at ±2 and ±5"
+SAMPLED = f"{SYMBOLS} {LIMITS}."
+
+SHELLS = (
+    f"{SYMBOLS} {LIMITS}; they are taken against the exact expectation of the shell, whose "
+    "thickness shifts the estimate slightly off the line."
 )
 
-MONTE_CARLO = (
-    f"{SYMBOLS} {LIMITS} {RESIDUALS}; a shell of finite thickness has an expectation of its own, "
-    "so z is taken against that and its small bias is no part of z."
-)
-
-SIMULATED = (
-    f"{SYMBOLS} Arrows start at 95 % lower bounds where no event was seen. {LIMITS} {RESIDUALS}."
-)
+SIMULATED = f"{SYMBOLS} Arrows start at 95 % lower bounds where no event was seen. {LIMITS}."
 
 
 def _area(title, event, caption):
-    return Entry(title, SPACE, f"{caption} {MONTE_CARLO}", ("areas",), frozenset({f"{event}_area"}))
+    return Entry(title, SPACE, f"{caption} {SHELLS}", ("areas",), frozenset({f"{event}_area"}))
 
 
 def _walls(kind):
@@ -99,7 +95,7 @@ FIGURES = {
         "Volume of configuration space",
         SPACE,
         "Volume of configuration space against the radius of the discs: exact (line) and by "
-        f"rejection sampling (symbols). {SYMBOLS} {LIMITS} {RESIDUALS}.",
+        f"rejection sampling (symbols). {SAMPLED}",
         ("volume",),
         frozenset({"volume"}),
     ),
@@ -128,7 +124,7 @@ FIGURES = {
         SPACE,
         "Areas of the surfaces on which disc 1 touches the right or the top wall, and of all "
         "eight such surfaces together: exact (lines) and from thin shells (symbols). The whole "
-        f"is four times the sum of the first two. {MONTE_CARLO}",
+        f"is four times the sum of the first two. {SHELLS}",
         ("areas",),
         _walls("area"),
     ),
@@ -188,8 +184,9 @@ FIGURES = {
         "The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r "
         "and B = h − 2r but for the quarter circle of radius σ = 2r in which the discs overlap. "
         "The arc is the surface of collisions; coloured pieces of the axes are those of "
-        "vertical hops (below) and horizontal hops (on the left). Where σ exceeds a side, that "
-        "hop is blocked and the overlaps are a sector (hatched) and triangles (dotted).",
+        "vertical hops (below) and horizontal hops (on the left). Where σ exceeds B horizontal "
+        "hops are blocked, where it exceeds A vertical ones, and the overlaps are a sector "
+        "(hatched) and triangles (dotted).",
     ),
     "surface_shell": Entry(
         "Shells around surfaces",
@@ -203,7 +200,8 @@ FIGURES = {
 
 
 def caption(name):
-    """Return the caption of the figure ``name`` as plain text; raise ``ValueError`` without one."""
+    """Return the caption of the figure ``name`` as plain text; raise ``ValueError`` without "
+    "one."""
     if name not in FIGURES:
         raise ValueError(f"name must be one of {', '.join(FIGURES)}, not {name!r}")
     return FIGURES[name].caption

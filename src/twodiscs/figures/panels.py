@@ -28,7 +28,7 @@ GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
 
 @dataclass(frozen=True)
 class Series:
-    """One quantity: its name in the legend, its rows of a table, its exact values along the curve."""
+    """One quantity: its name in the legend, rows of a table, exact values along the curve."""
 
     name: str
     rows: list
