@@ -211,6 +211,16 @@ TABLES = {
             Column("forecast_seconds", "s", "the same, forecast before the run; empty without one"),
         ),
     ),
+    "benchmark": Table(
+        "One row a benchmark and variant, all variants of a benchmark measured in one run.",
+        (
+            Column("benchmark", "", "what is measured", str),
+            Column("variant", "", "which engine or method", str),
+            Column("value", "see unit", "median over the repetitions"),
+            Column("unit", "", "unit of the value", str),
+            Column("ratio", "", "how many times better than the baseline of the same run"),
+        ),
+    ),
     "trajectory": Table(
         "One row an event of one trajectory, in order: the state at the event.",
         (
