@@ -21,6 +21,8 @@ def series(scene, tables, events):
         ]
         if rows:
             found.append(panels.Series(name, rows, exact[f"{event}_area"]))
+    if not found:
+        raise ValueError(f"areas.csv has no row of {', '.join(events)}")
     return radii, found
 
 

@@ -20,7 +20,7 @@ LEFT, RIGHT, GAP, BOTTOM, TOP = 0.27, 0.1, 0.42, 0.3, 0.28
 
 def draw(scene, tables):
     """Draw the two squares of the box of ``scene``; ``tables`` is not used."""
-    width, height = drawing.box(scene)
+    width, height = drawing.outline(scene)
     radius = RADIUS * min(width, height)
     side = (COLUMN - LEFT - RIGHT - GAP) / 2
     figure = new_figure(BOTTOM + side + TOP)

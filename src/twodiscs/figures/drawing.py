@@ -12,6 +12,9 @@ from twodiscs.scene import length
 #: Tallest drawing, in inches.
 TALLEST = 3.6
 
+#: The longest box drawn to scale, over its short side; it has all that longer ones have.
+LONGEST = 4
+
 #: Fill and outline of disc 1 and disc 2.
 DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 
@@ -19,6 +22,12 @@ DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 def box(scene):
     """Return (width, height) of a scene's dict; raise ``ValueError`` unless both are lengths."""
     return length("width", scene["width"]), length("height", scene["height"])
+
+
+def outline(scene):
+    """Return (width, height) as drawn: a box longer than ``LONGEST`` to one is shortened."""
+    width, height = box(scene)
+    return min(width, LONGEST * height), min(height, LONGEST * width)
 
 
 def scale(width, height, room_x, room_y):

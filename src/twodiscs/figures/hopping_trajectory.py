@@ -1,16 +1,15 @@
 """One trajectory: how the discs lie to each other, and when they hop."""
 
 import numpy as np
-from matplotlib.patches import Rectangle
 
 from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLACK, BLUE, GREY, VERMILLION, new_figure
+from twodiscs.figures.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
 
 #: Inches: each of the two panels, the gap between them and the room above.
-PANEL, GAP, TOP = 1.15, 0.42, 0.22
+PANEL, GAP, TOP = 1.15, 0.3, 0.22
 
-#: Length of the lower panel over that of the whole trajectory.
-CLOSE = 1 / 40
+#: Rows in the lower panel, on average.
+CLOSE = 150
 
 
 def draw(scene, tables):
@@ -29,7 +28,8 @@ def draw(scene, tables):
     figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
-    start, end = _crowded(hops, times[0], times[-1])
+    length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
+    start, end = _crowded(hops, length, times[0], times[-1])
     for axes, thick, size in ((whole, 0.3, 2.2), (close, 0.7, 3.4)):
         axes.set_ylabel(f"${axis}_2-{axis}_1$")
         axes.axhline(0, color=GREY, lw=0.5, zorder=1)
@@ -38,25 +38,16 @@ def draw(scene, tables):
     reach = 1.08 * np.abs(apart).max()
     whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
     close.set(xlim=(start, end), ylim=(-reach, reach), xlabel="time $t$")
-    frame = {"facecolor": "none", "edgecolor": BLACK, "linewidth": 0.8, "zorder": 4}
-    whole.add_patch(Rectangle((start, -reach), end - start, 2 * reach, **frame))
-    for x, corner in ((start, 0), (end, 1)):
-        close.annotate(
-            "",
-            (corner, 1),
-            (x, -reach),
-            xycoords="axes fraction",
-            textcoords=whole.transData,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0},
-        )
+    for axes, name in ((whole, "a"), (close, "b")):
+        panels.letter(axes, name)
+    whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0)
     radius = scene.get("radius")
     panels.name_box(whole, width, height, f",  $r={radius:g}$" if radius else "")
     return figure
 
 
-def _crowded(hops, start, end):
-    """Return the ends of the short stretch of time that holds the most ``hops``."""
-    length = CLOSE * (end - start)
+def _crowded(hops, length, start, end):
+    """Return the ends of a stretch of ``length`` that holds as many ``hops`` as any other."""
     first = start
     if len(hops):
         counts = np.searchsorted(hops, hops + 0.6 * length) - np.arange(len(hops))

@@ -26,7 +26,7 @@ LEFT, BELOW, ABOVE, BESIDE, BENEATH = 0.3, 0.22, 0.14, 1.0, 0.5
 
 def draw(scene, tables):
     """Draw one panel for each regime of the box of ``scene``; ``tables`` is not used."""
-    width, height = drawing.box(scene)
+    width, height = drawing.outline(scene)
     panels = []
     for (low, below), (high, above) in pairwise([(0, "0"), *limits(width, height)]):
         regime = Scene(width, height, (low + high) / 2).regime
@@ -43,7 +43,7 @@ def draw(scene, tables):
     else:
         room = COLUMN - (LEFT + 0.1) * len(panels)
         side = min(room / sum(1 / ratio for ratio in ratios), 2.2)
-        broad = [LEFT + 0.1 + side / ratio for ratio in ratios]
+        broad = [max(LEFT + 0.1 + side / ratio, 1.1) for ratio in ratios]
         spare = (COLUMN - sum(broad)) / 2
         figure = new_figure(BENEATH + BELOW + side + ABOVE)
         corners = [(spare + LEFT + sum(broad[:i]), BENEATH + BELOW) for i in range(len(broad))]

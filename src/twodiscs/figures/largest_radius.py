@@ -15,7 +15,7 @@ MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.42, 0.1, 0.36, 1.5
 
 def draw(scene, tables):
     """Draw the box of ``scene`` with discs that just fit, and the map; ``tables`` is not used."""
-    width, height = drawing.box(scene)
+    width, height = drawing.outline(scene)
     inches = drawing.scale(width, height, COLUMN - LEFT - RIGHT, TALLEST)
     floor = MAP_BOTTOM + MAP_HEIGHT + BENEATH
     figure = new_figure(floor + inches * height + ABOVE)
@@ -25,7 +25,7 @@ def draw(scene, tables):
     up = figure.get_figheight()
     across = COLUMN - MAP_LEFT - MAP_RIGHT
     place = (MAP_LEFT / COLUMN, MAP_BOTTOM / up, across / COLUMN, MAP_HEIGHT / up)
-    _map(figure.add_axes(place), width, height)
+    _map(figure.add_axes(place), *drawing.box(scene))
     return figure
 
 
@@ -48,6 +48,9 @@ def _jammed(axes, width, height):
         for start, end, name in zip(stops, stops[1:], ("r", "w-2r", "r"), strict=False):
             ends = (start, -top - far), (end, -top - far)
             drawing.dimension(axes, *ends, f"${name}$", (0, -7))
+    else:
+        ends = (-right, -top - far), (right, -top - far)
+        drawing.dimension(axes, *ends, "$w=2r$", (0, -7))
     if b > 0:
         stops = (-top, -b, b, top)
         for y in stops:
@@ -55,16 +58,15 @@ def _jammed(axes, width, height):
         for start, end, name in zip(stops, stops[1:], ("r", "h-2r", "r"), strict=False):
             ends = (right + far, start), (right + far, end)
             drawing.dimension(axes, *ends, f"${name}$", (4, 0), ha="left")
+    else:
+        ends = (right + far, -top), (right + far, top)
+        drawing.dimension(axes, *ends, "$h=2r$", (4, 0), ha="left")
     if a > 0 and b > 0:
         legs = [(-a, -b), (a, -b), (a, b)]
         drawing.line(axes, legs, BLACK, 0.6, (0, (3, 2)))
         drawing.line(axes, [(-a, -b), (a, b)], BLACK, 0.9)
         away = 6 / hypot(a, b)
         drawing.label(axes, "$2r$", (-a / 2, -b / 2), (-away * b, away * a))
-    elif a > b:
-        drawing.dimension(axes, (-a, -radius), (-a, radius), "$2r=h$", (4, 0), ha="left")
-    else:
-        drawing.dimension(axes, (-radius, -b), (radius, -b), "$2r=w$", (0, 7))
 
 
 def _map(axes, width, height):
@@ -72,7 +74,7 @@ def _map(axes, width, height):
     wide = width >= height
     long, short, hops = ("w", "h", "vertical") if wide else ("h", "w", "horizontal")
     shape = max(width, height) / min(width, height)
-    last = max(3, 1.1 * shape)
+    last = 3.4
 
     # Up to twice as long as short the discs jam along a diagonal, beyond they span the short side.
     bent = [1 + i / 100 for i in range(101)]
@@ -87,18 +89,18 @@ def _map(axes, width, height):
     axes.plot([*bent, last], [*largest, 0.5], color=BLACK, lw=1.2)
 
     end = largest_radius(width, height) / min(width, height)
-    axes.plot([shape, shape], [0, end], color=GREY, lw=0.8, ls=(0, (3, 2)), clip_on=False)
-    axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5)
+    if shape < last:
+        axes.plot([shape, shape], [0, end], color=GREY, lw=0.8, ls=(0, (3, 2)), clip_on=False)
+        axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5)
+    else:
+        drawing.arrow(axes, (last - 0.25, 0.46), (last, 0.46))
+        drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
     axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
-    if last < 4:
-        axes.xaxis.set_major_locator(MultipleLocator(0.5))
-
-    def at(place):
-        return 1 + place * (last - 1)
-
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
     drawing.label(axes, "(b)", (1, 0.6), (5, -4), ha="left", va="top")
-    drawing.label(axes, "both hops", (at(0.75), 0.125))
-    drawing.label(axes, f"{hops} hops", (at(0.75), 0.375))
+    clear = 2.3 if shape > 2.45 else 2.9
+    drawing.label(axes, "both hops", (clear, 0.125))
+    drawing.label(axes, f"{hops} hops", (clear, 0.375))
     drawing.label(axes, f"$r={short}/4$", (1, 0.25), (5, -7), ha="left")
     drawing.label(axes, rf"$r_{{\mathrm{{max}}}}={short}/2$", (last, 0.5), (-4, 7), ha="right")
     drawing.arrow(axes, (1.16, 0.47), (1.12, 0.302), "-", width=0.5)

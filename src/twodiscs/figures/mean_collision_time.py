@@ -15,5 +15,5 @@ def draw(scene, tables):
     times.small_law(main, scene, "disc_collision")
     times.last_law(main, scene, "disc_collision", largest_radius(scene["width"], scene["height"]))
     panels.logarithmic(main, radii, series)
-    panels.legend(main, series, "lower left", single="molecular dynamics")
+    panels.legend(main, series, "beside", single="MD")
     return figure

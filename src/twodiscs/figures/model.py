@@ -15,11 +15,11 @@ VELOCITIES = ((0.7, 1.6), (0.95, -1.3))
 
 def draw(scene, tables):
     """Draw two discs in the box of ``scene``; ``tables`` is not used."""
-    width, height = drawing.box(scene)
+    width, height = drawing.outline(scene)
     radius = RADIUS * min(width, height)
     a, b = width / 2 - radius, height / 2 - radius
     right, top = width / 2, height / 2
-    figure, axes = drawing.single((-right, right, -top, top), 0.3, 0.3, 0.3, 0.3)
+    figure, axes = drawing.single((-right, right, -top, top), 0.3, 0.34, 0.3, 0.3)
 
     drawing.rectangle(axes, -right, right, -top, top, width=1.2)
     drawing.rectangle(axes, -a, a, -b, b, edge=GREY, width=0.6, linestyle=(0, (4, 2.5)))

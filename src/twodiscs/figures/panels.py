@@ -193,7 +193,11 @@ def _residuals(axes, rows, colour, marker):
 
 
 def legend(axes, series, place, single=None):
-    """Explain the symbols; ``single`` names the method of the only series."""
+    """Explain the symbols at a ``place``; ``single`` names the method of the only series.
+
+    ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
+    regimes end, which may lie as low as half of the largest.
+    """
     handles, names = [], []
     for (colour, marker), one in zip(SERIES, series, strict=False):
         style = open_symbol(colour, marker)
@@ -203,7 +207,10 @@ def legend(axes, series, place, single=None):
         else:
             handles += axes.plot([], [], **style)
             names.append(one.name)
-    axes.legend(handles, names, loc=place)
+    if place == "beside":
+        axes.legend(handles, names, loc="upper right", bbox_to_anchor=(0.49, 1))
+    else:
+        axes.legend(handles, names, loc=place)
 
 
 def logarithmic(axes, radii, series):

@@ -16,24 +16,30 @@ LEFT, GAP, RIGHT, BELOW, ABOVE = 0.3, 0.42, 0.08, 0.3, 0.26
 
 def draw(scene, tables):
     """Draw the shells in the box of ``scene``; ``tables`` is not used."""
-    width, height = drawing.box(scene)
+    width, height = drawing.outline(scene)
     short = min(width, height)
     radius, epsilon = RADIUS * short, THICKNESS * short
     a, b = width / 2 - radius, height / 2 - radius
     room = COLUMN - LEFT - GAP - RIGHT
-    side = min(room / (1 + a / b), 1.9)
-    if side > 0.85:
-        figure = new_figure(BELOW + side + ABOVE)
-        spare = (room - side * (1 + a / b)) / 2
-        corners = ((LEFT + spare, BELOW), (LEFT + spare + side + GAP, BELOW))
-        scales = (side / (2 * b), side / (sqrt(2) * b))
-    else:
+    side = room / (1 + a / b)
+    if side < 0.85:
         # A long box: one panel above the other.
         side, across = 1.3, COLUMN - 0.4 - RIGHT
         lower = across * b / a
         figure = new_figure(2 * (BELOW + ABOVE) + side + lower)
-        corners = ((LEFT + (across - side) / 2, 2 * BELOW + lower + ABOVE), (0.4, BELOW))
+        corners = (
+            (LEFT + (COLUMN - LEFT - RIGHT - side) / 2, 2 * BELOW + lower + ABOVE),
+            (0.4, BELOW),
+        )
         scales = (side / (2 * b), across / (sqrt(2) * a))
+    else:
+        upright = min(side, 2.6) if side < 1.4 else min(1.6 + 0.3 * b / a, 2.6)
+        across = max(upright * a / b, 0.8)
+        side = min(side, 1.5, room - across)
+        figure = new_figure(BELOW + max(side, upright) + ABOVE)
+        spare = (room - side - across) / 2
+        corners = ((LEFT + spare, BELOW), (LEFT + spare + side + GAP, BELOW))
+        scales = (side / (2 * b), upright / (sqrt(2) * b))
     _hop(drawing.place(figure, *corners[0], scales[0], (-b, b, -b, b)), b, epsilon)
     extent = (0, sqrt(2) * a, 0, sqrt(2) * b)
     _collision(drawing.place(figure, *corners[1], scales[1], extent), a, b, radius, epsilon)
@@ -52,7 +58,7 @@ def _hop(axes, b, epsilon):
     drawing.line(axes, [(-b, -b), (b, b)], colour=BLUE, width=1.3)
     drawing.rectangle(axes, -b, b, -b, b, width=0.9)
     drawing.label(axes, "(a)", (-b, b), (0, 9), ha="left")
-    drawing.label(axes, "$y_1=y_2$", (b, b), (0, 9), ha="right", color=BLUE)
+    drawing.label(axes, "$y_1=y_2$", (-b, b), (18, 9), ha="left", color=BLUE)
     drawing.label(axes, "$y_1$", (0, -b), (0, -9))
     drawing.label(axes, "$y_2$", (-b, 0), (-9, 0))
     for end, name in ((-b, "$-b$"), (b, "$b$")):
@@ -80,8 +86,8 @@ def _collision(axes, a, b, radius, epsilon):
         axes.add_patch(Arc((0, 0), 2 * reach, 2 * reach, theta2=90, **pen))
     drawing.rectangle(axes, 0, wide, 0, high, width=0.9)
     drawing.label(axes, "(b)", (0, high), (0, 9), ha="left")
-    drawing.label(axes, "$x^2+y^2=2r^2$", (wide, high), (0, 9), ha="right", color=VERMILLION)
-    drawing.label(axes, "$x$", (wide / 2, 0), (0, -9))
+    drawing.label(axes, "$x^2+y^2=2r^2$", (0, high), (18, 9), ha="left", color=VERMILLION)
+    drawing.label(axes, "$x$", (wide / 2 if a > b / 2 else wide / 4, 0), (0, -9))
     drawing.label(axes, "$y$", (0, high / 2), (-8, 0))
     drawing.label(axes, r"$\sqrt{2}\,a$", (wide, 0), (3, -9), ha="right")
     drawing.label(axes, r"$\sqrt{2}\,b$", (0, high), (-3, 0), ha="right")

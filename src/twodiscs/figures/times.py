@@ -21,6 +21,8 @@ def series(scene, tables, events):
         rows = [row for row in tables["mean_times"] if row["event"] == event]
         if rows:
             found[event] = panels.Series(name, rows, exact[f"{event}_time"])
+    if not found:
+        raise ValueError(f"mean_times.csv has no row of {', '.join(events)}")
     return radii, found
 
 
