@@ -69,15 +69,15 @@ FIGURES = {
         GEOMETRY,
         "Two hard discs of radius r in a box of width w and height h. Coordinates start from "
         "the centre of the box. The centres of the discs keep to the dashed rectangle, of "
-        "half-sides a = w/2 − r and b = h/2 − r.",
+        "half-sides a = w/2 − r and b = h/2 − r. (Drawings shorten boxes longer than four to one.)",
     ),
     "hopping_trajectory": Entry(
         "Hopping dynamics",
         DYNAMICS,
-        "One trajectory: the separation of the discs along the longer side of the box against "
-        "time (along x in a square). Dots mark the hops, at which it changes sign. Below, the "
-        "framed stretch of time is enlarged: a hop is often undone at once, before collisions "
-        "have scrambled the motion.",
+        "One trajectory: the separation of the discs along the longer side of the box against time "
+        "(along x in a square). Dots mark the hops, at which it changes sign. (b) The shaded "
+        "stretch of time enlarged: a hop is often undone soon, before collisions have scrambled "
+        "the motion.",
         ("trajectory",),
         frozenset({"trajectory"}),
     ),
