@@ -32,7 +32,7 @@ test: .venv/ready
 	  rm -rf .venv && \
 	  uv venv --quiet --python "$(or $(PYTHON),>=3.11)" .venv && \
 	  export VIRTUAL_ENV="$(CURDIR)/.venv" && \
-	  uv pip install --quiet --require-hashes -r requirements.lock && \
+	  uv pip install --quiet --compile-bytecode --require-hashes -r requirements.lock && \
 	  uv pip install --quiet --no-deps --no-build-isolation --editable . ; \
 	else \
 	  for python in $(CANDIDATES) none; do \
