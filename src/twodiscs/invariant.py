@@ -79,38 +79,53 @@ def draw_constants(scene):
 
 
 @compiled
-def draw_separation(state, draw):
-    """Return (A − u, B − v, u) for separations u, v of the invariant measure.
+def propose_separation(state, draw):
+    """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
 
-    The distances from the far corner, A − u and B − v, come first because they keep their relative
-    accuracy where the discs hardly fit.
+    The distances from the far corner, A − u and B − v, keep their relative accuracy where the discs
+    hardly fit, and so does the last value where they touch. A proposal is accepted with the
+    probability V/2 over ``draw.mass``, and then has the law of the invariant measure.
     """
+    choice = uniform(state)
+    if choice < draw.weights[0]:
+        slack = draw.beyond_x * math.sqrt(uniform(state))
+        beyond = draw.beyond_x - slack
+        u = draw.sigma + beyond
+        slack_y = draw.range_y * math.sqrt(uniform(state))
+        v = draw.range_y - slack_y
+        return True, slack, slack_y, u, beyond * (u + draw.sigma) + v * v
+    part = 1
+    while part < 6 and choice >= draw.weights[part]:
+        part += 1
+    pair = (part - 1) // 2
+    power = 2 * pair if draw.beyond_y > 0.0 else 2 + pair
+    if part % 2 == 1:
+        s = draw.span * largest_of(state, power + 1)
+    else:
+        s = draw.span * second_largest_of(state, power + 2)
+    u = draw.start + s
+    z = draw.span - s
+    k = math.sqrt(draw.least_k * draw.least_k + z * (2.0 * draw.stop - z))
+    if draw.beyond_y > 0.0:
+        room = draw.beyond_y + u * u / (draw.sigma + k)
+        bound = draw.beyond_y + u * u / draw.sigma
+    else:
+        room = s * (2.0 * draw.start + s) / (draw.range_y + k)
+        bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)
+    if uniform(state) * (bound * bound) >= room * room:
+        return False, 0.0, 0.0, 0.0, 0.0
+    slack_y = room * math.sqrt(uniform(state))
+    # v = k + room − slack_y.
+    return True, draw.beyond_x + z, slack_y, u, (room - slack_y) * (2.0 * k + room - slack_y)
+
+
+@compiled
+def draw_separation(state, draw):
+    """Return (A − u, B − v, u) for separations u, v of the invariant measure."""
     while True:
-        choice = uniform(state)
-        if choice < draw.weights[0]:
-            slack = draw.beyond_x * math.sqrt(uniform(state))
-            u = draw.sigma + (draw.beyond_x - slack)
-            return slack, draw.range_y * math.sqrt(uniform(state)), u
-        part = 1
-        while part < 6 and choice >= draw.weights[part]:
-            part += 1
-        pair = (part - 1) // 2
-        power = 2 * pair if draw.beyond_y > 0.0 else 2 + pair
-        if part % 2 == 1:
-            s = draw.span * largest_of(state, power + 1)
-        else:
-            s = draw.span * second_largest_of(state, power + 2)
-        u = draw.start + s
-        z = draw.span - s
-        k = math.sqrt(draw.least_k * draw.least_k + z * (2.0 * draw.stop - z))
-        if draw.beyond_y > 0.0:
-            room = draw.beyond_y + u * u / (draw.sigma + k)
-            bound = draw.beyond_y + u * u / draw.sigma
-        else:
-            room = s * (2.0 * draw.start + s) / (draw.range_y + k)
-            bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)
-        if uniform(state) * (bound * bound) < room * room:
-            return draw.beyond_x + z, room * math.sqrt(uniform(state)), u
+        accepted, slack_x, slack_y, u, _ = propose_separation(state, draw)
+        if accepted:
+            return slack_x, slack_y, u
 
 
 @compiled
