@@ -69,7 +69,7 @@ FIGURES = {
         GEOMETRY,
         "Two hard discs of radius r in a box of width w and height h. Coordinates start from "
         "the centre of the box. The centres of the discs keep to the dashed rectangle, of "
-        "half-sides a = w/2 − r and b = h/2 − r. (Drawings shorten boxes longer than four to one.)",
+        "half-sides a = w/2 − r and b = h/2 − r. Drawings shorten boxes longer than four to one.",
     ),
     "hopping_trajectory": Entry(
         "Hopping dynamics",
