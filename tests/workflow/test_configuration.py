@@ -51,8 +51,8 @@ def test_a_file_that_is_no_mapping(unbuilt, tmp_path, text):
     (tmp_path / "bad.yaml").write_text(text)
     run = unbuilt.snakemake("-n", "--configfile", str(tmp_path / "bad.yaml"), passes=False)
     assert run.returncode != 0
-    assert "onfig file" in run.stderr
-    assert "Traceback" not in run.stderr
+    assert "Config file" in run.stdout + run.stderr
+    assert "Traceback" not in run.stdout + run.stderr
 
 
 def test_a_mistake_on_the_command_line(unbuilt):

@@ -7,6 +7,7 @@ import sys
 from checkout import REPOSITORY
 
 from twodiscs import tables
+from twodiscs.figures.catalogue import FIGURES
 
 
 def test_snakefiles_are_formatted():
@@ -36,3 +37,15 @@ def test_every_rule_keeps_a_log_and_a_benchmark():
 def test_results_page_describes_the_tables():
     page = (REPOSITORY / "results" / "README.md").read_text()
     assert page.endswith(tables.documentation())
+
+
+def test_manuscript_has_a_place_for_every_figure():
+    text = (REPOSITORY / "paper" / "paper.typ").read_text()
+    assert sorted(re.findall(r'#drawn\("(\w+)"\)', text)) == sorted(FIGURES)
+
+
+def test_readme_lists_every_target():
+    page = (REPOSITORY / "README.md").read_text()
+    assert [
+        name for name in ("all", "check", "paper", "report", *FIGURES) if f"`{name}`" not in page
+    ] == []

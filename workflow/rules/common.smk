@@ -88,11 +88,11 @@ def figure_parameters(scene, figure):
 
 
 def figure_files(scene):
-    """Return {name: paths} of the figures that a scene calls for: all that they need is watched."""
+    """Return {name: paths} of the figures that a scene calls for."""
     return {
         name: multiext(f"{RESULTS}/{scene.name}/figures/{name}", ".pdf", ".png")
         for name, figure in FIGURES.items()
-        if figure.needs <= scene.watch.quantities
+        if figure.is_called(scene.watch.quantities)
     }
 
 

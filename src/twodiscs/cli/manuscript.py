@@ -4,14 +4,15 @@ import json
 import os
 
 from twodiscs.cli import arguments
+from twodiscs.figures.catalogue import FIGURES
 
 
 def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
-    The template finds ``contents`` under ``sys.inputs.contents``, as JSON; the entry ``results``,
-    the folder of results, is there a path from the root that the template and the results have in
-    common. The same inputs give the same bytes on every machine: fonts are those that come with
+    The template finds ``contents`` under ``sys.inputs.contents``, as JSON, with the captions of all
+    figures as entry ``captions``; the entry ``results``, the folder of results, is there a path from
+    the root that the template and the results have in common. The same inputs give the same bytes on every machine: fonts are those that come with
     Typst. Raises ``ValueError`` if the template does not compile.
     """
     import typst
@@ -19,13 +20,15 @@ def typeset(template, output, contents):
     results = os.path.abspath(contents["results"])
     root = os.path.commonpath([results, os.path.dirname(os.path.abspath(template))])
     place = "/" + os.path.relpath(results, root).replace(os.sep, "/")
+    captions = {name: entry.caption for name, entry in FIGURES.items()}
+    contents = {**contents, "captions": captions, "results": place}
     try:
         typst.compile(
             template,
             output=output,
             root=root,
             ignore_system_fonts=True,
-            sys_inputs={"contents": json.dumps({**contents, "results": place})},
+            sys_inputs={"contents": json.dumps(contents)},
         )
     except typst.TypstError as error:
         raise ValueError(f"{template} does not compile: {error.message}; {error.trace}") from None
