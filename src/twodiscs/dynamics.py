@@ -39,16 +39,18 @@ from twodiscs.streams import open_stream
 
 LANES = 64
 
-#: Passes between two looks at which lanes have ended, and looks between two unpackings of the counts:
-#: a packed count must stay below 256.
+#: Passes between two looks at which lanes have ended, and looks between two unpackings of the
+#: counts: a packed count must stay below 256.
 PASSES = 8
 LOOKS = 31
 
 #: Wall and disc events that a replica is meant to last.
 EVENTS_PER_REPLICA = 192
 
-#: Blocks of the first round.
+#: Blocks of the first round, and how many times the work done so far a round may be: an error seen
+#: in few events predicts badly.
 FIRST_ROUND = 32
+GROWTH = 8.0
 
 #: Replicas that share a random stream.
 REPLICAS = 1024
@@ -94,8 +96,8 @@ def count_blocks(
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
-    Returns (sums, products, eligible): Σ N_e (6), Σ N_e N_f (6, 6) over all replicas, and how many
-    replicas can see each event (6), all int64, in the order of EVENTS. ``sides`` chooses
+    Returns (sums, products, eligible): Σ N_e (6), Σ N_e N_f for e ≤ f (6, 6) over all replicas, and
+    how many replicas can see each event (6), all int64, in the order of EVENTS. ``sides`` chooses
     components as in ``draw_configuration``; ``blocked`` says which hops are blocked, so that only
     starts with disc 1 on the right (on top) see the right (top) wall. ``hops`` and ``walls`` are
     True or None: what is None is not compiled.
@@ -248,13 +250,15 @@ def count_events(scene, target, budget, seed, report=None):
 
     ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
     blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
-    events to simulate. Work goes in rounds: the first one is small, the next ones as long as the
-    errors seen so far predict, at most eight times all before. ``report``, if given, is called
-    after each round with a dict of events, error (the worst in units of its target) and the events
-    still needed.
+    events to simulate; a block of replicas is the least that is. Work goes in rounds: the first
+    one is small, the next ones as long as the errors seen so far predict. ``report``, if given, is
+    called after each round with a dict of events, error (the worst in units of its target) and
+    needed (the events still to come).
 
-    Returns a dict for a JSON file; see ``docs/files.md``. Raises ``ValueError`` for an unknown
-    event or a number out of range.
+    Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
+    events simulated, and for each watched event how many replicas can see it (eligible), its count
+    ΣN, its target and status (reached, budget or impossible); products hold ΣN_a N_b of each pair.
+    Raises ``ValueError`` for an unknown event or a number out of range.
     """
     if not target:
         raise ValueError("target must name at least one event, not none")
@@ -274,7 +278,8 @@ def count_events(scene, target, budget, seed, report=None):
         np.zeros((6, 6), np.int64),
         np.zeros(6, np.int64),
     )
-    done, blocks, rounds, simulated = 0, FIRST_ROUND, 0, 0
+    blocks = max(1, min(FIRST_ROUND, budget // (REPLICAS * EVENTS_PER_REPLICA)))
+    done, rounds = 0, 0
     while True:
         for total, part in zip(
             (sums, products, eligible),
@@ -288,14 +293,15 @@ def count_events(scene, target, budget, seed, report=None):
             break
         excess = relative_errors(sums, products, eligible)[index] / goals
         worst = float(np.max(excess))
-        missing = 8.0 if worst > 3.0 else 1.05 * worst**2 - 1.0
-        affordable = (budget - simulated) / simulated
+        # In units of the work done so far: what the error asks for, and what the budget allows.
+        missing, affordable = 1.05 * worst**2 - 1.0, budget / simulated - 1.0
         if report is not None:
-            report({"events": simulated, "error": worst, "needed": missing * simulated})
+            needed = max(0.0, min(missing, affordable)) * simulated
+            report({"events": simulated, "error": worst, "needed": needed})
         if worst <= 1.0 or affordable * done < 1.0:
             break
-        blocks = max(1, math.ceil(min(missing, affordable) * done - 1e-9))
-        blocks = min(blocks, max(1, int(affordable * done)))
+        blocks = math.ceil(min(missing, GROWTH) * done)
+        blocks = min(blocks, math.floor(affordable * done))
 
     watched = [EVENTS.index(event) for event in events]
     reached = dict(zip(waited, excess <= 1.0, strict=True)) if waited else {}
