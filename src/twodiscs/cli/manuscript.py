@@ -11,9 +11,10 @@ def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     The template finds ``contents`` under ``sys.inputs.contents``, as JSON, with the captions of all
-    figures as entry ``captions``; the entry ``results``, the folder of results, is there a path from
-    the root that the template and the results have in common. The same inputs give the same bytes on every machine: fonts are those that come with
-    Typst. Raises ``ValueError`` if the template does not compile.
+    figures added as ``captions``; its entry ``results``, their folder, is there a path from the
+    root that template and results have in common. The same inputs give the same bytes on every
+    machine: fonts are those that come with Typst. Raises ``ValueError`` if the template does not
+    compile.
     """
     import typst
 
