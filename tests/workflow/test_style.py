@@ -36,7 +36,7 @@ def test_every_rule_keeps_a_log_and_a_benchmark():
 
 def test_results_page_describes_the_tables():
     page = (REPOSITORY / "results" / "README.md").read_text()
-    assert page.endswith(tables.documentation())
+    assert page.endswith(tables.documentation()), "its end must be tables.documentation()"
 
 
 def test_manuscript_has_a_place_for_every_figure():
