@@ -1,0 +1,17 @@
+# How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
+
+
+rule:
+    name:
+        "benchmark"
+    input:
+        code=code("benchmark"),
+    output:
+        table=ensure(f"{RESULTS}/benchmark.csv", non_empty=True),
+    log:
+        f"{RESULTS}/logs/benchmark.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/benchmark.tsv"
+    threads: workflow.cores
+    shell:
+        "python -m twodiscs.benchmark --output {output.table:q} > {log:q} 2>&1"
