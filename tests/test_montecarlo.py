@@ -68,7 +68,7 @@ def test_blocks_add_up_and_are_independent_of_company():
 
 
 def test_joint_hits_of_two_walls():
-    """Disc 1 in the corner, where the shells of the two walls overlap, and disc 2 out of its way."""
+    """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
     point = montecarlo.sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
     assert point["quantities"].keys() == {"right_wall_area", "top_wall_area"}
     epsilon = point["quantities"]["right_wall_area"]["epsilon"]

@@ -1,1 +1,1 @@
-"""Exact, Monte Carlo and molecular-dynamics hopping and collision times of two hard discs in a box."""
+"""Hopping and collision times of two hard discs in a box: exact, by sampling, by dynamics."""

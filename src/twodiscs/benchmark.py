@@ -1,8 +1,8 @@
 """How fast the engines are, measured side by side: ``python -m twodiscs.benchmark``.
 
 Every variant of a benchmark runs in turn, again and again, and the medians are compared, so that a
-machine that slows down slows them all. All numbers are for one core, processor time, but the speed-up of
-two processes, which is of wall-clock time. The scene is the paper's box at r = 0.2.
+machine that slows down slows them all. All numbers are for one core, processor time, but the
+speed-up of two processes, which is of wall-clock time. The scene is the paper's box at r = 0.2.
 """
 
 import math
@@ -36,7 +36,7 @@ def timed(work):
 
 
 def interleaved(variants, repetitions=REPETITIONS):
-    """Return {name: median speed} of ``variants``, {name: function that returns (units, seconds)}."""
+    """Return {name: median speed} of {name: function that returns (units, seconds)}."""
     for work in variants.values():
         work()
     speeds = {name: [] for name in variants}
@@ -130,7 +130,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
 
 
 def count_until(error):
-    """Return processor seconds until counting knows the mean vertical hop time to ``error``."""
+    """Return (events, processor seconds) until counting knows the mean vertical hop time."""
     result, seconds = timed(
         lambda: dynamics.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
     )
@@ -138,7 +138,7 @@ def count_until(error):
 
 
 def intervals_until(error):
-    """Return processor seconds until drawn intervals know the mean vertical hop time to ``error``."""
+    """Return (intervals, processor seconds) until drawn intervals know their mean to ``error``."""
 
     def work():
         intervals = 500_000

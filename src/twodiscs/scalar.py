@@ -1,8 +1,8 @@
 """The usual engine, for comparison: one trajectory at a time, with branches and divisions.
 
-It does the same experiment as ``dynamics.count_blocks``, from the same starts, with the same law written
-the way one writes it first, and serves as second opinion and as the baseline of the benchmarks. Called
-through ``count_blocks.py_func`` it is the plain Python program.
+It does the same experiment as ``dynamics.count_blocks``, from the same starts, with the same law
+written the way one writes it first, and serves as second opinion and as the baseline of the
+benchmarks. Called through ``count_blocks.py_func`` it is the plain Python program.
 """
 
 import math
@@ -17,7 +17,7 @@ from twodiscs.streams import open_stream
 
 @compiled
 def count_blocks(seed, first, stop, replicas, duration, sigma, draw, sides, blocked):
-    """Return (sums, products, eligible) as ``dynamics.count_blocks`` does, for the same arguments."""
+    """Return (sums, products, eligible) as ``dynamics.count_blocks`` does."""
     sums, products = np.zeros(6, np.int64), np.zeros((6, 6), np.int64)
     eligible = np.zeros(6, np.int64)
     starts = np.zeros((8, replicas))

@@ -1,7 +1,8 @@
 """The scene: two equal hard discs in a rectangular box, and the geometry that follows from it.
 
-Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, masses are
-one and the total energy is 1/2, so that v1² + v2² = 1 and times are lengths over a speed of one.
+Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, masses
+are one and the total energy is 1/2, so that v1² + v2² = 1 and times are lengths over a speed of
+one.
 """
 
 import math
