@@ -35,6 +35,7 @@ include: "workflow/rules/monte_carlo.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/check.smk"
+include: "workflow/rules/errata.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/manuscript.smk"
 include: "workflow/rules/report.smk"
@@ -44,4 +45,5 @@ include: "workflow/rules/benchmark.smk"
 rule all:
     input:
         rules.report.input.results,
+        rules.errata.output,
         rules.report.output,

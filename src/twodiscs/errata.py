@@ -24,15 +24,15 @@ STABLE = 1e-12
 #: Standard errors from which on a measurement decides against a formula, or stops everything.
 AGAINST, VETO = 5, 6
 
-#: Relative standard error up to which a measurement that agrees with a formula speaks for it.
-TELLING = 0.05
+#: Relative standard error up to which a measurement is looked at, and speaks for a formula.
+TELLING = 0.02
 
 
 # Measurements -------------------------------------------------------------------------------------
 
 
 def _relative(rows, name):
-    """Yield (radius, name of the quantity, measured over exact, relative error) of honest rows."""
+    """Yield (radius, name of the quantity, measured over exact, its error) of rows that tell."""
     for row in rows:
         if row["exact"] and row["stderr"] and row["stderr"] <= TELLING * row["exact"]:
             value = row["estimate"] - row.get("bias", 0.0)
@@ -97,21 +97,20 @@ def _ratio(statement, q):
 def _tabled_radius(name, quantity, found):
     """Return the radius of the tables at which to look at a regime or limit, None if there is none.
 
-    That is the nearest of those at which most methods measured the quantity.
+    That is the nearest to the limit, or the nearest to the radius to report, if possible where
+    both methods measured the quantity.
     """
-    box = Box.of(WIDTH, HEIGHT, 0)
-    if name in REGIMES:
-        target, side = REGIMES[name][0][2], 0
-    else:
+    radii = [radius for measured, radius in found if measured == quantity]
+    if name in LIMITS:
         _, limit, side = LIMITS[name]
-        target = limit(box)
-    radii = [
-        radius
-        for measured, radius in found
-        if measured == quantity
-        and (side * (radius - target) > 0 if side else Scene(WIDTH, HEIGHT, radius).regime == name)
-    ]
-    return min(radii, key=lambda r: (-len(found[quantity, r]), abs(r - target), r), default=None)
+        away = {radius: side * (radius - limit(Box.of(WIDTH, HEIGHT, 0))) for radius in radii}
+        return min((radius for radius in radii if away[radius] > 0), key=away.get, default=None)
+    target = REGIMES[name][0][2]
+    return min(
+        (radius for radius in radii if Scene(WIDTH, HEIGHT, radius).regime == name),
+        key=lambda radius: (-len(found[quantity, radius]), abs(radius - target), radius),
+        default=None,
+    )
 
 
 def _boxes(name, tabled):

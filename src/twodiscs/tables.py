@@ -221,6 +221,42 @@ TABLES = {
             Column("ratio", "", "how many times better than the baseline of the same run"),
         ),
     ),
+    "errata": Table(
+        "One row a displayed formula of arXiv:1908.04749, or a claim of its text: is it right?",
+        (
+            Column("label", "", "its label in the source, or a short name", str),
+            Column("place", "", "section or appendix", str),
+            Column(
+                "verdict",
+                "",
+                "right; wrong; right-in-range: right in some of the regimes that it is stated for",
+                str,
+            ),
+            Column(
+                "ratio",
+                "",
+                "printed/true, where it fails if it does; empty for claims and where what is "
+                "printed is no real number",
+            ),
+            Column(
+                "radius",
+                "length",
+                "radius of the ratio, in the box 1.5 × 1; of a limit the radius that is approached; "
+                "empty where it does not matter, or where another box decides",
+            ),
+            Column("correction", "", "what is right instead, or what else to know", str),
+            Column(
+                "decided_by",
+                "",
+                "theory (quadrature to 50 digits), and each method that can tell, with its ratio "
+                "measured/printed and the error of the last digit (its distance from 0 where 0 is "
+                "printed). Areas and times measure each other by the exact volume; where a part is "
+                "printed, the rest is taken as exact; the ratio for a limit is measured at the "
+                "radius given and carried over by theory",
+                str,
+            ),
+        ),
+    ),
     "trajectory": Table(
         "One row an event of one trajectory, in order: the state at the event.",
         (

@@ -34,7 +34,7 @@ def test_one_more_radius_is_one_more_job_of_each_kind(built):
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "grid", "theory", "table", "check_table", "check"),
-        *("figure", "paper", "report"),
+        *("errata", "figure", "paper", "report"),
     }
 
 
