@@ -301,8 +301,8 @@ def test_parameters_are_plain_sorted_and_complete():
 # "…" stands for any text.
 
 FILES = {
-    "": ": must hold a block of the keys results, seed, scenes, not empty",
-    "- 1": ": must hold a block of the keys results, seed, scenes, not [1]",
+    "": ": must hold a block of the keys results, seed, accuracy_cost, scenes, not empty",
+    "- 1": ": must hold a block of the keys results, seed, accuracy_cost, scenes, not [1]",
     "seed: 1\nseed: 2": ", line 2: the key 'seed' is given a second time",
     "scenes:\n- box: {width: 1, height: 1, width: 2}": ", line 2: the key 'width' is given a sec…",
     "results: here\nscenes: [": ", line 2: …",
@@ -320,7 +320,7 @@ LINES = {
     "scenes: [{name: a}]": "scenes[0] needs the key 'box'",
     "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
-    "zz: 1": "the configuration has an unknown key 'zz'; its keys are results, seed, scenes",
+    "zz: 1": "the configuration has an unknown key 'zz'; its keys are results, seed, accuracy_cost, scenes",
     "1: 2": "the configuration has an unknown key 1; …",
     "seed: -1": "seed must be an integer from 0 to 2^63 - 1, not -1",
     "seed: 1.5": "seed must be an integer …, not 1.5",

@@ -176,10 +176,14 @@ class SceneRequest:
 
 @dataclass(frozen=True)
 class Configuration:
-    """A whole configuration: the folder of results, the root seed and the scenes in their order."""
+    """A whole configuration: the folder of results, the root seed and the scenes in their order.
+
+    ``accuracy_cost_seconds`` is the processor time for the comparison of methods.
+    """
 
     results: str
     seed: int
+    accuracy_cost_seconds: float
     scenes: tuple
 
     def scene(self, name):
@@ -211,7 +215,8 @@ def load(mapping):
             raise ConfigError(
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
-    return Configuration(settled["results"], settled["seed"], scenes)
+    seconds = settled["accuracy_cost"]["seconds"]
+    return Configuration(settled["results"], settled["seed"], seconds, scenes)
 
 
 def read(path):

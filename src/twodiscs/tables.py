@@ -211,6 +211,88 @@ TABLES = {
             Column("forecast_seconds", "s", "the same, forecast before the run; empty without one"),
         ),
     ),
+    "accuracy_cost": Table(
+        "One row a method and amount of work: its true error against the processor time it takes, "
+        "on one core. All rows come from one run, in which the methods take turns.",
+        (
+            Column(
+                "part",
+                "",
+                "volume, area, time: work and precision; floor: the error that no work removes; "
+                "radius: the price of a relative error, radius by radius; precision: where single "
+                "precision fails",
+                str,
+            ),
+            Column("quantity", "", "volume, <event>_area, <event>_time or energy", str),
+            Column("width", "length", "side of the box along x"),
+            Column("height", "length", "side of the box along y"),
+            RADIUS,
+            Column(
+                "method",
+                "",
+                "rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), "
+                "surface, quadrature, closed_form, exact; lockstep, scalar, single_precision, "
+                "time_step. radius: lockstep (speed and error of a pilot), poisson (exact rates, "
+                "one speed, the noise of a Poisson process), paid (run to the end)",
+                str,
+            ),
+            Column(
+                "setting",
+                "see method",
+                "ε of a shell, Δt of time steps. precision: 1 − r/r_max, and for the energy the "
+                "events of a trajectory",
+            ),
+            Column(
+                "work",
+                "",
+                "samples, points, nodes, wall and disc events, or time steps",
+                int,
+            ),
+            Column("seconds", "s", "median processor time of one run"),
+            Column(
+                "error",
+                "",
+                "root mean square over the repetitions of the relative error against the exact "
+                "value; radius: the one asked for",
+            ),
+            Column(
+                "spread",
+                "",
+                "standard deviation of its size between repetitions. floor: standard error; "
+                "precision: statistical error of one run",
+            ),
+            Column("bias", "", "mean relative error with its sign"),
+            Column("floor", "", "part of the error that no work removes; 0 where none was found"),
+            Column("repetitions", "", "runs with other random numbers", int),
+            Column(
+                "slope",
+                "",
+                "fitted power of the work by which the error of this method and setting falls, "
+                "above its floor; for quadrature, digits per node; for floor, power of the setting",
+            ),
+            Column("slope_stderr", "", "its standard error"),
+        ),
+    ),
+    "forecast": Table(
+        "One row a scene and stage: what the configuration is going to take on this machine.",
+        (
+            Column("scene", "", "the scene; all for what is made once, and for the total", str),
+            Column(
+                "stage",
+                "",
+                "monte_carlo, dynamics, intervals; tables, figures, documents (start-up and work "
+                "of their jobs); total",
+                str,
+            ),
+            Column("radius", "length", "radius of one job; empty for the sum over a stage"),
+            Column("jobs", "", "number of jobs", int),
+            Column("events", "", "wall and disc events, samples, or intervals", int),
+            Column("seconds", "s", "processor time of the work itself, without start-up"),
+            Column("startup", "s", "processor time to start the jobs and to schedule them"),
+            Column("cores", "", "cores to share the work", int),
+            Column("wall_clock", "s", "(seconds + startup)/cores"),
+        ),
+    ),
     "benchmark": Table(
         "One row a benchmark and variant, all variants of a benchmark measured in one run.",
         (

@@ -1,0 +1,139 @@
+"""The lock-step ensemble in another precision: what single precision buys, and where it fails.
+
+The law of ``events`` is not written again: its functions are compiled a second time, from the same
+code, with every constant rounded to the precision asked for. So the law in double precision stays
+as it is, bit for bit, and the two cannot drift apart.
+
+For comparisons only. Where discs have little room, a number of 24 bits cannot even hold the room.
+"""
+
+from functools import cache
+from types import FunctionType
+
+import numpy as np
+
+from twodiscs import events
+from twodiscs.dynamics import LANES, LOOKS, PASSES, REPLICAS, draw_starts
+from twodiscs.invariant import draw_constants
+from twodiscs.jit import numba
+from twodiscs.streams import open_stream
+
+#: Not kept on disk: what is compiled here depends on more than its source.
+OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True}
+
+
+def law(dtype):
+    """Return {name: constant or compiled function} of ``events`` for numbers of ``dtype``."""
+
+    def rounded(value):
+        return dtype(value) if isinstance(value, float) else value
+
+    names = {name: rounded(value) for name, value in vars(events).items()}
+    names["RESTING_SPEED"] = dtype(4 * np.finfo(dtype).eps)
+    for name, value in vars(events).items():
+        if hasattr(value, "py_func"):
+            code = value.py_func.__code__
+            code = code.replace(co_consts=tuple(map(rounded, code.co_consts)))
+            names[name] = numba.njit(FunctionType(code, names, name), **OPTIONS)
+    return names
+
+
+@cache
+def kernel(dtype):
+    """Return ``dynamics.count_blocks`` for states of ``dtype``, with sums only.
+
+    Its arguments are seed, first, stop, replicas, lanes, duration, sigma, half_x, half_y, draw; the
+    four lengths are of ``dtype``. It returns Σ N_e (6, int64) in the order of EVENTS, and the sum
+    and sum of squares of u1² + v1² + u2² + v2² − 1 over the ends of all replicas. Starts are drawn
+    in double precision and rounded.
+    """
+    names = law(dtype)
+    next_event, after_event = names["next_event"], names["after_event"]
+    crosses, end_of_time, disc = names["crosses"], names["END_OF_TIME"], names["DISC"]
+    wall_x1, wall_y1 = names["WALL_X1"], names["WALL_Y1"]
+    # Three counts of eight bits are all that the 24 bits of a single-precision number hold.
+    low, middle, high, zero = dtype(1), dtype(256), dtype(65536), dtype(0)
+
+    @numba.njit(**OPTIONS)
+    def count(seed, first, stop, replicas, lanes, duration, sigma, half_x, half_y, draw):
+        state = np.zeros((8, lanes), dtype)
+        x1, y1, x2, y2 = state[0], state[1], state[2], state[3]
+        u1, v1, u2, v2 = state[4], state[5], state[6], state[7]
+        remaining, busy = np.zeros(lanes, dtype), np.zeros(lanes, np.bool_)
+        times, codes = np.zeros(lanes, dtype), np.zeros(lanes, dtype)
+        inner, outer = np.zeros(lanes, dtype), np.zeros(lanes, dtype)
+        starts, sums = np.zeros((8, replicas)), np.zeros(6, np.int64)
+        gained, squared = 0.0, 0.0
+        block, used, running, looks = first, replicas, 0, 0
+        while True:
+            for i in range(lanes):
+                if remaining[i] > zero:
+                    continue
+                if busy[i]:
+                    excess = -1.0
+                    for k in range(4, 8):
+                        excess += np.float64(state[k, i]) ** 2
+                    gained, squared = gained + excess, squared + excess * excess
+                    busy[i] = False
+                    running -= 1
+                if used == replicas and block < stop:
+                    draw_starts(open_stream(seed, block), draw, 0, 0, starts)
+                    block, used = block + 1, 0
+                if used < replicas:
+                    for k in range(8):
+                        state[k, i] = starts[k, used]
+                    remaining[i] = duration
+                    used += 1
+                    busy[i] = True
+                    running += 1
+            if running > 0:
+                for _ in range(PASSES):
+                    for i in range(lanes):
+                        times[i], codes[i] = next_event(
+                            x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
+                            remaining[i], half_x, half_y, sigma,
+                        )  # fmt: skip
+                    for i in range(lanes):
+                        code, a, b = codes[i], inner[i], outer[i]
+                        before_x, before_y, u, v = x1[i] - x2[i], y1[i] - y2[i], u1[i], v1[i]
+                        remaining[i] -= times[i]
+                        x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = after_event(
+                            x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
+                            times[i], code, half_x, half_y,
+                        )  # fmt: skip
+                        a += low if crosses(before_y, y1[i] - y2[i]) else zero
+                        a += middle if crosses(before_x, x1[i] - x2[i]) else zero
+                        a += high if code == disc else zero
+                        b += low if (code == wall_x1) & (u > zero) else zero
+                        b += middle if (code == wall_y1) & (v > zero) else zero
+                        b += high if code > end_of_time else zero
+                        inner[i], outer[i] = a, b
+            looks += 1
+            if looks == LOOKS or running == 0:
+                looks = 0
+                for i in range(lanes):
+                    first_three, last_three = np.int64(inner[i]), np.int64(outer[i])
+                    inner[i], outer[i] = zero, zero
+                    for e in range(3):
+                        sums[e] += (first_three >> (8 * e)) & 255
+                        sums[3 + e] += (last_three >> (8 * e)) & 255
+            if running == 0:
+                sums[5] -= sums[2]
+                return sums, gained, squared
+
+    return count
+
+
+def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
+    """Count all events as ``dynamics.run_blocks`` does, but with states of ``dtype``.
+
+    Returns (Σ N_e in the order of EVENTS, mean and root mean square of the relative error of the
+    energy at the end of a replica).
+    """
+    sums, gained, squared = kernel(dtype)(
+        np.uint64(seed), first, stop, REPLICAS, LANES, dtype(duration),
+        dtype(scene.contact_distance), dtype(scene.range_x / 2), dtype(scene.range_y / 2),
+        draw_constants(scene),
+    )  # fmt: skip
+    ends = (stop - first) * REPLICAS
+    return sums, gained / ends, (squared / ends) ** 0.5
