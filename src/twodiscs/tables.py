@@ -79,6 +79,66 @@ def _sampled(unit, quantity):
     )
 
 
+STABILITY = (
+    Column(
+        "part",
+        "",
+        "theory: relative errors against 50 digits; sampling: accepted share of the proposals; "
+        "estimates: conditioned Monte Carlo; times: errors of predicted times; dynamics: worst of "
+        "a run; reversal: reversed velocities, and the Lyapunov exponent; coverage: of 95 % "
+        "intervals",
+        str,
+    ),
+    Column(
+        "quantity",
+        "",
+        "what is measured. theory: of areas and mean_times the worst one. times: error in units of "
+        "2⁻⁵² × conditioning. dynamics: energy_error, the largest |E − 1/2|; smallest_gap, of "
+        "|Δx| − 2r, and excess, the largest of a centre beyond its range, both in units of the "
+        "largest power of two in the side of the box; lanes_lost, trajectories that ended up "
+        "infinite or stuck. reversal: exponent, per event; return_error, after count events and "
+        "back; events_retraced, until it is 2⁻²⁶. coverage: the event",
+        str,
+    ),
+    Column(
+        "method",
+        "",
+        "stable, or closed-form in plain doubles; conditioned draws, or rejection from the prism",
+        str,
+    ),
+    Column(
+        "case",
+        "",
+        "ordinary, tiny (1e-9 of the shorter side), or the limit nearby: h/4, w/4, largest radius. "
+        "times: how the discs approach. reversal: from the way out and back (return), or from a "
+        "small separation",
+        str,
+    ),
+    RADIUS,
+    Column("distance", "", "radius/limit − 1, for the limit that case names"),
+    Column("count", "", "samples, cases, events or repetitions behind the value", int),
+    Column("value", "see quantity", "what was seen; empty where nothing can be said"),
+    Column("exact", "see quantity", "what it should be, apart from random and rounding errors"),
+    Column("stderr", "see quantity", "standard error of the value"),
+    Z,
+    Column("low", "see quantity", "smallest value that passes"),
+    Column("high", "see quantity", "largest value that passes"),
+    Column(
+        "status",
+        "",
+        "estimates: as in areas.csv; coverage: counted, or too-few where intervals are not shown; "
+        "reversal: long where the path stays exact for more than 2000 events",
+        str,
+    ),
+    Column(
+        "passed",
+        "",
+        "whether low ≤ value ≤ high and |z| ≤ 5, as far as they are given; empty without any",
+        bool,
+    ),
+)
+
+
 TABLES = {
     "grid": Table(
         "One row a radius: what the scene computes.",
@@ -302,6 +362,15 @@ TABLES = {
             Column("unit", "", "unit of the value", str),
             Column("ratio", "", "how many times better than the baseline of the same run"),
         ),
+    ),
+    "stability": Table(
+        "One row a number that says how a method behaves where arithmetic has it hard, for the box "
+        "of the first scene.",
+        STABILITY,
+    ),
+    "long_runs": Table(
+        "As stability.csv, the rows on dynamics alone, from the longest runs.",
+        STABILITY,
     ),
     "errata": Table(
         "One row a displayed formula of arXiv:1908.04749, or a claim of its text: is it right?",
