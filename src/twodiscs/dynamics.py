@@ -44,8 +44,9 @@ LANES = 64
 PASSES = 8
 LOOKS = 31
 
-#: Wall and disc events that a replica is meant to last.
-EVENTS_PER_REPLICA = 192
+#: Wall and disc events that a replica is meant to last, and where a hop is rare.
+EVENTS_PER_REPLICA = 256
+EVENTS_BETWEEN_RARE_HOPS = 64
 
 #: Blocks of the first round, and how many times the work done so far a round may be: an error seen
 #: in few events predicts badly.
@@ -200,13 +201,18 @@ def nearest_power_of_two(value):
 
 
 def replica_duration(scene):
-    """Return the time T of one replica: some ``EVENTS_PER_REPLICA`` events, a power of two.
+    """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
-    Short enough that counts with heavy tails and the two-state wall counts near h/4 average over
-    many independent starts, long enough that drawing a start does not cost more than following it.
+    That is long enough for drawing a start to cost little. Where an open hop takes longer than T on
+    average, the discs keep their sides for most of a replica, and counts of wall hits have two
+    states: then more and shorter replicas know the mean better for the same number of events.
     """
     rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
-    return nearest_power_of_two(EVENTS_PER_REPLICA / rate)
+    duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
+    times = theory.mean_times(scene)
+    if any(scene.is_possible(hop) and times[hop] > duration for hop in HOPS):
+        return nearest_power_of_two(EVENTS_BETWEEN_RARE_HOPS / rate)
+    return duration
 
 
 def blocked_hops(scene):
@@ -278,7 +284,9 @@ def count_events(scene, target, budget, seed, report=None):
         np.zeros((6, 6), np.int64),
         np.zeros(6, np.int64),
     )
-    blocks = max(1, min(FIRST_ROUND, budget // (REPLICAS * EVENTS_PER_REPLICA)))
+    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    affordable = int(budget / (REPLICAS * rate * duration))
+    blocks = max(1, min(FIRST_ROUND, affordable))
     done, rounds = 0, 0
     while True:
         for total, part in zip(
