@@ -12,6 +12,7 @@ rule report:
         results=[
             rules.check.output,
             rules.paper.output,
+            rules.errata.output,
             [list(table_files(scene).values()) for scene in SCENES.values()],
             [list(figure_files(scene).values()) for scene in SCENES.values()],
         ],
