@@ -6,7 +6,7 @@ import sys
 from snakemake.utils import min_version
 
 from twodiscs.config import ConfigError, load, read
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.catalogue import FIGURES, SHARED
 from twodiscs.sources import imported
 from twodiscs.tables import TABLES
 
@@ -37,6 +37,7 @@ include: "workflow/rules/tables.smk"
 include: "workflow/rules/check.smk"
 include: "workflow/rules/errata.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/accuracy_cost.smk"
 include: "workflow/rules/manuscript.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/benchmark.smk"
@@ -46,4 +47,5 @@ rule all:
     input:
         rules.report.input.results,
         rules.errata.output,
+        rules.accuracy_cost.input,
         rules.report.output,
