@@ -38,6 +38,7 @@ include: "workflow/rules/check.smk"
 include: "workflow/rules/errata.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy_cost.smk"
+include: "workflow/rules/stability.smk"
 include: "workflow/rules/manuscript.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/benchmark.smk"
@@ -48,4 +49,5 @@ rule all:
         rules.report.input.results,
         rules.errata.output,
         rules.accuracy_cost.input,
+        rules.stability.input,
         rules.report.output,
