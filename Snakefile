@@ -31,6 +31,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/grid.smk"
 include: "workflow/rules/theory.smk"
 include: "workflow/rules/compile.smk"
+include: "workflow/rules/forecast.smk"
 include: "workflow/rules/monte_carlo.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/tables.smk"
@@ -47,7 +48,4 @@ include: "workflow/rules/benchmark.smk"
 rule all:
     input:
         rules.report.input.results,
-        rules.errata.output,
-        rules.accuracy_cost.input,
-        rules.stability.input,
         rules.report.output,

@@ -13,6 +13,8 @@ rule report:
             rules.check.output,
             rules.paper.output,
             rules.errata.output,
+            rules.accuracy_cost.input,
+            rules.stability.input,
             rules.stability.input,
             [list(table_files(scene).values()) for scene in SCENES.values()],
             [list(figure_files(scene).values()) for scene in SCENES.values()],
