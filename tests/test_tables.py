@@ -48,6 +48,7 @@ COST_ROW = {
     "events": 2**53 + 1,
     "seconds": 0.1 + 0.2,
     "forecast_seconds": None,
+    "ratio": None,
 }
 
 
@@ -60,8 +61,8 @@ def test_a_table_is_read_as_it_was_written(tmp_path):
 def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
     tables.write(tmp_path / "x.csv", "cost", [COST_ROW])
     assert (tmp_path / "x.csv").read_bytes() == (
-        b"stage,radius,events,seconds,forecast_seconds\n"
-        b"dynamics,1e-05,9007199254740993,0.30000000000000004,\n"
+        b"stage,radius,events,seconds,forecast_seconds,ratio\n"
+        b"dynamics,1e-05,9007199254740993,0.30000000000000004,,\n"
     )
     tables.write(tmp_path / "x.csv", "check", [CHECK_ROW])
     assert (tmp_path / "x.csv").read_text().splitlines()[1] == (
@@ -73,7 +74,7 @@ def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
 def test_numpy_scalars_are_written_as_plain_numbers(tmp_path):
     row = {**COST_ROW, "events": np.int64(7), "seconds": np.float64(0.1)}
     tables.write(tmp_path / "x.csv", "cost", [row])
-    assert (tmp_path / "x.csv").read_text().endswith("dynamics,1e-05,7,0.1,\n")
+    assert (tmp_path / "x.csv").read_text().endswith("dynamics,1e-05,7,0.1,,\n")
 
 
 @pytest.mark.parametrize(
@@ -95,7 +96,7 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
         tables.write(
             tmp_path / "x.csv",
             "cost",
-            [{k: COST_ROW[k] for k in ("stage", "radius", "events", "forecast_seconds")}],
+            [{k: COST_ROW[k] for k in COST_ROW if k != "seconds"}],
         )
     with pytest.raises(ValueError, match="table must be one of"):
         tables.write(tmp_path / "x.csv", "costs", [COST_ROW])
@@ -354,22 +355,49 @@ def test_rows_of_the_histogram(exact, laws):
 
 def test_cost_is_by_stage_and_radius(tmp_path, monkeypatch):
     cost = {"events": 5, "seconds": 0.5}
-    files = {
-        "monte_carlo-0.1": cost,
-        "dynamics-0.1": cost,
-        "dynamics-1e-05": {**cost, "forecast_seconds": 0.25},
-    }
-    paths = store(tmp_path / "cost", files)
-    out = tmp_path / "cost.csv"
-    status = command(
-        monkeypatch, cli_tables, "cost", "--scene", BOX, "--points", *paths, "--output", out
+    paths = store(
+        tmp_path, dict.fromkeys(("monte_carlo-0.1", "dynamics-0.1", "dynamics-1e-05"), cost)
     )
-    assert status == 0
+    (tmp_path / "a").mkdir()
+    out = tmp_path / "a" / "cost.csv"
+    arguments = ("cost", "--scene", BOX, "--points", *paths, "--output", out)
+    assert command(monkeypatch, cli_tables, *arguments) == 0
     assert out.read_text() == (
-        "stage,radius,events,seconds,forecast_seconds\n"
-        "dynamics,1e-05,5,0.5,0.25\n"
-        "dynamics,0.1,5,0.5,\n"
-        "monte_carlo,0.1,5,0.5,\n"
+        "stage,radius,events,seconds,forecast_seconds,ratio\n"
+        "dynamics,1e-05,5,0.5,,\n"
+        "dynamics,0.1,5,0.5,,\n"
+        "monte_carlo,0.1,5,0.5,,\n"
+    )
+
+
+def test_cost_is_set_against_the_forecast_of_its_scene(tmp_path, monkeypatch):
+    cost = {"events": 5, "seconds": 0.5}
+    paths = store(
+        tmp_path, dict.fromkeys(("monte_carlo-0.1", "dynamics-0.1", "dynamics-0.2"), cost)
+    )
+    blank = {"jobs": 1, "events": 5, "startup": 1.0, "cores": 2, "wall_clock": 1.0}
+    forecasts = [
+        {"scene": scene, "stage": stage, "radius": radius, "seconds": seconds, **blank}
+        for scene, stage, radius, seconds in (
+            ("b", "dynamics", 0.1, 7.0),
+            ("a", "dynamics", 0.1, 0.25),
+            ("a", "monte_carlo", 0.1, 1.0),
+            ("a", "dynamics", None, 0.25),
+            ("a", "total", None, 1.25),
+        )
+    ]
+    tables.write(tmp_path / "forecast.csv", "forecast", forecasts)
+    (tmp_path / "a").mkdir()
+    out = tmp_path / "a" / "cost.csv"
+    arguments = ("cost", "--scene", BOX, "--points", *paths, "--output", out)
+    forecast = ("--forecast", tmp_path / "forecast.csv")
+    assert command(monkeypatch, cli_tables, *arguments, *forecast) == 0
+    assert out.read_text() == (
+        "stage,radius,events,seconds,forecast_seconds,ratio\n"
+        "dynamics,0.1,5,0.5,0.25,2.0\n"
+        "dynamics,0.2,5,0.5,,\n"
+        "monte_carlo,0.1,5,0.5,1.0,0.5\n"
+        "total,,10,1.0,1.25,0.8\n"
     )
 
 

@@ -337,7 +337,8 @@ def series(scale=1.0):
     add("time", "single_precision", by_single_precision, doubling(1, 128 * scale))
     add("time", "scalar", by_scalar, doubling(1 << 8, (1 << 13) * scale))
     for step, most in STEPS.items():
-        if most * scale >= 2:
+        # The coarse ones always: they show the law.
+        if most * scale >= 2 or step > 2.0**-8:
             run, blocks = partial(by_steps, step), doubling(1, most * scale)
             add("time", "time_step", run, blocks, setting=lambda _, step=step: step)
     return found

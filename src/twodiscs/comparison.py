@@ -231,18 +231,35 @@ def histogram_rows(exact, points):
     return rows
 
 
-def cost_rows(points):
-    """Return the rows of cost.csv from pairs (stage, radius, point), by stage and radius."""
-    return [
-        {
-            "stage": stage,
-            "radius": radius,
-            "events": point["events"],
-            "seconds": point["seconds"],
-            "forecast_seconds": point.get("forecast_seconds"),
-        }
+def cost_rows(points, forecast=None):
+    """Return the rows of cost.csv from pairs (stage, radius, point), by stage and radius.
+
+    ``forecast`` is {(stage, radius): seconds}, as far as there was one. The last row is the total
+    of what was forecast, if anything was.
+    """
+    forecast = forecast or {}
+    rows = [
+        _cost_row(stage, radius, point["events"], point["seconds"], forecast.get((stage, radius)))
         for stage, radius, point in sorted(points, key=lambda item: item[:2])
     ]
+    known = [row for row in rows if row["forecast_seconds"]]
+    if known:
+        sums = (
+            sum(row[name] for row in known) for name in ("events", "seconds", "forecast_seconds")
+        )
+        rows.append(_cost_row("total", None, *sums))
+    return rows
+
+
+def _cost_row(stage, radius, events, seconds, forecast):
+    return {
+        "stage": stage,
+        "radius": radius,
+        "events": events,
+        "seconds": seconds,
+        "forecast_seconds": forecast,
+        "ratio": seconds / forecast if forecast else None,
+    }
 
 
 # Check ----------------------------------------------------------------------------------------

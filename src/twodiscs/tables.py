@@ -264,11 +264,21 @@ TABLES = {
     "cost": Table(
         "One row a job: what it took. The only table of a scene that differs from run to run.",
         (
-            Column("stage", "", "monte_carlo, dynamics or intervals", str),
+            Column(
+                "stage",
+                "",
+                "monte_carlo, dynamics or intervals; total of the jobs that were forecast",
+                str,
+            ),
             RADIUS,
-            Column("events", "", "events simulated, or configurations drawn", int),
-            Column("seconds", "s", "processor time of the work itself, without start-up"),
+            Column("events", "", "events simulated, configurations or intervals drawn", int),
+            Column(
+                "seconds",
+                "s",
+                "processor time of the work itself: compiled code is loaded, Python has started",
+            ),
             Column("forecast_seconds", "s", "the same, forecast before the run; empty without one"),
+            Column("ratio", "", "seconds/forecast_seconds"),
         ),
     ),
     "accuracy_cost": Table(
@@ -347,8 +357,8 @@ TABLES = {
             Column("radius", "length", "radius of one job; empty for the sum over a stage"),
             Column("jobs", "", "number of jobs", int),
             Column("events", "", "wall and disc events, samples, or intervals", int),
-            Column("seconds", "s", "processor time of the work itself, without start-up"),
-            Column("startup", "s", "processor time to start the jobs and to schedule them"),
+            Column("seconds", "s", "processor time of the work itself, compiled code loaded"),
+            Column("startup", "s", "time to start the jobs, and of those that only start"),
             Column("cores", "", "cores to share the work", int),
             Column("wall_clock", "s", "(seconds + startup)/cores"),
         ),

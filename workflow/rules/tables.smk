@@ -1,10 +1,17 @@
 # What the jobs of a scene found, gathered into tables and set against the exact values.
 
 
+def forecast_file(table):
+    """Return the forecast, if there is one and the table is about costs."""
+    path = f"{RESULTS}/forecast.csv"
+    return [path] if table == "cost" and os.path.exists(path) else []
+
+
 rule table:
     input:
         theory=f"{RESULTS}/{{scene}}/theory.csv",
         points=lambda w: table_points(SCENES[w.scene], w.table),
+        forecast=lambda w: forecast_file(w.table),
         code=code("cli.tables"),
     output:
         table=report(
@@ -25,7 +32,10 @@ rule table:
         table="volume|areas|mean_times|hop_histogram|cost",
     params:
         scene=lambda w: table_parameters(SCENES[w.scene]),
+        forecast=lambda w, input: (
+            f"--forecast {input.forecast}" if input.forecast else ""
+        ),
     shell:
         "python -m twodiscs.cli.tables {wildcards.table} --scene {params.scene:q}"
-        " --theory {input.theory:q} --points {input.points:q}"
+        " --theory {input.theory:q} --points {input.points:q} {params.forecast}"
         " --output {output.table:q} > {log:q} 2>&1"

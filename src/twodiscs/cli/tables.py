@@ -66,10 +66,16 @@ def _points(name, paths):
     return points
 
 
-def _rows(name, box, exact, points):
+def _forecast(path, scene):
+    """Return {(stage, radius): seconds} of a scene from the forecast at ``path``, if any."""
+    rows = tables.read(path, "forecast") if path else []
+    return {(row["stage"], row["radius"]): row["seconds"] for row in rows if row["scene"] == scene}
+
+
+def _rows(name, box, exact, points, forecast):
     """Return the rows of the table ``name``."""
     if name == "cost":
-        return comparison.cost_rows(points["cost"])
+        return comparison.cost_rows(points["cost"], forecast)
     radius = next(point["radius"] for kind in TAKES[name] for point in points[kind])
     scene = Scene(box["width"], box["height"], radius)
     watched = box.get("areas", EVENTS)
@@ -91,6 +97,7 @@ def main():
     parser.add_argument("--scene", required=True, help="dict with width and height; areas (events)")
     parser.add_argument("--theory", help="theory.csv of the scene, needed by all tables but cost")
     parser.add_argument("--points", nargs="+", required=True, metavar="JSON")
+    parser.add_argument("--forecast", help="forecast.csv, if there is one, for cost.csv")
     parser.add_argument("--output", required=True, metavar="CSV")
     options = parser.parse_args()
 
@@ -99,8 +106,9 @@ def main():
         raise ValueError(f"{options.name}.csv needs --theory")
     theory = tables.read(options.theory, "theory") if options.theory else []
     points = _points(options.name, options.points)
+    forecast = _forecast(options.forecast, Path(options.output).resolve().parent.name)
     try:
-        rows = _rows(options.name, box, comparison.exact_values(theory), points)
+        rows = _rows(options.name, box, comparison.exact_values(theory), points, forecast)
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"scene or points do not fit {options.name}.csv: {error!r}") from None
     tables.write(options.output, options.name, rows)

@@ -114,7 +114,7 @@ def _slope(row):
     """Return the fitted slope of a row as text, its error in units of the last digit."""
     if row["slope_stderr"] is None:
         return ""
-    return f"$-{abs(row['slope']):.2f}({max(1, round(100 * row['slope_stderr']))})$"
+    return f"${row['slope']:.2f}({max(1, round(100 * row['slope_stderr']))})$"
 
 
 def _points(axes, rows, method, label=None, shade=1.0, style="-", full=False):

@@ -1,0 +1,291 @@
+"""What a configuration is going to take, before it is paid for.
+
+The events that a mean time takes follow from its rate, which is known exactly, and from how evenly
+or in what clusters they come, which a pilot at each radius says. The pilots also say how fast this
+machine is, with as many of them at once as there will be jobs. What a job takes besides, to start
+Python, to load compiled code, to draw a figure, is seen by running one job of each kind.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from statistics import fmean
+from typing import NamedTuple
+
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.scene import Scene
+
+STAGES = ("monte_carlo", "dynamics", "intervals")
+
+#: Random numbers of the pilots, other than those of the jobs.
+SEED = 5
+
+#: Blocks of a pilot: of replicas as in the first round of a job, of samples.
+SAMPLE_BLOCKS = 8
+
+#: Fewer counts than this say nothing about clusters; then as many events count as one. For hops
+#: below their thresholds pilots find between 1.4 and 2.2.
+FEWEST, CLUSTER = 1000, 2.0
+
+#: A job asks for this much more than it seems to need, so that it need not come back for a little.
+MARGIN = 1.05
+
+#: One job of each kind, at a radius of the paper's box: small, for its start is what counts.
+SAMPLE = {"width": 1.5, "height": 1.0, "radius": 0.2, "seed": SEED}
+SAMPLES = {
+    "monte_carlo": SAMPLE | {"areas": ["top_wall"], "samples": 1, "shell": 0.02, "volume": True},
+    "dynamics": SAMPLE | {"accuracy": {"vertical_hop": 0.5}, "event_budget": 1},
+    "intervals": SAMPLE | {"event": "vertical_hop", "intervals": 1},
+}
+MODULES = {"monte_carlo": "montecarlo"}
+
+#: Times each sample job runs, after a first one that may find its code not compiled.
+TRIALS = 2
+
+
+class Pilot(NamedTuple):
+    """What one job will take: its events (samples, intervals), and seconds for each million."""
+
+    events: int
+    seconds_per_million: float
+
+
+class Start(NamedTuple):
+    """What a job takes besides its events: seconds to load code, seconds before and after."""
+
+    loading: float
+    startup: float
+
+
+# Pilots -----------------------------------------------------------------------------------------
+
+
+def _timed(work, units):
+    """Return (result, processor seconds per million units) of ``work()``, once it is compiled."""
+    start = time.process_time()
+    result = work()
+    return result, 1e6 * (time.process_time() - start) / units(result)
+
+
+def pilot_monte_carlo(job):
+    """Return the ``Pilot`` of a job of Monte Carlo, given its parameters."""
+    from twodiscs import montecarlo
+
+    scene = Scene(job["width"], job["height"], job["radius"])
+    quantities = ["volume"] * job["volume"] + [f"{event}_area" for event in job["areas"]]
+
+    def sample(samples):
+        return montecarlo.sample_point(scene, quantities, samples, job["shell"] or 0.5, SEED)
+
+    sample(1)
+    blocks = -(-job["samples"] // montecarlo.BLOCK)
+    done = min(blocks, SAMPLE_BLOCKS) * montecarlo.BLOCK
+    _, cost = _timed(lambda: sample(done), lambda point: point["samples"])
+    return Pilot(blocks * montecarlo.BLOCK, cost)
+
+
+def pilot_intervals(job):
+    """Return the ``Pilot`` of a job of hop intervals, given its parameters."""
+    from twodiscs import dynamics
+
+    scene = Scene(job["width"], job["height"], job["radius"])
+    block = dynamics.CHAINS * dynamics.RETURNS
+
+    def record():
+        return dynamics.hop_intervals(scene, job["event"], 1, SEED)
+
+    record()
+    _, cost = _timed(record, lambda point: point["intervals"])
+    return Pilot(-(-job["intervals"] // block) * block, cost)
+
+
+def pilot_dynamics(job):
+    """Return the ``Pilot`` of a job of molecular dynamics, given its parameters."""
+    from twodiscs import dynamics
+
+    scene = Scene(job["width"], job["height"], job["radius"])
+    duration = dynamics.replica_duration(scene)
+
+    def count(blocks):
+        return dynamics.run_blocks(scene, tuple(job["accuracy"]), SEED, 0, blocks, duration)
+
+    def events(counted):
+        return int(counted[0][dynamics.COLLISIONS] + counted[0][dynamics.ANY_WALLS])
+
+    count(1)
+    counted, cost = _timed(lambda: count(dynamics.FIRST_ROUND), events)
+    return Pilot(events_of_job(scene, job, counted, events(counted)), cost)
+
+
+def events_of_job(scene, job, counted, done):
+    """Return the wall and disc events that a job of molecular dynamics will simulate.
+
+    ``counted`` are (sums, products, eligible) of a pilot of ``done`` events. A relative error ε
+    takes f/ε² events of its kind, with f measured by the pilot where it saw enough of them.
+    """
+    from twodiscs import dynamics, theory
+    from twodiscs.scene import EVENTS
+
+    errors = dynamics.relative_errors(*counted)
+    total = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    needed = 0.0
+    for event, error in job["accuracy"].items():
+        if not scene.is_possible(event):
+            continue
+        i = EVENTS.index(event)
+        if counted[0][i] >= FEWEST:
+            alone = done * float(errors[i]) ** 2
+        else:
+            alone = CLUSTER * total / theory.rate(scene, event)
+        needed = max(needed, alone / error**2)
+    usual = dynamics.REPLICAS * dynamics.EVENTS_PER_REPLICA
+    blocks = max(1, min(dynamics.FIRST_ROUND, job["event_budget"] // usual))
+    first = blocks * dynamics.REPLICAS * dynamics.replica_duration(scene) * total
+    if needed > first:
+        needed *= MARGIN
+    return round(max(first, min(needed, job["event_budget"])))
+
+
+PILOTS = {
+    "monte_carlo": pilot_monte_carlo,
+    "dynamics": pilot_dynamics,
+    "intervals": pilot_intervals,
+}
+
+
+def _run_pilot(stage_and_job):
+    stage, job = stage_and_job
+    return PILOTS[stage](job)
+
+
+def run_pilots(jobs, cores):
+    """Return the ``Pilot`` of each of ``jobs``, pairs (stage, parameters), ``cores`` at a time."""
+    with ProcessPoolExecutor(cores, mp_context=get_context("spawn")) as pool:
+        return list(pool.map(_run_pilot, jobs))
+
+
+# Starts -----------------------------------------------------------------------------------------
+
+
+def _run_sample(kind):
+    """Run one small job of a ``kind`` in a process of its own and return its ``Start``."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        cost = place / f"{kind}-0.2.json"
+        command = [sys.executable, "-m"]
+        if kind in SAMPLES:
+            command += [f"twodiscs.cli.{MODULES.get(kind, kind)}"]
+            command += ["--parameters", repr(SAMPLES[kind])]
+            command += ["--output", place / "point.json", "--cost", cost]
+        elif kind == "tables":
+            point = place / "dynamics-0.2.json"
+            point.write_text('{"events": 1, "seconds": 1.0}')
+            command += ["twodiscs.cli.tables", "cost", "--scene", "{}", "--points", point]
+            command += ["--output", place / "cost.csv"]
+        else:
+            command += ["twodiscs.cli.figure", "model", "--scene", repr(SAMPLE)]
+            command += ["--output", place / "model.pdf", place / "model.png"]
+        start = time.perf_counter()
+        subprocess.run(command, check=True, env=os.environ, stdout=subprocess.DEVNULL)
+        seconds = time.perf_counter() - start
+        loading = json.loads(cost.read_text())["seconds"] if cost.exists() else 0.0
+    return Start(loading, max(0.0, seconds - loading))
+
+
+def run_samples(kinds, cores):
+    """Return {kind: Start} of stages, ``tables`` and ``figures``, ``cores`` jobs at a time."""
+    with ThreadPoolExecutor(cores) as pool:
+        list(pool.map(_run_sample, kinds))
+        found = list(pool.map(_run_sample, [*kinds] * TRIALS))
+    trials = {kind: found[i :: len(kinds)] for i, kind in enumerate(kinds)}
+    return {kind: Start(*map(fmean, zip(*starts, strict=True))) for kind, starts in trials.items()}
+
+
+# The forecast -----------------------------------------------------------------------------------
+
+
+def jobs_of(request):
+    """Return the jobs of a ``SceneRequest``: pairs (stage, parameters)."""
+    return [
+        (stage, getattr(request, f"{stage}_parameters")(key))
+        for stage in STAGES
+        for key in getattr(request, f"{stage}_keys")
+    ]
+
+
+def tables_of(request):
+    """Return the number of tables of a scene, with the trajectory, which takes as long as one."""
+    watch = request.watch
+    measured = (watch.volume, watch.areas, watch.mean_times, watch.hop_histogram)
+    jobs = bool(jobs_of(request))
+    return 2 + sum(map(bool, measured)) + 2 * jobs + (watch.trajectory is not None)
+
+
+def row(scene, stage, cores, jobs, events=None, seconds=0.0, startup=0.0, radius=None):
+    """Return a row of forecast.csv."""
+    return {
+        "scene": scene,
+        "stage": stage,
+        "radius": radius,
+        "jobs": jobs,
+        "events": events,
+        "seconds": seconds,
+        "startup": startup,
+        "cores": cores,
+        "wall_clock": (seconds + startup) / min(cores, jobs),
+    }
+
+
+def summed(scene, stage, cores, rows):
+    """Return the row that is the sum of ``rows``."""
+    events = [one["events"] for one in rows if one["events"] is not None]
+    return row(
+        scene, stage, cores, sum(one["jobs"] for one in rows),
+        sum(events) if events else None,
+        sum(one["seconds"] for one in rows), sum(one["startup"] for one in rows),
+    )  # fmt: skip
+
+
+def scene_rows(request, pilots, starts, cores):
+    """Return the rows of one scene: every job, its stages and their total."""
+    jobs, sums = [], []
+    for (stage, job), pilot in zip(jobs_of(request), pilots, strict=True):
+        seconds = starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
+        startup = starts[stage].startup
+        one = row(request.name, stage, cores, 1, pilot.events, seconds, startup, job["radius"])
+        jobs.append(one)
+    for stage in STAGES:
+        found = [one for one in jobs if one["stage"] == stage]
+        if found:
+            sums.append(summed(request.name, stage, cores, found))
+    figures = sum(figure.is_called(request.watch.quantities) for figure in FIGURES.values())
+    for kind, count in (("tables", tables_of(request)), ("figures", figures)):
+        sums.append(row(request.name, kind, cores, count, startup=count * sum(starts[kind])))
+    return [*jobs, *sums, summed(request.name, "total", cores, sums)]
+
+
+def rows(configuration, cores):
+    """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` cores.
+
+    What is made once for all scenes, beside the comparison of what accuracy costs, takes some ten
+    seconds more and has no row.
+    """
+    requests = configuration.scenes
+    jobs = [jobs_of(request) for request in requests]
+    kinds = [s for s in STAGES if any(s == stage for one in jobs for stage, _ in one)]
+    starts = run_samples([*kinds, "tables", "figures"], cores)
+    pilots = iter(run_pilots([job for one in jobs for job in one], cores))
+    found, totals = [], []
+    for request, one in zip(requests, jobs, strict=True):
+        found += scene_rows(request, [next(pilots) for _ in one], starts, cores)
+        totals.append(found[-1])
+    shared = row("all", "accuracy_cost", cores, 1, seconds=configuration.accuracy_cost_seconds)
+    total = summed("all", "total", cores, [*totals, shared])
+    # Jobs of all scenes share the cores.
+    return [*found, shared, total]
