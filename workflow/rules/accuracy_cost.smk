@@ -59,7 +59,9 @@ rule accuracy_cost_figure:
         " > {log:q} 2>&1"
 
 
-rule accuracy_cost:
+rule:
+    name:
+        "accuracy_cost"
     input:
         f"{RESULTS}/accuracy_cost.csv",
         expand(

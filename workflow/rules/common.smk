@@ -70,6 +70,12 @@ def table_points(scene, table):
     return cost_files(scene) if table == "cost" else point_files(scene, *takes[table])
 
 
+def forecast_file(table):
+    """Return the forecast, if there is one and the table is about costs."""
+    path = f"{RESULTS}/forecast.csv"
+    return [path] if table == "cost" and os.path.exists(path) else []
+
+
 def table_parameters(scene):
     """Return what the tables of a scene need beside the files that they read."""
     return {

@@ -12,6 +12,8 @@ rule forecast:
         ),
     log:
         f"{RESULTS}/logs/forecast.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/forecast.tsv"
     threads: 64  # all that there are
     params:
         configuration=json.dumps(config, sort_keys=True),

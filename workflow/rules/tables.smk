@@ -1,12 +1,6 @@
 # What the jobs of a scene found, gathered into tables and set against the exact values.
 
 
-def forecast_file(table):
-    """Return the forecast, if there is one and the table is about costs."""
-    path = f"{RESULTS}/forecast.csv"
-    return [path] if table == "cost" and os.path.exists(path) else []
-
-
 rule table:
     input:
         theory=f"{RESULTS}/{{scene}}/theory.csv",
