@@ -277,7 +277,8 @@ def _reversal(axes, rows):
     axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlabel(r"binary digits lost to $n$ events, $n\lambda/\ln 2$")
     axes.set_ylabel("error of return")
-    axes.legend(loc="lower right", **SMALL | {"handletextpad": 0.1})
+    if radii:
+        axes.legend(loc="lower right", **SMALL | {"handletextpad": 0.1})
 
 
 def _coverage(axes, rows):
@@ -300,7 +301,9 @@ def _coverage(axes, rows):
         axes.axhline(row["low"], **BOUND)
         axes.axhline(row["high"], **BOUND)
     axes.axhline(0.95, color=GREY, lw=0.5, zorder=0)
-    axes.set(xlim=(-0.5, len(radii) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals")
+    axes.set(
+        xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
+    )
     axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
     axes.set_xticklabels([f"$r={radius:g}$" for radius in radii])
     axes.tick_params(axis="x", length=0)
