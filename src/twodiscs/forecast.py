@@ -48,6 +48,12 @@ MODULES = {"monte_carlo": "montecarlo"}
 #: Times each sample job runs, after a first one that may find its code not compiled.
 TRIALS = 2
 
+#: Seconds of what is made once, whatever the configuration; round figures.
+ONCE = {"compile": 12.0, "errata": 3.0, "stability": 30.0, "documents": 3.0}
+
+#: Seconds in which the comparison of what accuracy costs compiles what only it needs.
+COMPARISON = 10.0
+
 
 class Pilot(NamedTuple):
     """What one job will take: its events (samples, intervals), and seconds for each million."""
@@ -271,21 +277,17 @@ def scene_rows(request, pilots, starts, cores):
 
 
 def rows(configuration, cores):
-    """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` cores.
-
-    What is made once for all scenes, beside the comparison of what accuracy costs, takes some ten
-    seconds more and has no row.
-    """
+    """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` cores."""
     requests = configuration.scenes
     jobs = [jobs_of(request) for request in requests]
-    kinds = [s for s in STAGES if any(s == stage for one in jobs for stage, _ in one)]
+    kinds = [stage for stage in STAGES if any(stage == s for one in jobs for s, _ in one)]
     starts = run_samples([*kinds, "tables", "figures"], cores)
     pilots = iter(run_pilots([job for one in jobs for job in one], cores))
-    found, totals = [], []
+    found, sums = [], []
     for request, one in zip(requests, jobs, strict=True):
         found += scene_rows(request, [next(pilots) for _ in one], starts, cores)
-        totals.append(found[-1])
-    shared = row("all", "accuracy_cost", cores, 1, seconds=configuration.accuracy_cost_seconds)
-    total = summed("all", "total", cores, [*totals, shared])
-    # Jobs of all scenes share the cores.
-    return [*found, shared, total]
+        sums.append(found[-1])
+    seconds = configuration.accuracy_cost_seconds
+    shared = [row("all", "accuracy_cost", cores, 1, seconds=seconds, startup=COMPARISON)]
+    shared += [row("all", stage, cores, 1, startup=once) for stage, once in ONCE.items()]
+    return [*found, *shared, summed("all", "total", cores, [*sums, *shared])]

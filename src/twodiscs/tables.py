@@ -350,8 +350,8 @@ TABLES = {
             Column(
                 "stage",
                 "",
-                "monte_carlo, dynamics, intervals; tables, figures, documents (start-up and work "
-                "of their jobs); total",
+                "monte_carlo, dynamics, intervals, tables, figures; accuracy_cost and, as round "
+                "figures, compile, errata, stability, documents; total",
                 str,
             ),
             Column("radius", "length", "radius of one job; empty for the sum over a stage"),
@@ -360,7 +360,7 @@ TABLES = {
             Column("seconds", "s", "processor time of the work itself, compiled code loaded"),
             Column("startup", "s", "time to start the jobs, and of those that only start"),
             Column("cores", "", "cores to share the work", int),
-            Column("wall_clock", "s", "(seconds + startup)/cores"),
+            Column("wall_clock", "s", "(seconds + startup)/cores, or over the jobs if fewer"),
         ),
     ),
     "benchmark": Table(

@@ -4,7 +4,9 @@
 import json
 
 
-rule forecast:
+rule:
+    name:
+        "forecast"
     input:
         code=code("cli.forecast"),
         compiled=expand(
@@ -12,8 +14,6 @@ rule forecast:
         ),
     log:
         f"{RESULTS}/logs/forecast.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/forecast.tsv"
     threads: 64  # all that there are
     params:
         configuration=json.dumps(config, sort_keys=True),
