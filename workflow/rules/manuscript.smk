@@ -9,6 +9,11 @@ rule paper:
         tables=[
             path for scene in SCENES.values() for path in table_files(scene).values()
         ],
+        shared=[
+            rules.errata.output,
+            rules.accuracy_cost.input,
+            rules.stability.input,
+        ],
         code=code("cli.manuscript"),
     output:
         pdf=report(

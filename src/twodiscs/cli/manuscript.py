@@ -4,7 +4,7 @@ import json
 import os
 
 from twodiscs.cli import arguments
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.catalogue import FIGURES, SHARED
 
 
 def typeset(template, output, contents):
@@ -21,7 +21,7 @@ def typeset(template, output, contents):
     results = os.path.abspath(contents["results"])
     root = os.path.commonpath([results, os.path.dirname(os.path.abspath(template))])
     place = "/" + os.path.relpath(results, root).replace(os.sep, "/")
-    captions = {name: entry.caption for name, entry in FIGURES.items()}
+    captions = {name: entry.caption for name, entry in (FIGURES | SHARED).items()}
     contents = {**contents, "captions": captions, "results": place}
     try:
         typst.compile(
