@@ -1,0 +1,296 @@
+"""The examples in the pages for people: every command, configuration and number in them is tried.
+
+A page shows commands in indented blocks, or after ``$`` in console blocks, where what they print
+follows; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.
+"""
+
+import argparse
+import csv
+import math
+import re
+import shlex
+import subprocess
+import sys
+from collections import Counter
+from functools import cache
+
+import pytest
+import yaml
+from workflow.checkout import REPOSITORY, fresh
+
+import twodiscs
+from twodiscs import config, tables
+from twodiscs.cli import check, dynamics, main, montecarlo, theory
+from twodiscs.cli import tables as table
+
+PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
+
+FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+INDENTED = re.compile(r"(?:(?<=\n\n) {4}.+\n(?:(?: {4}.+)?\n)*)")
+
+
+@cache
+def page(name):
+    """Return the text of a page."""
+    return (REPOSITORY / name).read_text(encoding="utf-8")
+
+
+@cache
+def blocks(name):
+    """Return the (language, text) of every block of a page; indented ones are yaml or shell."""
+    text = page(name)
+    found = [(language, body) for language, body in FENCED.findall(text)]
+    for body in INDENTED.findall(FENCED.sub("", text)):
+        body = re.sub(r"^ {4}", "", body, flags=re.MULTILINE)
+        found.append(("yaml" if body.startswith("- name:") else "shell", body))
+    return found
+
+
+def examples(name):
+    """Return [(words of a command, what the page says that it prints)]."""
+    found = []
+    for language, body in blocks(name):
+        if language == "console":
+            for part in re.split(r"^\$ ", body, flags=re.MULTILINE)[1:]:
+                command, _, printed = part.partition("\n")
+                found.append((shlex.split(command, comments=True), printed))
+        elif language == "shell":
+            found += [(shlex.split(line, comments=True), "") for line in body.splitlines()]
+    return [(words, printed) for words, printed in found if words]
+
+
+def commands(program):
+    """Return the different commands of a program in all pages, as text, with what they print."""
+    found = {}
+    for name in NAMES:
+        for words, printed in examples(name):
+            if words[0] == program:
+                found.setdefault(shlex.join(words), []).append(printed)
+    return found
+
+
+def scenes(name):
+    """Return the scenes in the blocks of YAML of a page."""
+    return [
+        scene for kind, body in blocks(name) if kind == "yaml" for scene in yaml.safe_load(body)
+    ]
+
+
+def with_examples(path):
+    """Return the configuration at ``path`` with the scenes of all pages."""
+    mapping = config.read(path)
+    mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
+    return mapping
+
+
+DEFAULT = REPOSITORY / "config" / "config.yaml"
+
+
+def same(shown, found):
+    """Say whether two texts are equal, numbers up to a few roundings.
+
+    The exact theory is right to 1e-13 on any machine, but its last digits depend on the math
+    library.
+    """
+    shown, found = shown.split(), found.split()
+    return len(shown) == len(found) and all(map(same_word, shown, found))
+
+
+def same_word(shown, found):
+    try:
+        return math.isclose(float(shown), float(found), rel_tol=1e-13)
+    except ValueError:
+        return shown == found
+
+
+# Pages ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_block_is_of_a_kind_that_is_tried(name):
+    assert {kind for kind, _ in blocks(name)} <= {"yaml", "console", "shell", "math", "text"}
+    assert {words[0] for words, _ in examples(name)} <= {"twodiscs", "snakemake", "make"}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_lead_somewhere(name):
+    folder = (REPOSITORY / name).parent
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", FENCED.sub("", page(name))):
+        if not target.startswith("https://"):
+            assert (folder / target).exists(), target
+
+
+def test_citation_agrees_with_the_package():
+    citation = yaml.safe_load((REPOSITORY / "CITATION.cff").read_text(encoding="utf-8"))
+    package = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
+    assert f'version = "{citation["version"]}"' in package
+    assert f'license = "{citation["license"]}"' in package
+    assert f"{citation['license']} License" in (REPOSITORY / "LICENSE").read_text(encoding="utf-8")
+    assert twodiscs.__name__ == citation["title"].partition(":")[0]
+
+
+# Commands ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", commands("twodiscs"))
+def test_exact_numbers_are_those_of_the_page(command, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", shlex.split(command))
+    with pytest.raises(SystemExit) as caught:
+        main.main()
+    assert caught.value.code in (None, 0)
+    found = capsys.readouterr().out
+    for printed in commands("twodiscs")[command]:
+        assert printed == "" or same(printed, found), found
+
+
+@pytest.mark.parametrize("name", ["docs/physics.md", "docs/reading-check.md"])
+def test_numbers_in_the_text_are_those_of_the_examples(name):
+    tables_shown = re.compile(r"^\|.*\n", re.MULTILINE)
+    shown = " ".join([*(body for _, body in blocks(name)), *tables_shown.findall(page(name))])
+    known = re.findall(r"\d+\.\d+(?:e-?\d+)?", shown)
+    prose = tables_shown.sub("", FENCED.sub("", page(name)))
+    written = re.findall(r"\d+\.\d+", re.sub(r"\]\([^)]*\)|arXiv:[\d.]+", "", prose))
+    assert len(written) > 3
+    for number in written:
+        digits = len(number.partition(".")[2])
+        assert any(f"{float(x):.{digits}f}" == number for x in known), number
+
+
+@pytest.mark.parametrize("command", commands("make"))
+def test_make_knows_what_to_do(command):
+    make, *words = shlex.split(command)
+    run = subprocess.run(
+        [make, "--dry-run", *words], cwd=REPOSITORY, capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stderr
+
+
+def targets():
+    """Return {options that matter: targets} of all snakemake commands; without any, it is all."""
+    found = {}
+    for command in commands("snakemake"):
+        options = argparse.ArgumentParser(exit_on_error=False)
+        options.add_argument("--cores")
+        options.add_argument("--dry-run", action="store_true")
+        options.add_argument("--configfile")
+        options.add_argument("targets", nargs="*")
+        given = options.parse_args(shlex.split(command)[1:])
+        chosen = ("--configfile", given.configfile) if given.configfile else ()
+        found.setdefault(chosen, set()).update(given.targets or ["all"])
+    return found
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory):
+    """A checkout whose configuration has the scenes of all pages."""
+    checkout = fresh(tmp_path_factory.mktemp("examples") / "checkout")
+    mapping = with_examples(checkout.configuration)
+    checkout.configuration.write_text(yaml.safe_dump(mapping))
+    return checkout
+
+
+@pytest.fixture(scope="module")
+def dry(checkout):
+    """What dry runs of all snakemake commands say, by their options; a dry run takes seconds."""
+    return {
+        options: checkout.snakemake("--dry-run", *options, "--", *sorted(names)).stdout
+        for options, names in targets().items()
+    }
+
+
+def test_snakemake_knows_every_target(dry):
+    assert set(dry) == {(), ("--configfile", "config/draft.yaml")}
+    assert {"volume", "check", "all"} <= targets()[()]
+    assert all("Job stats:" in said for said in dry.values())
+
+
+# Configurations -----------------------------------------------------------------------------------
+
+
+def test_scenes_are_understood():
+    names = [scene["name"] for name in NAMES for scene in scenes(name)]
+    assert {"square", "double", "corridor", "look"} <= set(names)
+    assert [scene.name for scene in config.load(with_examples(DEFAULT)).scenes][-len(names) :] == (
+        names
+    )
+
+
+@pytest.mark.parametrize("scene", ["double", "corridor"])
+def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, dry):
+    rules, files = Counter(), set()
+    for job in re.split(r"^(?:local)?rule ", dry[()], flags=re.MULTILINE)[1:]:
+        if re.search(rf"^    wildcards: scene={scene}\b", job, re.MULTILINE):
+            rules[job.partition(":")[0]] += 1
+            files |= set(re.findall(rf"results/{scene}/\w+\.csv", re.search("output: .+", job)[0]))
+    said = Counter()
+    text = page("docs/add-a-box.md")
+    (rows,) = re.findall(rf"\| jobs in `{scene}` \|.*\n\|---.*\n((?:\|.*\n)+)", text)
+    for row in rows.splitlines():
+        names, number, _ = row.strip("|").split("|")
+        said.update({rule: int(number.split()[0]) for rule in re.findall(r"`(\w+)`", names)})
+    assert said == rules
+    listed = re.findall(rf"^results/{scene}/.+\.csv$", text, re.MULTILINE)
+    assert len(listed) == len(set(listed))
+    assert set(listed) == files
+
+
+# The check ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def checked(tmp_path_factory):
+    """Run the jobs of the scene ``look``; return the path of its check.csv."""
+    folder = tmp_path_factory.mktemp("look")
+    scene = config.load(with_examples(DEFAULT)).scene("look")
+
+    def job(module, output, *words):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sys, "argv", ["", *words, "--output", str(folder / output)])
+            assert not module.main()
+        return str(folder / output)
+
+    points = [
+        job(module, f"{module.__name__}-{key}.json", "--parameters", repr(parameters(key)))
+        for module, parameters in (
+            (montecarlo, scene.monte_carlo_parameters),
+            (dynamics, scene.dynamics_parameters),
+        )
+        for key in scene.keys
+    ]
+    exact = job(theory, "theory.csv", "--parameters", repr(scene.theory_parameters()))
+    box = repr({"areas": list(scene.watch.areas), **scene.scene_parameters()})
+    return job(table, "check.csv", "check", "--scene", box, "--theory", exact, "--points", *points)
+
+
+def test_rows_of_the_check_are_those_of_the_page(checked):
+    with open(checked, newline="", encoding="utf-8") as file:
+        found = list(csv.DictReader(file))
+    lines = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("docs/reading-check.md"), re.MULTILINE)
+    assert [name for name, _ in lines] == tables.TABLES["check"].names
+    cells = [[cell.strip() for cell in line.split("|")] for _, line in lines]
+    key = ("comparison", "quantity", "radius", "method")
+    for values in zip(*cells, strict=True):
+        shown = dict(zip((name for name, _ in lines), values, strict=True))
+        (row,) = (row for row in found if all(row[name] == shown[name] for name in key))
+        for name, value in shown.items():
+            # z is a difference, in units of its error, of two numbers that are right to 1e-13.
+            number = value and name not in key and re.fullmatch(r"[-\d.e]+", value)
+            close = number and math.isclose(float(value), float(row[name]), rel_tol=1e-9)
+            assert close or value == row[name], name
+
+
+def test_numbers_of_rows_are_those_of_the_page(checked):
+    rows = tables.read(checked, "check")
+    at_a_radius = [row for row in rows if row["radius"] is not None]
+    text = " ".join(page("docs/reading-check.md").split())
+    counts = (len(at_a_radius), len({row["radius"] for row in at_a_radius}))
+    said = re.search(r"has (\d+) rows at (\w+) radii, and (\d+) on all", text)
+    assert (int(said[1]), {"two": 2}[said[2]]) == counts
+    assert int(said[3]) == len(rows) - counts[0]
+
+
+def test_the_example_passes(checked, tmp_path):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["", checked, "--output", str(tmp_path / "check.passed")])
+        assert not check.main()
