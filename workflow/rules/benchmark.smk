@@ -12,6 +12,6 @@ rule:
         f"{RESULTS}/logs/benchmark.log",
     benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
-    threads: 64 # all that there are
+    threads: 64  # all that there are
     shell:
         "python -m twodiscs.benchmark --output {output.table:q} > {log:q} 2>&1"

@@ -119,3 +119,14 @@ def manuscript_parameters():
             for scene in SCENES.values()
         ],
     }
+
+
+def stability_parameters(ordinary, hard):
+    """Return what is measured: the box, and events at an ordinary and at each hard radius."""
+    return {
+        "hard": hard,
+        "height": MAIN.height,
+        "ordinary": ordinary,
+        "seed": CONFIGURATION.seed,
+        "width": MAIN.width,
+    }

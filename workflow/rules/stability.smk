@@ -2,17 +2,6 @@
 # are the same measurement of the dynamics with ten times the events; nothing else asks for them.
 
 
-def stability_parameters(ordinary, hard):
-    """Return what is measured: the box, and events at an ordinary and at each hard radius."""
-    return {
-        "hard": hard,
-        "height": MAIN.height,
-        "ordinary": ordinary,
-        "seed": CONFIGURATION.seed,
-        "width": MAIN.width,
-    }
-
-
 rule stability_table:
     input:
         code=code("cli.stability"),
