@@ -3,8 +3,17 @@
 import math
 import numbers
 
+from twodiscs.scene import Scene
+
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
+
+
+def a_scene(value):
+    """Return ``value``; raise ``ValueError`` unless it is a ``Scene``."""
+    if not isinstance(value, Scene):
+        raise ValueError(f"scene must be a Scene, not {value!r}")
+    return value
 
 
 def whole(name, value, least=1):

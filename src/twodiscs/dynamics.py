@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from twodiscs import theory
-from twodiscs.checks import one_of, proportion, whole
+from twodiscs.checks import a_scene, one_of, proportion, whole
 from twodiscs.events import (
     DISC,
     END_OF_TIME,
@@ -266,8 +266,9 @@ def count_events(scene, target, budget, seed, report=None):
     ΣN, its target and status (reached, budget or impossible); products hold ΣN_a N_b of each pair.
     Raises ``ValueError`` for an unknown event or a number out of range.
     """
-    if not target:
-        raise ValueError("target must name at least one event, not none")
+    a_scene(scene)
+    if not isinstance(target, dict) or not target:
+        raise ValueError(f"target must name at least one event, with its error, not {target!r}")
     target = {
         one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
     }
@@ -419,6 +420,7 @@ def hop_intervals(scene, event, intervals, seed):
     number of intervals and of chains, and the mean with its standard error over chains. Raises
     ``ValueError`` for a hop that is unknown or blocked, or a number out of range.
     """
+    a_scene(scene)
     one_of("event", event, HOPS)
     if not scene.is_possible(event):
         raise ValueError(
@@ -484,10 +486,14 @@ def trajectory(scene, seed):
     """Return one trajectory of a ``Scene`` from the invariant measure, as rows of ``follow``.
 
     It lasts some eight mean times of the rarest hop that is open, but no longer than
-    ``LONGEST_TRAJECTORY`` wall and disc events on average.
+    ``LONGEST_TRAJECTORY`` wall and disc events on average. Raises ``ValueError`` for anything that
+    is not a ``Scene``, and for a seed that is not an integer ≥ 0.
     """
     stream = open_stream(np.uint64(whole("seed", seed, 0)), 0)
-    start = (*draw_configuration(stream, draw_constants(scene), 0, 0), *draw_velocity(stream))
+    start = (
+        *draw_configuration(stream, draw_constants(a_scene(scene)), 0, 0),
+        *draw_velocity(stream),
+    )
     rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
     hops = [theory.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
     duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)

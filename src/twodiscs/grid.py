@@ -12,6 +12,9 @@ from twodiscs.scene import largest_radius, length
 #: The stochastic stages, each with random streams of its own.
 METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory")
 
+#: No grid has more points.
+MOST = 1000
+
 #: Regimes narrower than this fraction of the largest radius get no points of their own.
 NARROWEST = 1e-6
 
@@ -38,13 +41,15 @@ def radii(width, height, smallest, count):
     any of the three; from the smallest radius they start evenly. Each is then rounded to the
     fewest digits that leave it near its place.
 
-    Raises ``ValueError`` if ``count`` is not a positive integer, or ``smallest`` is not a length
-    below the largest radius or lies on a threshold.
+    Raises ``ValueError`` if ``count`` is not an integer from 1 to ``MOST``, or ``smallest`` is not
+    a length below the largest radius or lies on a threshold.
     """
     largest = largest_radius(width, height)
     smallest = length("smallest", smallest)
     if isinstance(count, bool) or not isinstance(count, int) or count < 1:
         raise ValueError(f"count must be a positive integer, not {count!r}")
+    if count > MOST:
+        raise ValueError(f"count must be at most {MOST}, not {count!r}")
     if smallest >= largest * (1 - NARROWEST):
         raise ValueError(
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"

@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from twodiscs.checks import one_of, proportion, whole
+from twodiscs.checks import a_scene, one_of, proportion, whole
 from twodiscs.invariant import draw_constants, propose_separation
 from twodiscs.jit import compiled
 from twodiscs.scene import EVENTS, HOPS
@@ -108,8 +108,12 @@ def shell_thickness(scene, event, fraction):
     The room is the distance of the radius from the one at which the surface vanishes: the largest
     radius, or for a hop w/4 or h/4. Beyond it a hop's shell is empty, as is its surface. In a box
     more than twice as long as wide the discs keep room along it up to the largest radius: long − 4r
-    is then that of collisions and of the walls at the far ends.
+    is then that of collisions and of the walls at the far ends. Raises ``ValueError`` for an event
+    without a shell and a ``fraction`` that is not between 0 and 1.
     """
+    a_scene(scene)
+    one_of("event", event, SHELLS)
+    fraction = proportion("fraction", fraction)
     limits = {"vertical_hop": scene.width / 4, "horizontal_hop": scene.height / 4}
     room = abs(limits.get(event, scene.largest_radius) - scene.radius)
     long, short = max(scene.width, scene.height), min(scene.width, scene.height)
@@ -144,6 +148,7 @@ def sample_point(scene, quantities, samples, shell, seed):
 
 def _shells(scene, quantities, shell):
     """Return (the set of "volume" and events to sample, ε for each of ``SHELLS`` or 0)."""
+    a_scene(scene)
     allowed = ("volume", *(f"{event}_area" for event in EVENTS))
     for quantity in quantities:
         one_of("quantity", quantity, allowed)
@@ -219,7 +224,7 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     ``Draw.mass``, is known; so its point has the form of that of ``sample_point``, for the same
     arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded up to
     whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the better
-    choice wherever it accepts a few in a hundred.
+    choice wherever it accepts a few in a hundred. Raises ``ValueError`` as ``sample_point`` does.
     """
     wanted, epsilon = _shells(scene, quantities, shell)
     blocks, seed = -(-whole("samples", samples) // PROPOSALS), whole("seed", seed, 0)

@@ -62,8 +62,12 @@ def largest_radius(width, height):
 
 
 def fits(width, height, radius):
-    """Say, in exact arithmetic on the given doubles, whether two discs have room to move."""
-    w, h, r = Fraction(width), Fraction(height), Fraction(radius)
+    """Say, in exact arithmetic on the given doubles, whether two discs have room to move.
+
+    Raises ``ValueError`` for anything that is not a length.
+    """
+    w, h = Fraction(length("width", width)), Fraction(length("height", height))
+    r = Fraction(length("radius", radius))
     range_x, range_y = w - 2 * r, h - 2 * r
     return range_x > 0 and range_y > 0 and range_x**2 + range_y**2 > 4 * r**2
 

@@ -95,6 +95,11 @@ def row(part, quantity, case, value, **more):
     return columns
 
 
+def other_seed(seed, i):
+    """Return the ``i``-th seed after ``seed``, for measurements that are to be independent."""
+    return (seed + i) % 2**63
+
+
 # Radii ------------------------------------------------------------------------------------------
 
 
@@ -250,7 +255,9 @@ def sampling_rows(width, height, seed):
         draw, volume = draw_constants(scene), theory.volume(scene)
         prism = volume / (scene.range_x * scene.range_y) ** 2
         exact = min(volume / 2 / draw.mass, 1.0)
-        point = montecarlo.conditioned_point(scene, ["volume"], SHARE_PROPOSALS, SHELL, seed + i)
+        point = montecarlo.conditioned_point(
+            scene, ["volume"], SHARE_PROPOSALS, SHELL, other_seed(seed, i)
+        )
         hits, samples = point["quantities"]["volume"]["hits"], point["samples"]
         yield row(
             "sampling", "accepted_share", case, prism, method="prism", radius=radius,
@@ -272,7 +279,11 @@ def estimate_rows(width, height, seed):
         exact = {(radius, "volume"): theory.volume(scene)}
         exact |= {(radius, f"{event}_area"): area for event, area in theory.areas(scene).items()}
         point = montecarlo.conditioned_point(
-            scene, [quantity for _, quantity in exact], ESTIMATE_PROPOSALS, SHELL, seed + i
+            scene,
+            [quantity for _, quantity in exact],
+            ESTIMATE_PROPOSALS,
+            SHELL,
+            other_seed(seed, i),
         )
         estimates = comparison.volume_rows(exact, [point])
         estimates += comparison.area_rows(scene, exact, [point])
@@ -482,7 +493,7 @@ def dynamics_rows(width, height, seed, ordinary, hard):
     }
     for i, (case, distance, radius) in enumerate(hard_radii(width, height)):
         number = ordinary if case == "ordinary" else hard
-        seen = run(Scene(width, height, radius), number, seed + i)
+        seen = run(Scene(width, height, radius), number, other_seed(seed, i))
         for quantity, bound in bounds.items():
             yield row(
                 "dynamics", quantity, case, float(seen[quantity]), radius=radius,

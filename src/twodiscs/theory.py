@@ -23,7 +23,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from twodiscs.checks import one_of
+from twodiscs.checks import a_scene, one_of
 from twodiscs.scene import EVENTS, HOPS, Scene, length
 
 #: The events whose surface has a shell of its own; all walls together are corners as well.
@@ -159,20 +159,13 @@ def _exact(scene):
     }
 
 
-def _checked(scene):
-    """Return ``scene``, or raise ``ValueError`` if it is none."""
-    if not isinstance(scene, Scene):
-        raise ValueError(f"scene must be a Scene, not {scene!r}")
-    return scene
-
-
 def volume(scene):
     """Return the volume of the configuration space of a ``Scene``, in length⁴.
 
     Within a few roundings of the exact value for every box and radius. Raises ``ValueError`` for
     anything that is not a ``Scene``.
     """
-    return _exact(_checked(scene))[0]
+    return _exact(a_scene(scene))[0]
 
 
 def areas(scene):
@@ -181,7 +174,7 @@ def areas(scene):
     Keys are ``scene.EVENTS`` in their order. The area is exactly 0.0 where the event is impossible;
     that of all walls is 4 (right + top). Accuracy and errors as for ``volume``.
     """
-    return dict(_exact(_checked(scene))[1])
+    return dict(_exact(a_scene(scene))[1])
 
 
 def rate(scene, event):
@@ -191,7 +184,7 @@ def rate(scene, event):
     wall at all hits it twice as often once horizontal (vertical) hops are blocked: ``mean_times``.
     Raises ``ValueError`` for anything that is not a ``Scene`` or one of ``scene.EVENTS``.
     """
-    volume, areas = _exact(_checked(scene))
+    volume, areas = _exact(a_scene(scene))
     sides = 2 if one_of("event", event, EVENTS) in HOPS else 1
     return sides * areas[event] / (1.5 * math.pi * volume)
 
@@ -205,7 +198,7 @@ def mean_times(scene):
     ``volume``.
     """
     share = {
-        "right_wall": 1 if _checked(scene).horizontal_hops else 0.5,
+        "right_wall": 1 if a_scene(scene).horizontal_hops else 0.5,
         "top_wall": 1 if scene.vertical_hops else 0.5,
     }
     return {
@@ -221,7 +214,7 @@ def exact(scene):
     ``ValueError`` for anything that is not a ``Scene``.
     """
     return {
-        "regime": _checked(scene).regime,
+        "regime": a_scene(scene).regime,
         "ergodic_components": scene.ergodic_components,
         "largest_radius": scene.largest_radius,
         "volume": volume(scene),
@@ -294,7 +287,7 @@ def shell_expectation(scene, event, epsilon):
     is 0. Raises ``ValueError`` for anything that is not a ``Scene``, for an ``epsilon`` that is not
     a length up to the radius, and for ``any_wall``, which has no shell of its own.
     """
-    arc = _Arc.of(_checked(scene))
+    arc = _Arc.of(a_scene(scene))
     one_of("event", event, SHELLS)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
@@ -319,7 +312,7 @@ def closed_form(scene):
     volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for
     anything that is not a ``Scene``.
     """
-    r = _checked(scene).radius
+    r = a_scene(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
     # Of the quarter circle, the angle within [0, a] × [0, b].
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
@@ -387,7 +380,7 @@ def threshold_time(scene, event):
     disc collisions and of the walls at the far ends stay finite. Raises ``ValueError`` for anything
     that is not a ``Scene`` or one of ``scene.EVENTS``.
     """
-    w, h, r = _checked(scene).width, scene.height, scene.radius
+    w, h, r = a_scene(scene).width, scene.height, scene.radius
     if not scene.is_possible(event):
         return None
     one_sided = 1.5 * math.pi

@@ -15,14 +15,20 @@ class Parser(argparse.ArgumentParser):
         fail(message)
 
 
-def parameters(text):
-    """Return the dict that ``text`` spells as a Python literal; raise ``ValueError`` otherwise."""
+def parameters(text, *names):
+    """Return the dict that ``text`` spells as a Python literal; raise ``ValueError`` otherwise.
+
+    If ``names`` are given, they must be its keys, all of them and no others.
+    """
     try:
         value = ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         value = None
     if not isinstance(value, dict):
         raise ValueError(f"parameters must be a Python dict of plain values, not {text!r}")
+    if names and value.keys() != set(names):
+        found = ", ".join(map(str, value)) or "none"
+        raise ValueError(f"parameters must be {', '.join(sorted(names))}, not {found}")
     return value
 
 

@@ -24,7 +24,7 @@ def progress(start):
 
 def main():
     """Read the parameters, simulate, write the counts and what they cost."""
-    point, scene, output, cost = arguments(__doc__)
+    point, scene, output, cost = arguments(__doc__, "accuracy", "event_budget")
     from twodiscs import dynamics
 
     report = progress(time.process_time())

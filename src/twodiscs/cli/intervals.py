@@ -6,7 +6,7 @@ from twodiscs.cli.points import arguments, timed, write_json
 
 def main():
     """Read the parameters, simulate, write the histogram and what it cost."""
-    point, scene, output, cost = arguments(__doc__)
+    point, scene, output, cost = arguments(__doc__, "event", "intervals")
     from twodiscs import dynamics
 
     result, seconds = timed(

@@ -6,7 +6,7 @@ from twodiscs.cli.points import arguments, timed, write_json
 
 def main():
     """Read the parameters, sample, write the counts and what they cost."""
-    point, scene, output, cost = arguments(__doc__)
+    point, scene, output, cost = arguments(__doc__, "areas", "samples", "shell", "volume")
     from twodiscs import montecarlo
 
     quantities = ["volume"] * point["volume"] + [f"{event}_area" for event in point["areas"]]

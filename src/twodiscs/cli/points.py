@@ -7,17 +7,17 @@ from twodiscs.cli.arguments import Parser, parameters
 from twodiscs.scene import Scene
 
 
-def arguments(description):
-    """Return (parameters, scene, path of the point file, path of the cost file or None)."""
+def arguments(description, *names):
+    """Return (parameters, scene, path of the point file, path of the cost file or None).
+
+    The parameters are width, height, radius, seed and those of the ``names``.
+    """
     parser = Parser(description=description)
     parser.add_argument("--parameters", required=True, help="all the job depends on, a dict")
     parser.add_argument("--output", required=True, help="the point file to write, JSON")
     parser.add_argument("--cost", help="where to write the number of events and the seconds, JSON")
     given = parser.parse_args()
-    point = parameters(given.parameters)
-    missing = {"width", "height", "radius", "seed"} - point.keys()
-    if missing:
-        raise ValueError(f"parameters need {', '.join(sorted(missing))}, not only {sorted(point)}")
+    point = parameters(given.parameters, "width", "height", "radius", "seed", *names)
     return point, Scene(point["width"], point["height"], point["radius"]), given.output, given.cost
 
 

@@ -9,21 +9,17 @@ from twodiscs.checks import whole
 from twodiscs.cli import arguments
 from twodiscs.scene import length
 
-NEEDED = {"width", "height", "seed", "ordinary", "hard"}
+NEEDED = ("hard", "height", "ordinary", "seed", "width")
 
 
 def main():
     parser = arguments.Parser(prog="twodiscs.cli.stability", description=__doc__.split("\n")[0])
     parser.add_argument("table", choices=["stability", "long_runs"])
-    parser.add_argument(
-        "--parameters", required=True, help=f"a dict of {', '.join(sorted(NEEDED))}"
-    )
+    parser.add_argument("--parameters", required=True, help=f"a dict of {', '.join(NEEDED)}")
     parser.add_argument("--output", required=True, metavar="CSV")
     options = parser.parse_args()
 
-    given = arguments.parameters(options.parameters)
-    if given.keys() != NEEDED:
-        raise ValueError(f"parameters must be {', '.join(sorted(NEEDED))}, not {sorted(given)}")
+    given = arguments.parameters(options.parameters, *NEEDED)
     box = length("width", given["width"]), length("height", given["height"])
     seed = whole("seed", given["seed"], 0)
     events = whole("ordinary", given["ordinary"]), whole("hard", given["hard"])

@@ -22,7 +22,8 @@ def main():
     parser.add_argument("--parameters", required=True, help="a dict of height, radii, width")
     parser.add_argument("--output", required=True, help="theory.csv")
     options = parser.parse_args()
-    tables.write(options.output, "theory", rows(**arguments.parameters(options.parameters)))
+    given = arguments.parameters(options.parameters, "height", "radii", "width")
+    tables.write(options.output, "theory", rows(**given))
 
 
 if __name__ == "__main__":
