@@ -15,7 +15,6 @@ rule report:
             rules.errata.output,
             rules.accuracy_cost.input,
             rules.stability.input,
-            rules.stability.input,
             [list(table_files(scene).values()) for scene in SCENES.values()],
             [list(figure_files(scene).values()) for scene in SCENES.values()],
         ],
