@@ -171,3 +171,12 @@ def test_the_figures_draw_them(rows, module, tmp_path):
         drawn = module.draw({}, {"accuracy_cost": rows})
         style.save(drawn, tmp_path / "figure.png")
     assert (tmp_path / "figure.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"seconds": 0}, {"seconds": math.nan}, {"seconds": "1"}, {"repetitions": 1}],
+)
+def test_bad_requests_are_refused(wrong):
+    with pytest.raises(ValueError, match="must"):
+        accuracy_cost.rows(**wrong)

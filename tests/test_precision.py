@@ -78,3 +78,23 @@ def test_energy_drifts_as_a_random_walk():
     short = precision.run_blocks(PAPER, 1, 0, 1, duration)[2]
     long = precision.run_blocks(PAPER, 1, 0, 1, 64 * duration)[2]
     assert math.isclose(long / short, 8, rel_tol=0.2)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"scene": None},
+        {"seed": -1},
+        {"seed": 1.5},
+        {"stop": 0},
+        {"duration": math.inf},
+        {"duration": math.nan},
+        {"duration": 0.0},
+        {"dtype": np.float16},
+        {"dtype": None},
+    ],
+)
+def test_bad_requests_are_refused(wrong):
+    right = {"scene": PAPER, "seed": 1, "first": 0, "stop": 1, "duration": 1.0}
+    with pytest.raises(ValueError, match="must"):
+        precision.run_blocks(**right | wrong)

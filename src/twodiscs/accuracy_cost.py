@@ -24,9 +24,10 @@ import mpmath
 import numpy as np
 
 from twodiscs import dynamics, grid, montecarlo, precision, scalar, theory, timestepping
+from twodiscs.checks import whole
 from twodiscs.invariant import draw_constants
 from twodiscs.jit import compiled
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.scene import EVENTS, Scene, length
 from twodiscs.streams import open_stream, signed_uniform
 
 #: The box of all measurements, a radius in the middle, and one where the discs hardly fit.
@@ -606,8 +607,14 @@ def where_single_fails(scale=1.0):
 
 
 def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
-    """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time."""
-    scale = seconds / USUAL_SECONDS
+    """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time.
+
+    Of the least work every method does its share, so a few seconds are spent whatever is asked.
+    ``repetitions`` ≥ 2. ``report``, if given, is called with the repetitions done and those to do.
+    Raises ``ValueError`` for a number out of range.
+    """
+    scale = length("seconds", seconds) / USUAL_SECONDS
+    repetitions = whole("repetitions", repetitions, 2)
     all_series = series(scale)
     found = work_precision(all_series, measure(all_series, repetitions, report))
     return found + by_radius(scale) + where_single_fails(scale)

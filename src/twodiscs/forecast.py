@@ -18,6 +18,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import NamedTuple
 
+from twodiscs.checks import whole
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.scene import Scene
 
@@ -277,7 +278,11 @@ def scene_rows(request, pilots, starts, cores):
 
 
 def rows(configuration, cores):
-    """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` cores."""
+    """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` ≥ 1 cores.
+
+    Raises ``ValueError`` for another number of them.
+    """
+    cores = whole("cores", cores)
     requests = configuration.scenes
     jobs = [jobs_of(request) for request in requests]
     kinds = [stage for stage in STAGES if any(stage == s for one in jobs for s, _ in one)]

@@ -13,9 +13,11 @@ from types import FunctionType
 import numpy as np
 
 from twodiscs import events
+from twodiscs.checks import a_scene, one_of, whole
 from twodiscs.dynamics import LANES, LOOKS, PASSES, REPLICAS, draw_starts
 from twodiscs.invariant import draw_constants
 from twodiscs.jit import numba
+from twodiscs.scene import length
 from twodiscs.streams import open_stream
 
 #: Not kept on disk: what is compiled here depends on more than its source.
@@ -128,8 +130,13 @@ def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
     """Count all events as ``dynamics.run_blocks`` does, but with states of ``dtype``.
 
     Returns (Σ N_e in the order of EVENTS, mean and root mean square of the relative error of the
-    energy at the end of a replica).
+    energy at the end of a replica). Raises ``ValueError`` for a scene, a seed or a duration that is
+    none, a range without blocks, and a ``dtype`` other than numpy's float32 and float64.
     """
+    a_scene(scene)
+    seed, first = whole("seed", seed, 0), whole("first", first, 0)
+    stop, duration = whole("stop", stop, first + 1), length("duration", duration)
+    one_of("dtype", dtype.__name__ if isinstance(dtype, type) else dtype, ("float32", "float64"))
     sums, gained, squared = kernel(dtype)(
         np.uint64(seed), first, stop, REPLICAS, LANES, dtype(duration),
         dtype(scene.contact_distance), dtype(scene.range_x / 2), dtype(scene.range_y / 2),

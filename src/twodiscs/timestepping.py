@@ -10,6 +10,7 @@ vector instructions like ``dynamics``, and treats discs, not polygons.
 
 import numpy as np
 
+from twodiscs.checks import a_scene, whole
 from twodiscs.dynamics import (
     ANY,
     COLLISION,
@@ -25,6 +26,7 @@ from twodiscs.dynamics import (
 from twodiscs.events import crosses
 from twodiscs.invariant import draw_constants
 from twodiscs.jit import compiled
+from twodiscs.scene import length
 from twodiscs.streams import open_stream
 
 #: Steps between two readings of the packed counts: a step has four walls at most.
@@ -94,9 +96,13 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
 def run_blocks(scene, seed, first, stop, duration, step):
     """Count all events as ``dynamics.run_blocks`` does, but by steps of ``step``.
 
-    The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of EVENTS.
+    The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of EVENTS. Raises
+    ``ValueError`` for a scene, seed, duration or step that is none, or a range without blocks.
     """
-    steps = max(1, round(duration / step))
+    a_scene(scene)
+    seed, first = whole("seed", seed, 0), whole("first", first, 0)
+    stop, step = whole("stop", stop, first + 1), length("step", step)
+    steps = max(1, round(length("duration", duration) / step))
     return step_blocks(
         np.uint64(seed), first, stop, REPLICAS, LANES, steps, step, scene.contact_distance,
         draw_constants(scene),

@@ -41,8 +41,6 @@ def main():
     parser.add_argument("--cores", required=True, type=int, help="how many jobs run at once")
     parser.add_argument("--output", required=True, help="forecast.csv")
     options = parser.parse_args()
-    if options.cores < 1:
-        raise ValueError(f"--cores must be at least 1, not {options.cores!r}")
     from twodiscs import forecast
 
     rows = forecast.rows(load(json.loads(options.configuration)), options.cores)
