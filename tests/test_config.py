@@ -320,7 +320,10 @@ LINES = {
     "scenes: [{name: a}]": "scenes[0] needs the key 'box'",
     "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
-    "zz: 1": "the configuration has an unknown key 'zz'; its keys are results, seed, accuracy_cost, scenes",
+    "zz: 1": (
+        "the configuration has an unknown key 'zz'; its keys are results, seed, accuracy_cost, "
+        "scenes"
+    ),
     "1: 2": "the configuration has an unknown key 1; …",
     "seed: -1": "seed must be an integer from 0 to 2^63 - 1, not -1",
     "seed: 1.5": "seed must be an integer …, not 1.5",
