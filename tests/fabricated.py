@@ -62,6 +62,7 @@ class Laws:
         both = min(right, top, int(rng.binomial(right, share)))
         return {
             "radius": self.scene.radius,
+            "method": "monte_carlo",
             "samples": samples,
             "quantities": found,
             "right_and_top": both,

@@ -89,7 +89,7 @@ def test_every_key_is_documented(path, node, required):
     assert node["description"].endswith(".")
     assert node["allowed"]
     assert required or "default" in node or "computed" in node
-    if "number" in node.get("type", []) and node.get("maximum") != 1:
+    if "number" in node.get("type", []) and 1 not in map(node.get, ("maximum", "exclusiveMaximum")):
         assert node["unit"]
 
 
@@ -431,7 +431,7 @@ SCENES = {
     "event_budget: .inf": ".event_budget must be an integer from 1 to 1e15, not inf",
     "monte_carlo: {samples: 0}": ".monte_carlo.samples must be an integer …, not 0",
     "monte_carlo: {shell: 0}": ".monte_carlo.shell must be a number above 0 …, not 0.0",
-    "monte_carlo: {shell: 2}": ".monte_carlo.shell must be … at most 1, not 2.0",
+    "monte_carlo: {shell: 1}": ".monte_carlo.shell must be … below 1, not 1.0",
     "monte_carlo: 1e8": ".monte_carlo must be a block of two keys, …, not '1e8'",
     "montecarlo: {}": " has an unknown key 'montecarlo'; did you mean 'monte_carlo'?",
 }

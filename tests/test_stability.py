@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from twodiscs import events, montecarlo, stability, statistics, tables, theory
+from twodiscs import comparison, events, montecarlo, stability, statistics, tables, theory
 from twodiscs.cli import arguments
 from twodiscs.cli import figure as figure_command
 from twodiscs.cli import stability as command
@@ -195,6 +195,19 @@ def test_conditioned_agrees_with_rejection(radius):
         other, others = values[1][quantity]
         if hits > 100:
             assert abs(value / other - 1) <= 5 * math.sqrt(1 / hits + 1 / others), quantity
+
+
+def test_the_better_sampler_is_chosen():
+    """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
+    for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
+        point = montecarlo.better_point(Scene(*PAPER, radius), ["volume"], 2**22, 0.02, 1)
+        assert (point["method"], point["samples"]) == (method, samples)
+    for distance in (1e-3, 1e-6, 1e-9):
+        scene = Scene(*PAPER, largest_radius(*PAPER) * (1 - distance))
+        point = montecarlo.better_point(scene, QUANTITIES, 2**24, 0.02, 1)
+        rows = comparison.volume_rows({(scene.radius, "volume"): theory.volume(scene)}, [point])
+        assert abs(rows[0]["estimate"] / theory.volume(scene) - 1) < 1e-3
+        assert point["quantities"]["disc_collision_area"]["hits"] > 1000
 
 
 def test_conditioned_blocks_add_up():

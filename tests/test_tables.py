@@ -207,7 +207,8 @@ def test_only_watched_areas_have_rows(exact, laws):
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
     part = {"hits": hits, "measure": 1.0, "epsilon": 0.1}
-    return comparison._sampled_row(0.1, "disc_collision_area", samples, part, exact, expectation)
+    point = {"radius": 0.1, "method": "monte_carlo", "samples": samples, "quantities": {"it": part}}
+    return comparison._sampled_row(point, "it", exact, expectation)
 
 
 @pytest.mark.parametrize(

@@ -39,8 +39,9 @@ def ordered(points):
 # Monte Carlo ----------------------------------------------------------------------------------
 
 
-def _sampled_row(radius, quantity, samples, part, exact, expectation):
-    """Return the row of one quantity; ``part`` is its entry in the point."""
+def _sampled_row(point, quantity, exact, expectation):
+    """Return the row of one quantity of a point."""
+    part, samples = point["quantities"][quantity], point["samples"]
     hits, measure = part["hits"], part["measure"]
     estimate = statistics.binomial_estimate(hits, samples, measure)
     z, test = statistics.binomial_z(hits, samples, min(expectation / measure, 1.0))
@@ -52,9 +53,9 @@ def _sampled_row(radius, quantity, samples, part, exact, expectation):
         few = min(hits, samples - hits) < statistics.HONEST
         status = "too-few" if few else "sampled"
     return {
-        "radius": radius,
+        "radius": point["radius"],
         "quantity": quantity,
-        "method": "monte_carlo",
+        "method": point["method"],
         "exact": exact,
         "estimate": estimate and estimate.value,
         "stderr": estimate.stderr if status == "sampled" else None,
@@ -107,10 +108,7 @@ def volume_rows(exact, points):
     for point in ordered(points):
         if "volume" in point["quantities"]:
             value = _exact(exact, point["radius"], "volume")
-            part = point["quantities"]["volume"]
-            rows.append(
-                _sampled_row(point["radius"], "volume", point["samples"], part, value, value)
-            )
+            rows.append(_sampled_row(point, "volume", value, value))
     return rows
 
 
@@ -130,9 +128,7 @@ def area_rows(scene, exact, points, watched=EVENTS):
             if part:
                 value = _exact(exact, radius, quantity)
                 expectation = shell_expectation(here, event, part["epsilon"])
-                found[event] = _sampled_row(
-                    radius, quantity, point["samples"], part, value, expectation
-                )
+                found[event] = _sampled_row(point, quantity, value, expectation)
         if {"right_wall", "top_wall"} <= set(found):
             value = _exact(exact, radius, "any_wall_area")
             found["any_wall"] = _any_wall_row(

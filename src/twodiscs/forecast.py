@@ -88,13 +88,12 @@ def pilot_monte_carlo(job):
     quantities = ["volume"] * job["volume"] + [f"{event}_area" for event in job["areas"]]
 
     def sample(samples):
-        return montecarlo.sample_point(scene, quantities, samples, job["shell"] or 0.5, SEED)
+        return montecarlo.better_point(scene, quantities, samples, job["shell"] or 0.5, SEED)
 
     sample(1)
-    blocks = -(-job["samples"] // montecarlo.BLOCK)
-    done = min(blocks, SAMPLE_BLOCKS) * montecarlo.BLOCK
+    done = min(job["samples"], SAMPLE_BLOCKS * montecarlo.BLOCK)
     _, cost = _timed(lambda: sample(done), lambda point: point["samples"])
-    return Pilot(blocks * montecarlo.BLOCK, cost)
+    return Pilot(montecarlo.plan(scene, job["samples"])[1], cost)
 
 
 def pilot_intervals(job):

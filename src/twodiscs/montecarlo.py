@@ -9,7 +9,8 @@ the normal in configuration space, g = 0 being the surface and |∇g| = 1:
                                                               top wall        0 ≤ b − y1 ≤ ε
 
 A shell of finite thickness is biased; ``theory.shell_expectation`` is what it estimates exactly.
-Where the prism is almost all overlap, ``conditioned_point`` takes the place of ``sample_point``.
+Where the prism is almost all overlap, ``conditioned_point`` takes the place of ``sample_point``;
+``better_point`` is whichever of them is the better one.
 
 A coordinate is one of 2³² equidistant values, so that two of them come from one draw of 64 bits
 and their difference is an integer. The grain shifts a probability by some 2⁻³² of the prism, far
@@ -20,6 +21,7 @@ import math
 
 import numpy as np
 
+from twodiscs import theory
 from twodiscs.checks import a_scene, one_of, proportion, whole
 from twodiscs.invariant import draw_constants, propose_separation
 from twodiscs.jit import compiled
@@ -36,6 +38,9 @@ PASSES = 128
 
 #: Proposals of the conditioned sampler that share a random stream.
 PROPOSALS = 1 << 16
+
+#: How many times the time of a sample of the prism one of them takes, roughly.
+DEARER = 64
 
 #: The shells that are sampled; all walls together follow from the right and the top one.
 SHELLS = EVENTS[:5]
@@ -128,7 +133,7 @@ def sample_point(scene, quantities, samples, shell, seed):
 
     ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``samples`` is rounded up to
     whole blocks of 2²⁰; ``shell`` sets the thickness of the shells (``shell_thickness``); ``seed``
-    is an integer ≥ 0. Returns a dict for a JSON file: radius, samples, and for each sampled
+    is an integer ≥ 0. Returns a dict for a JSON file: radius, method, samples, and for each sampled
     quantity its hits, its measure and ε, so that measure × hits / samples is the estimate. The
     area of all walls takes no shell of its own: ``right_and_top`` is how many samples lie in both
     shells.
@@ -143,7 +148,7 @@ def sample_point(scene, quantities, samples, shell, seed):
         tuple(epsilon), areas,
     )  # fmt: skip
     prism = (scene.range_x * scene.range_y) ** 2
-    return _point(scene, wanted, epsilon, blocks * BLOCK, prism, counts)
+    return _point(scene, "monte_carlo", wanted, epsilon, blocks * BLOCK, prism, counts)
 
 
 def _shells(scene, quantities, shell):
@@ -161,7 +166,7 @@ def _shells(scene, quantities, shell):
     return wanted, [shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in SHELLS]
 
 
-def _point(scene, wanted, epsilon, samples, measure, counts):
+def _point(scene, method, wanted, epsilon, samples, measure, counts):
     """Return the dict for a JSON file; ``measure`` is the volume that the samples fill."""
     found = {}
     if "volume" in wanted:
@@ -174,7 +179,7 @@ def _point(scene, wanted, epsilon, samples, measure, counts):
                 "measure": measure / (sides * epsilon[i]),
                 "epsilon": epsilon[i],
             }
-    point = {"radius": scene.radius, "samples": samples, "quantities": found}
+    point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": found}
     if {"right_wall", "top_wall"} <= wanted:
         point["right_and_top"] = int(counts[6])
     return point
@@ -230,4 +235,23 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     blocks, seed = -(-whole("samples", samples) // PROPOSALS), whole("seed", seed, 0)
     draw = draw_constants(scene)
     counts = propose_blocks(np.uint64(seed), 0, blocks, draw, tuple(epsilon))
-    return _point(scene, wanted, epsilon, blocks * PROPOSALS, 2 * draw.mass, counts)
+    return _point(scene, "conditioned", wanted, epsilon, blocks * PROPOSALS, 2 * draw.mass, counts)
+
+
+def better_point(scene, quantities, samples, shell, seed):
+    """Estimate the volume and areas of a ``Scene`` by the better of the two samplers.
+
+    Where a sample of the prism is free with a probability of at least 1/``DEARER`` that is
+    ``sample_point``; else it is ``conditioned_point``, with as many samples as take the same time.
+    Arguments, result and errors are those of either.
+    """
+    draw_from, samples = plan(scene, samples)
+    return draw_from(scene, quantities, samples, shell, seed)
+
+
+def plan(scene, samples):
+    """Return (the better of the two samplers, the number of its samples for ``samples``)."""
+    free = theory.volume(scene) / (scene.range_x * scene.range_y) ** 2
+    if free >= 1 / DEARER:
+        return sample_point, -(-whole("samples", samples) // BLOCK) * BLOCK
+    return conditioned_point, -(-whole("samples", samples) // (DEARER * PROPOSALS)) * PROPOSALS

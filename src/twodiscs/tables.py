@@ -53,12 +53,18 @@ def _sampled(unit, quantity):
     return (
         RADIUS,
         Column("quantity", "", quantity, str),
-        Column("method", "", "monte_carlo: rejection from the prism, areas by a thin shell", str),
+        Column(
+            "method",
+            "",
+            "monte_carlo: rejection from the prism; conditioned: draws that keep to where the "
+            "discs fit, where less than one in 64 of the prism does; areas by a thin shell",
+            str,
+        ),
         Column("exact", unit, "exact value"),
         Column("estimate", unit, "measure × hits/samples; empty without a hit"),
         Column("stderr", unit, "binomial standard error; empty below 100 hits or misses"),
         Z,
-        Column("samples", "", "configurations drawn from the prism A²B²", int),
+        Column("samples", "", "configurations drawn from the prism A²B², or proposed", int),
         Column("hits", "", "configurations that count", int),
         Column(
             "epsilon",
@@ -249,7 +255,7 @@ TABLES = {
             ),
             Column("quantity", "", "what is compared", str),
             Column("radius", "length", "radius of the discs; empty for a statement on all radii"),
-            Column("method", "", "monte_carlo, dynamics or intervals", str),
+            Column("method", "", "monte_carlo, conditioned, dynamics or intervals", str),
             Column("exact", "see quantity", "exact value; for an area, the shell's expectation"),
             Column("estimate", "see quantity", "estimate; empty where there is none"),
             Column("stderr", "see quantity", "its standard error; empty where there is none"),

@@ -24,6 +24,7 @@ def montecarlo():
 
     for quantities in (["volume"], ["volume", "top_wall_area"]):
         montecarlo.sample_point(SCENE, quantities, 1, 0.1, 0)
+    montecarlo.conditioned_point(SCENE, ["volume"], 1, 0.1, 0)
 
 
 KERNELS = {"dynamics": dynamics, "montecarlo": montecarlo}

@@ -12,7 +12,7 @@ def main():
     quantities = ["volume"] * point["volume"] + [f"{event}_area" for event in point["areas"]]
     shell = point["shell"] or 0.5
     result, seconds = timed(
-        lambda: montecarlo.sample_point(scene, quantities, point["samples"], shell, point["seed"])
+        lambda: montecarlo.better_point(scene, quantities, point["samples"], shell, point["seed"])
     )
     write_json(output, result)
     if cost:

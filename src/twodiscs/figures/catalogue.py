@@ -95,7 +95,7 @@ FIGURES = {
         "Volume of configuration space",
         SPACE,
         "Volume of configuration space against the radius of the discs: exact (line) and by "
-        f"rejection sampling (symbols). {SAMPLED}",
+        f"Monte Carlo sampling (symbols). {SAMPLED}",
         ("volume",),
         frozenset({"volume"}),
     ),
