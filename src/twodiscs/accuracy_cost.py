@@ -574,13 +574,15 @@ def where_single_fails(scale=1.0):
     blocks = math.ceil(PILOT_BLOCKS * scale / 2)
     for room in ROOMS:
         errors, events = {"lockstep": [], "single_precision": []}, 0
-        for near in NEAR:
+        for seed, near in enumerate(NEAR):
             scene = SCENE.with_radius(SCENE.largest_radius * (1 - room * near))
             duration = dynamics.replica_duration(scene)
             exact = theory.mean_times(scene)["disc_collision"]
             expected = blocks * dynamics.REPLICAS * duration / exact
-            double, products, eligible = dynamics.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
-            single = precision.run_blocks(scene, 1, 0, blocks, duration)[0]
+            double, products, eligible = dynamics.run_blocks(
+                scene, EVENTS, seed, 0, blocks, duration
+            )
+            single = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
             for method, counts in (("lockstep", double), ("single_precision", single)):
                 errors[method].append(float(expected / counts[dynamics.COLLISIONS] - 1))
             events += events_in(double)
