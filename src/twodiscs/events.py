@@ -22,6 +22,10 @@ END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0,
 #: at such a speed would be lost in the rounding of the velocities, and happen again and again.
 RESTING_SPEED = 4 * 2.0**-52
 
+#: Where discs are smaller than the spacing of coordinates their centres may coincide, or all but
+#: do. Below this square of their distance there is no line of centres, and they go on as they are.
+VANISHING = 1e-280
+
 
 @compiled
 def wall_quotient(position, velocity, limit):
@@ -67,13 +71,14 @@ def next_event(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sigma)
     gap_d, speed_d, approach = contact_quotient(x1 - x2, y1 - y2, u1 - u2, v1 - v2, sigma)
 
     # A tree of comparisons rather than a chain: shorter for the processor to wait for. A speed of 0
-    # never wins, because 0 · gap < gap · speed is false; nor does NaN.
-    second = gap_x2 * speed_x1 < gap_x1 * speed_x2
+    # never wins, because 0 · gap < gap · speed is false; nor does NaN. Disc 1 at rest on its wall
+    # is 0/0, against which disc 2 would not win either, and is set aside.
+    second = (gap_x2 * speed_x1 < gap_x1 * speed_x2) | (speed_x1 == 0.0)
     gap_x = gap_x2 if second else gap_x1
     speed_x = speed_x2 if second else speed_x1
     code_x = WALL_X2 if second else WALL_X1
 
-    second = gap_y2 * speed_y1 < gap_y1 * speed_y2
+    second = (gap_y2 * speed_y1 < gap_y1 * speed_y2) | (speed_y1 == 0.0)
     gap_y = gap_y2 if second else gap_y1
     speed_y = speed_y2 if second else speed_y1
     code_y = WALL_Y2 if second else WALL_Y1
@@ -109,8 +114,9 @@ def after_event(x1, y1, x2, y2, u1, v1, u2, v2, time, code, half_x, half_y):
     du, dv = u1 - u2, v1 - v2
     x1, y1, x2, y2 = x1 + u1 * time, y1 + v1 * time, x2 + u2 * time, y2 + v2 * time
     dx, dy = x1 - x2, y1 - y2
-    exchange = (dx * du + dy * dv) / (dx * dx + dy * dy)
-    exchange = exchange if code == DISC else 0.0
+    square = dx * dx + dy * dy
+    exchange = (dx * du + dy * dv) / square
+    exchange = exchange if (code == DISC) & (square > VANISHING) else 0.0
     kick_x, kick_y = exchange * dx, exchange * dy
 
     x1 = math.copysign(half_x, x1) if code == WALL_X1 else x1

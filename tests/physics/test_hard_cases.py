@@ -6,11 +6,13 @@ from itertools import islice
 import numpy as np
 import pytest
 from exact_motion import compare
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from twodiscs.dynamics import follow
 from twodiscs.invariant import draw_configuration, draw_constants, draw_velocity
 from twodiscs.scene import Scene, largest_radius
-from twodiscs.stability import hard_radii
+from twodiscs.stability import advance, box_units, hard_radii
 from twodiscs.streams import open_stream
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -86,6 +88,11 @@ def test_grazing_by_some_roundings(ulps):
     # both in corners, at the walls
     (0.55, 0.3, -0.55, -0.3, 0.7, 0.1, -0.2, -0.3),
     (0.55, 0.3, -0.55, -0.3, -0.7, -0.1, 0.2, 0.35),
+    # one disc at rest on its walls, or sliding along one, while the other one comes and goes
+    (-0.55, 0.3, -0.55, -0.3, 0.0, 0.0, 0.7, 0.7),
+    (-0.55, -0.3, 0.55, 0.3, 0.7, 0.6, 0.0, 0.0),
+    (0.55, 0.1, -0.2, -0.1, 0.0, 0.6, 0.5, 0.3),
+    (-0.2, -0.1, 0.2, 0.3, 0.5, 0.3, -0.6, 0.0),
     # discs on opposite walls, moving along them
     (0.55, 0.1, -0.55, -0.1, 0.0, 0.8, 0.0, -0.6),
 ])  # fmt: skip
@@ -121,6 +128,18 @@ def test_collisions_in_a_box_of_extreme_shape(height):
     assert compare(scene, state, 40) >= 12
 
 
+def test_discs_smaller_than_the_spacing_of_coordinates():
+    """Centres that coincide have no line of centres: no division by zero, no energy lost."""
+    scene = Scene(1e-6, 1e6, 1e-15)
+    half_x, half_y = scene.range_x / 2, scene.range_y / 2
+    for velocities in ((0.0, 0.0, 0.0, 1.0), (0.0, -1e-160, 0.0, 1.0)):
+        state = (-half_x, 0.0, -half_x, -half_y, *velocities)
+        for _ in range(20):
+            state, time, _ = advance(state, half_x, half_y, scene.contact_distance)
+            assert 0 <= time < math.inf
+            assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
+
+
 @pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (3.0, 1.0)])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9])
 def test_no_flight_passes_through_the_other_disc(box, distance):
@@ -135,3 +154,47 @@ def test_no_flight_passes_through_the_other_disc(box, distance):
         share = np.clip(-np.sum(start * step, axis=1) / square, 0, 1)
         nearest = np.hypot(*(start + share[:, None] * step).T)
         assert nearest.min() >= scene.contact_distance - 1e-14
+
+
+#: Velocities that are trouble, before they are scaled to the energy.
+speeds = st.one_of(
+    st.sampled_from([0.0, -0.0, 1.0, -1.0, 0.5, 5e-324, -1e-310, 1e-300, -1e-160, 1e-17, -1e-16]),
+    st.floats(-1, 1),
+)
+
+
+@given(
+    st.sampled_from(BOXES),
+    st.data(),
+    st.tuples(*[st.sampled_from([-1.0, 0.0, 1.0, 1 - 2.0**-53, 0.3])] * 4),
+    st.tuples(speeds, speeds, speeds, speeds),
+)
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_any_combination_of_extremes_goes_on(box, data, places, velocities):
+    """Centres in corners, on walls, on one line; velocities zero, denormal, equal: on it goes.
+
+    No time is negative or not a number, energy and gaps stay, and time advances.
+    """
+    _, _, radius = data.draw(st.sampled_from(hard_radii(*box)))
+    scene = Scene(*box, radius)
+    assume(math.hypot(*velocities) > 0.1)
+    half_x, half_y, sigma = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+    x1, y1, x2, y2 = (q * h for q, h in zip(places, (half_x, half_y) * 2, strict=True))
+    assume((x1 - x2) ** 2 + (y1 - y2) ** 2 >= sigma**2)
+    state = (x1, y1, x2, y2, *unit_speed(*velocities))
+    unit_x, unit_y = box_units(scene)
+    elapsed, number = 0.0, 0
+    for number in range(300):
+        state, time, _ = advance(state, half_x, half_y, sigma)
+        assert time >= 0
+        if time == math.inf:
+            # Only if nothing ever happens again, to within what a denormal speed takes.
+            assert number <= 8
+            return
+        elapsed += time
+        assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-12
+        assert abs(state[0]) <= half_x + 1e-15 * unit_x
+        assert abs(state[3]) <= half_y + 1e-15 * unit_y
+        gap = math.hypot(state[0] - state[2], state[1] - state[3]) - sigma
+        assert gap >= -1e-14 * max(unit_x, unit_y)
+    assert elapsed > 0
