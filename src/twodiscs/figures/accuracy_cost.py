@@ -171,7 +171,7 @@ def _area(panels, rows):
             axes.axhline(found[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
         text = rf"$\epsilon={thickness:.2g}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
-        drawing.label(panels[0], text, (1e-6, found[0]["floor"]), (0, 0.5), **style)
+        drawing.label(panels[0], text, (7.5e-7, found[0]["floor"]), (0, 0.5), **style)
     best = [row for found in _of(rows, "area", "balanced_shell").values() for row in found]
     names = {"surface": "on the surface", "sobol": "the same, Sobol points"}
     for axes in panels:
