@@ -8,7 +8,15 @@ from checkout import fresh
 from twodiscs.figures.catalogue import FIGURES
 
 #: What holds wall-clock seconds, or the date.
-TIMED = ("cost.csv", "report.html", "benchmarks/", "logs/", "points/cost/")
+TIMED = (
+    "cost.csv",
+    "forecast.csv",
+    "figures/accuracy_cost",
+    "report.html",
+    "benchmarks/",
+    "logs/",
+    "points/cost/",
+)
 
 
 def test_everything_that_is_called_for_is_built(complete):
