@@ -44,8 +44,10 @@ LANES = 64
 PASSES = 8
 LOOKS = 31
 
-#: Wall and disc events that a replica is meant to last, and where a hop is rare.
+#: Wall and disc events that a replica is meant to last; fewer where an open hop happens less than
+#: so many times in it.
 EVENTS_PER_REPLICA = 256
+HOPS_PER_REPLICA = 4
 EVENTS_BETWEEN_RARE_HOPS = 64
 
 #: Blocks of the first round, and how many times the work done so far a round may be: an error seen
@@ -203,14 +205,14 @@ def nearest_power_of_two(value):
 def replica_duration(scene):
     """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
-    That is long enough for drawing a start to cost little. Where an open hop takes longer than T on
-    average, the discs keep their sides for most of a replica, and counts of wall hits have two
-    states: then more and shorter replicas know the mean better for the same number of events.
+    That is long enough for drawing a start to cost little. Where an open hop happens less than
+    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts of wall hits
+    have two states: then more and shorter replicas know the mean better for the same work.
     """
     rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
     times = theory.mean_times(scene)
-    if any(scene.is_possible(hop) and times[hop] > duration for hop in HOPS):
+    if any(scene.is_possible(hop) and HOPS_PER_REPLICA * times[hop] > duration for hop in HOPS):
         return nearest_power_of_two(EVENTS_BETWEEN_RARE_HOPS / rate)
     return duration
 
