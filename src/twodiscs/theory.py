@@ -424,14 +424,16 @@ def threshold_time(scene, event):
 
 
 def density_at_zero(scene, hop):
-    """Return the density of the interval between hops of one kind at 0⁺, in 1/time; None if blocked.
+    """Return the density at 0⁺ of the interval between hops of one kind, in 1/time.
+
+    It is None where the hop is blocked.
 
     An interval t → 0 is a hop, one bounce and the hop back. At a vertical hop both centres are at a
     distance d from the wall that their mean y moves to, uniform on [0, B] and independent of the
     velocities. The disc that is ahead bounces, and they meet again after t = 2d/|v1 + v2|, so that
     the density of t at 0 is the mean of |v1 + v2|/(2B), weighted by the flux ∝ |v1 − v2|. The
-    two components n, m = (v1 ∓ v2)/√2 are uniform in the unit disc, so ⟨|n m|⟩/⟨|n|⟩ = (1/2π)/(4/3π)
-    and
+    components n, m = (v1 ∓ v2)/√2 are uniform in the unit disc, so that ⟨|n m|⟩/⟨|n|⟩ is
+    (1/2π)/(4/3π) and
 
         p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
 
