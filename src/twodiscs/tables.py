@@ -408,8 +408,8 @@ TABLES = {
             Column(
                 "radius",
                 "length",
-                "radius of the ratio, in the box 1.5 × 1; of a limit the radius that is approached; "
-                "empty where it does not matter, or where another box decides",
+                "radius of the ratio, in the box 1.5 × 1; of a limit the radius that is approached;"
+                " empty where it does not matter, or where another box decides",
             ),
             Column("correction", "", "what is right instead, or what else to know", str),
             Column(
