@@ -172,8 +172,8 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
     ``samples`` starts are drawn in each stratum of each of ``blocks`` ≥ 2 independent blocks, whose
     spread gives the standard error; the strata reach down to the drifts that last for the longest
-    of the times, and the work grows with it. Raises ``ValueError`` for an event that is blocked or has no interval, and for a
-    number out of range.
+    of the times, and the work grows with it. Raises ``ValueError`` for an event that is blocked or
+    has no interval, and for a number out of range.
     """
     times, upright, hop = _prepared(scene, event, times)
     samples, seed, blocks = (

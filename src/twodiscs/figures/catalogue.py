@@ -165,7 +165,9 @@ FIGURES = {
         DYNAMICS,
         "Density of the time t between successive hops for several radii, both in units of the "
         "exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen "
-        "with t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; "
+        "with t, and (b) enlarges short times in equal bins; thick dashes on its axis are the "
+        "exact densities at t = 0, of a hop that is undone after one bounce: 3√2/16 over h − 2r "
+        "for vertical hops, over w − 2r for horizontal ones. Symbols tell the radii apart; "
         "error bars are one standard error.",
         ("hop_histogram",),
         frozenset({"hop_histogram"}),

@@ -4,8 +4,10 @@ from itertools import groupby
 
 import numpy as np
 
+from twodiscs import theory
 from twodiscs.figures import drawing, panels
 from twodiscs.figures.style import BLACK, SERIES, new_figure
+from twodiscs.scene import Scene
 
 #: Inches: the panel of all intervals, that of the short ones, the gap between them, the room above.
 ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
@@ -16,6 +18,9 @@ LONGEST_SHORT = 2.5
 #: Bins grow to this fraction of the interval; the curve ends before one that holds fewer than so
 #: many.
 GROWTH, FEWEST = 0.08, 10
+
+#: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis.
+DASH = 0.035
 
 #: How far symbols stand apart in either panel, in mean times.
 APART, APART_SHORT = 1.2, 0.4
@@ -46,6 +51,10 @@ def draw(scene, tables):
             axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
+        first = group[0]
+        at_zero = theory.density_at_zero(Scene(width, height, first["radius"]), first["event"])
+        value = first["exact_mean"] * at_zero
+        short.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
