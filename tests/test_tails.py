@@ -10,9 +10,12 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs import dynamics, tails, theory
+from twodiscs import dynamics, tables, tails, theory
+from twodiscs.cli import tails as command
+from twodiscs.figures import style
+from twodiscs.figures import tails as drawing
 from twodiscs.invariant import draw_constants
-from twodiscs.scene import Scene
+from twodiscs.scene import HOPS, Scene
 from twodiscs.streams import open_stream
 
 PAPER = Scene(1.5, 1.0, 0.24)
@@ -129,3 +132,56 @@ def test_bad_requests_are_refused(change):
         request["replicas"] = request.pop("samples")
         with pytest.raises(ValueError, match=r"must|blocked"):
             tails.counted(**request)
+
+
+# The table and the figure -----------------------------------------------------------------------
+
+
+def test_the_rate_of_decay_is_that_of_the_counts():
+    """Vertical hops without drifts, between 3 and 5 mean times."""
+    scene = PAPER.with_radius(0.3)
+    first, last = in_mean_times(scene, "vertical_hop", (3, 5))
+    rate = tails.decay(scene, "vertical_hop", first, last, 20_000, 8)
+    early, late = tails.counted(scene, "vertical_hop", [first, last], 20_000, 8)
+    by_hand = math.log(early.value / late.value) / (last - first)
+    assert rate.value == pytest.approx(by_hand, rel=1e-12)
+    # Correlations between the two counts can only help, and intervals are nearly independent.
+    counts = 8 * 20_000 * late.value
+    assert rate.stderr * (last - first) < 2 / math.sqrt(counts)
+    with pytest.raises(ValueError, match="last must be shorter"):
+        tails.decay(scene, "vertical_hop", first, 1000 * last, 10, 8)
+
+
+def test_cases_of_other_boxes():
+    assert tails.cases(1.5, 1.0) == [
+        ("disc_collision", 0.24), ("vertical_hop", 0.1), ("vertical_hop", 0.3)
+    ]  # fmt: skip
+    assert [event for event, _ in tails.cases(1.0, 3.0)] == ["disc_collision", *2 * HOPS[1:]]
+    assert len(tails.cases(1.0, 1.0)) == 2
+    for bad in (0, -1, math.nan, "1", True):
+        with pytest.raises(ValueError, match="must"):
+            tails.cases(bad, 1.0)
+
+
+def test_the_command_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+    monkeypatch.setattr(tails, "WEIGHTED", (5, 50))
+    out = tmp_path / "tails.csv"
+    parameters = {"width": 1.5, "height": 1.0, "samples": 5, "replicas": 2000, "seed": 1}
+    monkeypatch.setattr("sys.argv", ["x", "--parameters", repr(parameters), "--output", str(out)])
+    command.main()
+    rows = tables.read(out, "tails")
+    assert [row["quantity"] for row in rows].count("rate") == 1
+    assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
+    with style.context():
+        whole, ratio, alone = drawing.draw({}, {"tails": rows}).axes
+    law = next(line for line in whole.lines if line.get_linestyle() == "-")
+    _, y = law.get_data()
+    times = np.array(in_mean_times(PAPER, "disc_collision", (5, 50)))
+    exact = theory.tail_constant(PAPER, "disc_collision") / times**3
+    np.testing.assert_allclose(y, exact, rtol=1e-12)
+    names = [text.get_text() for text in alone.get_legend().get_texts()]
+    assert any("fit, rate" in name for name in names)
+    assert len(ratio.containers) == 4
+    monkeypatch.setattr("sys.argv", ["x", "--parameters", "{'width': 1}", "--output", str(out)])
+    with pytest.raises(ValueError, match="parameters must be a dict of height, replicas"):
+        command.main()

@@ -424,6 +424,33 @@ TABLES = {
             ),
         ),
     ),
+    "tails": Table(
+        "One row a time t: how probable an interval T longer than t is, in the box of the first "
+        "scene.",
+        (
+            Column("event", "", "what begins and ends the interval: a hop or disc_collision", str),
+            RADIUS,
+            Column("exact_mean", "time", "exact mean interval"),
+            Column("quantity", "", "survival: P(T > t); rate: of the decay of P(T > t)", str),
+            Column(
+                "method",
+                "",
+                "counted: intervals that begin within a window; weighted: those met by starts that "
+                "are drawn near the motions that last, with exact weights",
+                str,
+            ),
+            Column("time", "time", "t; for a rate, where the fit begins"),
+            Column("until", "time", "where the fit ends; empty for survival"),
+            Column("estimate", "1/time for a rate", "estimate"),
+            Column("stderr", "as estimate", "its standard error, from independent blocks"),
+            Column(
+                "law",
+                "as estimate",
+                "C/t³ with the exact C, empty where it is 0; for a rate 1/mean, which it would be "
+                "if intervals were exponential",
+            ),
+        ),
+    ),
     "trajectory": Table(
         "One row an event of one trajectory, in order: the state at the event.",
         (

@@ -24,7 +24,7 @@ from twodiscs.dynamics import draw_starts, nearest_power_of_two
 from twodiscs.events import DISC, after_event, crosses, crossing_time, next_event
 from twodiscs.invariant import draw_configuration, draw_constants, draw_in_disc
 from twodiscs.jit import compiled
-from twodiscs.scene import HOPS, Scene, length
+from twodiscs.scene import HOPS, Scene, fits, length
 from twodiscs.statistics import Estimate
 from twodiscs.streams import next_bits, open_stream, uniform
 
@@ -196,6 +196,16 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     ]
 
 
+def _counts(scene, event, upright, hop, times, replicas, seed):
+    """Return what each replica has of P(T > t), (replicas, times): its count over the mean one."""
+    window = 8 * theory.mean_times(scene)[event]
+    counts = count_long(
+        np.uint64(seed), 0, 1, replicas, window, times, upright.contact_distance,
+        draw_constants(upright), hop,
+    )  # fmt: skip
+    return counts[:, 1:] / 8
+
+
 def counted(scene, event, times, replicas, seed):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, by plain counting.
 
@@ -206,14 +216,88 @@ def counted(scene, event, times, replicas, seed):
     """
     times, upright, hop = _prepared(scene, event, times)
     replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
-    mean = theory.mean_times(scene)[event]
-    window = 8 * mean
-    counts = count_long(
-        np.uint64(seed), 0, 1, replicas, window, times, upright.contact_distance,
-        draw_constants(upright), hop,
-    )[:, 1:] * (mean / window)  # fmt: skip
+    counts = _counts(scene, event, upright, hop, times, replicas, seed)
     errors = np.std(counts, axis=0, ddof=1) / math.sqrt(replicas)
     return [
         Estimate(float(value), float(error), replicas)
         for value, error in zip(np.mean(counts, axis=0), errors, strict=True)
     ]
+
+
+def decay(scene, event, first, last, replicas, seed):
+    """Return an ``Estimate`` of the rate at which P(T > t) falls from ``first`` to ``last``.
+
+    It is ln[P(T > first)/P(T > last)]/(last − first) from the intervals that ``counted`` counts,
+    with its error by the delta method over replicas. Raises ``ValueError`` as ``counted`` does, and
+    where no interval is longer than ``last``.
+    """
+    times, upright, hop = _prepared(scene, event, [first, last])
+    replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
+    counts = _counts(scene, event, upright, hop, times, replicas, seed)
+    early, late = counts.mean(axis=0)
+    if not late:
+        raise ValueError(f"last must be shorter: none of the intervals lasts longer than {last!r}")
+    spread = np.std(counts[:, 0] / early - counts[:, 1] / late, ddof=1) / math.sqrt(replicas)
+    return Estimate(math.log(early / late) / (last - first), spread / (last - first), replicas)
+
+
+#: Times of the tables in units of the mean: those that weighted starts reach, and plain counting.
+WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
+COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
+
+#: The window of the fitted rate, in units of the mean.
+WINDOW = (3, 9)
+
+
+def cases(width, height):
+    """Return pairs (event, radius) of a box: tails of disc collisions, of hops, and of hops alone.
+
+    Radii are 0.24, 0.1 and 0.3 times the shorter side. Beyond a quarter of it no drift avoids the
+    hops that are still open; where none is, the last case is missing.
+    """
+    width, height = length("width", width), length("height", height)
+    hop, short = "vertical_hop" if width >= height else "horizontal_hop", min(width, height)
+    found = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
+    return [
+        (event, radius)
+        for event, radius in found
+        if fits(width, height, radius) and Scene(width, height, radius).is_possible(event)
+    ]
+
+
+def rows(width, height, samples, replicas, seed):
+    """Yield the rows of tails.csv for a box, as dicts; the arguments are those of the estimates."""
+    for event, radius in cases(width, height):
+        scene = Scene(width, height, radius)
+        mean, constant = theory.mean_times(scene)[event], theory.tail_constant(scene, event)
+        start = {"event": event, "radius": radius, "exact_mean": mean}
+        found = [
+            ("counted", COUNTED, counted(scene, event, _scaled(COUNTED, mean), replicas, seed))
+        ]
+        if constant:
+            estimates = tail(scene, event, _scaled(WEIGHTED, mean), samples, seed)
+            found.append(("weighted", WEIGHTED, estimates))
+        for method, times, estimates in found:
+            for time, estimate in zip(times, estimates, strict=True):
+                law = constant / (time * mean) ** 3 if constant else None
+                yield start | _row("survival", method, time * mean, None, estimate, law)
+        if not constant:
+            first, last = _scaled(WINDOW, mean)
+            estimate = decay(scene, event, first, last, replicas, seed)
+            yield start | _row("rate", "counted", first, last, estimate, 1 / mean)
+
+
+def _scaled(times, mean):
+    return [time * mean for time in times]
+
+
+def _row(quantity, method, time, until, estimate, law):
+    return {
+        "quantity": quantity,
+        "method": method,
+        "time": time,
+        "until": until,
+        "estimate": estimate.value,
+        "stderr": estimate.stderr or None,
+        "law": law,
+    }

@@ -130,3 +130,14 @@ def stability_parameters(ordinary, hard):
         "seed": CONFIGURATION.seed,
         "width": MAIN.width,
     }
+
+
+def tails_parameters():
+    """Return what is measured of the tails: the box, and numbers of starts and replicas."""
+    return {
+        "height": MAIN.height,
+        "replicas": 400_000,
+        "samples": 200,
+        "seed": CONFIGURATION.seed,
+        "width": MAIN.width,
+    }
