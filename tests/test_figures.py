@@ -369,6 +369,19 @@ def test_blocked_hop_area_is_shown_as_zero(tables_of):
     assert {(r, 0.0) for r in blocked} <= points
 
 
+def test_densities_at_zero_are_marked(tables_of):
+    with style.context():
+        short = draw("hop_histogram", PAPER, tables_of("paper")).axes[1]
+    rows = tables_of("paper")["hop_histogram"]
+    exact = {
+        # 3√2/(16 (h − 2r)), in units of the mean time.
+        row["exact_mean"] * 3 * 2**0.5 / (16 * (1 - 2 * row["radius"]))
+        for row in rows
+    }
+    marked = {line.get_ydata()[0] for line in short.lines if not line.get_clip_on()}
+    np.testing.assert_allclose(sorted(marked), sorted(exact), rtol=1e-14)
+
+
 def test_joined_bins_hold_what_they_should():
     rows = [
         {"left": i / 4, "right": (i + 1) / 4, "count": n, "intervals": 2000}

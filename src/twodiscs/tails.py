@@ -266,16 +266,19 @@ def cases(width, height):
 
 
 def rows(width, height, samples, replicas, seed):
-    """Yield the rows of tails.csv for a box, as dicts; the arguments are those of the estimates."""
-    for event, radius in cases(width, height):
+    """Yield the rows of tails.csv for a box, as dicts; the arguments are those of the estimates.
+
+    Every case and method has a stream of its own: ``seed`` and the numbers after it.
+    """
+    seed = whole("seed", seed, 0)
+    for i, (event, radius) in enumerate(cases(width, height)):
         scene = Scene(width, height, radius)
         mean, constant = theory.mean_times(scene)[event], theory.tail_constant(scene, event)
         start = {"event": event, "radius": radius, "exact_mean": mean}
-        found = [
-            ("counted", COUNTED, counted(scene, event, _scaled(COUNTED, mean), replicas, seed))
-        ]
+        counts = counted(scene, event, _scaled(COUNTED, mean), replicas, seed + 2 * i)
+        found = [("counted", COUNTED, counts)]
         if constant:
-            estimates = tail(scene, event, _scaled(WEIGHTED, mean), samples, seed)
+            estimates = tail(scene, event, _scaled(WEIGHTED, mean), samples, seed + 2 * i + 1)
             found.append(("weighted", WEIGHTED, estimates))
         for method, times, estimates in found:
             for time, estimate in zip(times, estimates, strict=True):
@@ -283,7 +286,7 @@ def rows(width, height, samples, replicas, seed):
                 yield start | _row("survival", method, time * mean, None, estimate, law)
         if not constant:
             first, last = _scaled(WINDOW, mean)
-            estimate = decay(scene, event, first, last, replicas, seed)
+            estimate = decay(scene, event, first, last, replicas, seed + 2 * i)
             yield start | _row("rate", "counted", first, last, estimate, 1 / mean)
 
 
