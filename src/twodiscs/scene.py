@@ -1,8 +1,12 @@
-"""The scene: two equal hard discs in a rectangular box, and the geometry that follows from it.
+"""The scene: two hard discs in a rectangular box, and the geometry that follows from it.
 
-Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, masses
-are one and the total energy is 1/2, so that v1² + v2² = 1 and times are lengths over a speed of
-one.
+Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, disc 1
+has mass one and the total energy is 1/2: the speed of disc 1 is at most one, and times are lengths
+over that speed.
+
+The plain scene has equal, smooth discs between walls. A scene may call for effects: unequal radii
+or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
+are balls). What a scene does not call for is neither simulated nor compiled.
 """
 
 import math
@@ -26,8 +30,35 @@ HOPS = ("vertical_hop", "horizontal_hop")
 #: What is open to the discs, named by the hops that remain.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
+#: The axis along which an event has its place; it needs walls there.
+AXIS = {"vertical_hop": "y", "horizontal_hop": "x", "right_wall": "x", "top_wall": "y"}
+
+#: The total energy, kinetic and potential.
+ENERGY = 0.5
+
 #: Lengths outside this range would overflow or underflow when multiplied four at a time.
 SHORTEST, LONGEST = 1e-60, 1e60
+
+#: Ratios of the two discs outside this range are taken for a mistake.
+LEAST_RATIO, LARGEST_RATIO = 1e-3, 1e3
+
+
+def number(name, value, low, high, kind="number"):
+    """Return ``value`` as a float in [``low``, ``high``], or raise ``ValueError`` naming ``name``.
+
+    ``low`` is positive: anything that is not a real number, finite and positive is refused.
+    """
+    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
+        raise ValueError(f"{name} must be a positive {kind}, not {value!r}")
+    try:
+        found = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be a positive {kind}, not {value!r}") from None
+    if not math.isfinite(found) or found <= 0:
+        raise ValueError(f"{name} must be a positive, finite {kind}, not {found!r}")
+    if not low <= found <= high:
+        raise ValueError(f"{name} must lie between {low!r} and {high!r}, not {found!r}")
+    return found
 
 
 def length(name, value):
@@ -35,17 +66,7 @@ def length(name, value):
 
     A length is a real number, finite and positive, between 1e-60 and 1e60.
     """
-    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
-        raise ValueError(f"{name} must be a positive number, not {value!r}")
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a positive number, not {value!r}") from None
-    if not math.isfinite(number) or number <= 0:
-        raise ValueError(f"{name} must be a positive, finite number, not {number!r}")
-    if not SHORTEST <= number <= LONGEST:
-        raise ValueError(f"{name} must lie between {SHORTEST!r} and {LONGEST!r}, not {number!r}")
-    return number
+    return number(name, value, SHORTEST, LONGEST)
 
 
 def largest_radius(width, height):
@@ -74,63 +95,264 @@ def fits(width, height, radius):
 
 @dataclass(frozen=True)
 class Scene:
-    """Two hard discs of radius ``radius`` in a box of ``width`` × ``height``.
+    """Two hard discs in a box of ``width`` × ``height``, disc 1 of radius ``radius``.
 
-    Raises ``ValueError`` for a length that is not finite and positive, and for a radius that leaves
-    the discs no room.
+    Effects, each absent by default:
+
+    * ``depth``: the third side of the box; the discs are balls then.
+    * ``radius_ratio``, ``mass_ratio``: of disc 2 to disc 1.
+    * ``periodic``: the axes ("x", "y", "z", as text such as "xy") with neither wall nor end.
+    * ``field``: the acceleration g along −y, in speed²/length. Heights count from where each disc
+      rests on the bottom, so the potential energy is never negative.
+    * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
+      of the surfaces is reversed too, between discs and at walls. None means smooth.
+
+    Raises ``ValueError`` for a value that is not of its kind, for a radius that leaves the discs no
+    room or no motion at total energy 1/2, and for effects that do not go together.
     """
 
     width: float
     height: float
     radius: float
+    depth: float | None = None
+    radius_ratio: float = 1.0
+    mass_ratio: float = 1.0
+    periodic: str = ""
+    field: float = 0.0
+    moment_of_inertia: float | None = None
 
     def __post_init__(self):
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
-        largest = largest_radius(self.width, self.height)
-        if not fits(self.width, self.height, self.radius):
+        if self.has_effects:
+            self._check_effects()
+        if not self._fits():
             raise ValueError(
-                f"radius {self.radius!r} does not fit: two discs in a box of {self.width!r} × "
-                f"{self.height!r} need a radius below {largest!r}"
+                f"radius {self.radius!r} does not fit: two {self._what} in a box of "
+                f"{self._box} need a radius below {self.largest_radius!r}"
+            )
+        if self.field:
+            self._check_energy()
+
+    def _check_effects(self):
+        def settle(name, value):
+            object.__setattr__(self, name, value)
+
+        if self.depth is not None:
+            settle("depth", length("depth", self.depth))
+        for name in ("radius_ratio", "mass_ratio"):
+            settle(name, number(name, getattr(self, name), LEAST_RATIO, LARGEST_RATIO, "ratio"))
+        if self.moment_of_inertia is not None:
+            inertia = number("moment_of_inertia", self.moment_of_inertia, 1e-3, 1.0)
+            settle("moment_of_inertia", inertia)
+        field = self.field
+        if field != 0 or isinstance(field, bool | str):
+            settle("field", number("field", field, SHORTEST, LONGEST))
+        else:
+            settle("field", 0.0)
+
+        allowed = "".join(self.axes)
+        if not isinstance(self.periodic, str) or len(set(self.periodic)) != len(self.periodic):
+            raise ValueError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
+        for axis in self.periodic:
+            if axis not in allowed:
+                raise ValueError(
+                    f"periodic must be some of the axes {allowed}, not {self.periodic!r}"
+                )
+        settle("periodic", "".join(sorted(self.periodic)))
+        if self.field and "y" in self.periodic:
+            raise ValueError(
+                "field must be 0 where y is periodic, for nothing would hold the discs, not "
+                f"{self.field!r}"
+            )
+        if self.depth is not None and self.moment_of_inertia is not None:
+            raise ValueError(
+                "moment_of_inertia must be left out in a box with a depth (rough discs are for the "
+                f"plane), not {self.moment_of_inertia!r}"
             )
 
+    def _check_energy(self):
+        if self._lowest_potential(self._spread("y")) >= ENERGY:
+            raise ValueError(
+                f"field {self.field!r} is too strong at radius {self.radius!r}: with a total "
+                "energy of 1/2 the discs cannot leave the bottom, where they do not fit side by "
+                "side"
+            )
+        if (self.radius_ratio, self.mass_ratio) != (1.0, 1.0) and not self.vertical_hops:
+            raise ValueError(
+                "unequal discs in a field need room to pass each other on y1 = y2, or the parts "
+                "of configuration space differ from each other; in this box radius "
+                f"{self.radius!r} leaves none"
+            )
+
+    @property
+    def _what(self):
+        return "discs" if self.depth is None else "balls"
+
+    @property
+    def _box(self):
+        return " × ".join(repr(self.side(axis)) for axis in self.axes)
+
     def with_radius(self, radius):
-        """Return the same scene with discs of another radius."""
+        """Return the same scene with another radius of disc 1."""
         return replace(self, radius=radius)
+
+    @property
+    def effects(self):
+        """The effects that the scene calls for, {name: value} in the order of the fields."""
+        return {
+            name: getattr(self, name)
+            for name, default in EFFECTS.items()
+            if getattr(self, name) != default
+        }
+
+    @property
+    def has_effects(self):
+        """Whether the scene calls for any effect."""
+        return bool(self.effects)
+
+    @cached_property
+    def axes(self):
+        """The names of the axes: x, y and, for balls, z."""
+        return ("x", "y") if self.depth is None else ("x", "y", "z")
+
+    @cached_property
+    def walled(self):
+        """The axes with walls."""
+        return tuple(axis for axis in self.axes if axis not in self.periodic)
+
+    @cached_property
+    def conserved(self):
+        """The axes along which the total momentum is conserved; the ensemble has it at 0.
+
+        Those are the periodic ones, unless rough walls push the discs along themselves.
+        """
+        rough_walls = self.moment_of_inertia is not None and self.walled
+        return () if rough_walls else tuple(self.periodic)
+
+    @cached_property
+    def velocity_components(self):
+        """D: the components of velocities and spins, less the momenta that are conserved."""
+        spins = 0 if self.moment_of_inertia is None else 2
+        return 2 * len(self.axes) + spins - len(self.conserved)
+
+    @cached_property
+    def radii(self):
+        """The radii of disc 1 and disc 2."""
+        return self.radius, self.radius * self.radius_ratio
+
+    @cached_property
+    def masses(self):
+        """The masses of disc 1 and disc 2."""
+        return 1.0, self.mass_ratio
+
+    def side(self, axis):
+        """Return the side of the box along ``axis``."""
+        return {"x": self.width, "y": self.height, "z": self.depth}[axis]
 
     @cached_property
     def range_x(self):
-        """A = w − 2r: the length that a centre can cover along x."""
-        return self.width - 2 * self.radius
+        """A = w − σ: the largest separation x1 − x2 between walls; for equal discs, the range."""
+        return self.width - self.contact_distance
 
     @cached_property
     def range_y(self):
-        """B = h − 2r: the length that a centre can cover along y."""
-        return self.height - 2 * self.radius
+        """B = h − σ: the same along y."""
+        return self.height - self.contact_distance
 
     @cached_property
     def contact_distance(self):
-        """σ = 2r: the distance of the centres when the discs touch."""
-        return 2 * self.radius
+        """σ: the distance of the centres when the discs touch, twice the radius if equal."""
+        return sum(self.radii)
+
+    @cached_property
+    def exact_radii(self):
+        """The radii of the discs as fractions; the same doubles as ``radii``."""
+        return tuple(map(Fraction, self.radii))
+
+    def reach(self, axis):
+        """Return the largest separation of the centres along ``axis``, as an exact fraction.
+
+        That is the side less σ between walls, and half the side on a periodic axis, where the
+        nearest image counts.
+        """
+        side = Fraction(self.side(axis))
+        return side / 2 if axis in self.periodic else side - sum(self.exact_radii)
+
+    def _spread(self, *without):
+        """Return the sum of the squared reaches of all axes but some, an exact fraction."""
+        return sum(self.reach(axis) ** 2 for axis in self.axes if axis not in without)
+
+    def _fits(self):
+        """Say, in exact arithmetic, whether both discs have room to move."""
+        widest = 2 * max(self.exact_radii)
+        if any(Fraction(self.side(axis)) <= widest for axis in self.axes):
+            return False
+        if any(self.reach(axis) <= 0 for axis in self.axes):
+            return False
+        return self._spread() > sum(self.exact_radii) ** 2
 
     @cached_property
     def largest_radius(self):
-        """The radius at which the discs have no room left."""
-        return largest_radius(self.width, self.height)
+        """The radius of disc 1 at which the discs have no room left."""
+        if not self.has_effects:
+            return largest_radius(self.width, self.height)
+        # In σ: Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ².
+        walls = [self.side(axis) for axis in self.walled]
+        n, total = len(walls), math.fsum(walls)
+        squares = math.fsum(side * side for side in walls)
+        squares += math.fsum(self.side(axis) ** 2 / 4 for axis in self.periodic)
+        limits = [min(map(self.side, self.axes)) / max(1.0, self.radius_ratio) / 2]
+        limits += [side / (1 + self.radius_ratio) for side in walls]
+        if n == 0:
+            limits.append(math.sqrt(squares) / (1 + self.radius_ratio))
+        elif n == 1:
+            limits.append(squares / (2 * total) / (1 + self.radius_ratio))
+        elif total**2 >= (n - 1) * squares:
+            # The smaller root, without its cancellation.
+            root = math.sqrt(total**2 - (n - 1) * squares)
+            limits.append(squares / (total + root) / (1 + self.radius_ratio))
+        return min(limits)
+
+    def _lowest_potential(self, spread):
+        """Return the least potential energy of discs whose separation but for y has this square.
+
+        ``spread`` is the largest such square. The lower disc lies on the bottom and the other one
+        on it, or beside it if there is room.
+        """
+        if not self.field:
+            return 0.0
+        square = sum(self.exact_radii) ** 2 - spread
+        apart = math.sqrt(square) if square > 0 else 0.0
+        (r1, r2), (m1, m2) = self.radii, self.masses
+        return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
+
+    def _passable(self, axis):
+        """Say whether the discs can exchange sides along ``axis``."""
+        if axis not in self.walled:
+            return False
+        if self._spread(axis) <= sum(self.exact_radii) ** 2:
+            return False
+        if axis == "y":
+            (r1, r2), (m1, m2) = self.radii, self.masses
+            lowest = self.field * (m1 * (r2 - r1) if r2 > r1 else m2 * (r1 - r2))
+        else:
+            lowest = self._lowest_potential(self._spread(axis, "y"))
+        return lowest < ENERGY
 
     @cached_property
     def vertical_hops(self):
-        """Whether the discs can pass each other on y1 = y2, which takes w > 4r."""
-        return self.width > 4 * self.radius
+        """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
+        return self._passable("y")
 
     @cached_property
     def horizontal_hops(self):
-        """Whether the discs can pass each other on x1 = x2, which takes h > 4r."""
-        return self.height > 4 * self.radius
+        """Whether the discs can pass each other on x1 = x2; equal discs of the plane if h > 4r."""
+        return self._passable("x")
 
     @cached_property
     def regime(self):
-        """One of ``REGIMES``."""
+        """One of ``REGIMES``; on a periodic axis there are no hops."""
         if self.vertical_hops and self.horizontal_hops:
             return "all-hops"
         if self.vertical_hops:
@@ -139,14 +361,60 @@ class Scene:
 
     @cached_property
     def ergodic_components(self):
-        """The number of disjoint parts of configuration space: each blocked hop doubles it."""
-        return 2 ** ((not self.vertical_hops) + (not self.horizontal_hops))
+        """The number of disjoint parts of configuration space.
+
+        Each hop that is blocked between walls doubles it. A periodic axis has a way around.
+        """
+        return 2 ** sum(not self._passable(axis) for axis in self.walled)
+
+    def _confined(self, axis):
+        """Say whether disc 1 reaches the far wall of ``axis`` only from its own side of disc 2.
+
+        It does so once the hop is blocked, unless it is the larger disc and there is room for
+        disc 2 in the corner behind it.
+        """
+        if self._passable(axis) or axis not in self.walled:
+            return False
+        r1, r2 = self.exact_radii
+        if r1 <= r2:
+            return True
+        behind = (r1 - r2) ** 2
+        if self._spread(axis) + behind <= (r1 + r2) ** 2:
+            return True
+        return self._lowest_potential(self._spread(axis, "y") + behind) >= ENERGY
+
+    @cached_property
+    def confined(self):
+        """Whether only starts with x1 > x2 see the right wall, and only y1 > y2 the top wall."""
+        return self._confined("x"), self._confined("y")
+
+    @cached_property
+    def events(self):
+        """Those of ``EVENTS`` that have a place in the scene, whether or not they are possible."""
+        return tuple(
+            event
+            for event in EVENTS
+            if event == "disc_collision"
+            or (event == "any_wall" and self.walled)
+            or AXIS.get(event) in self.walled
+        )
 
     def is_possible(self, event):
-        """Say whether ``event`` ever happens; only a hop can be blocked."""
+        """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
         if event not in EVENTS:
             raise ValueError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
-        return {
-            "vertical_hop": self.vertical_hops,
-            "horizontal_hop": self.horizontal_hops,
-        }.get(event, True)
+        if event not in self.events:
+            return False
+        if event in HOPS:
+            return self._passable(AXIS[event])
+        if event == "top_wall" and self.field:
+            return self.field * (self.height - 2 * self.radius) < ENERGY
+        return True
+
+
+#: What a scene may call for, and the value that stands for its absence.
+EFFECTS = {
+    name: field.default
+    for name, field in Scene.__dataclass_fields__.items()
+    if name not in ("width", "height", "radius")
+}
