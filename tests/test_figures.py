@@ -457,7 +457,7 @@ def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path, tables_of):
 def test_settings_are_restored(tmp_path):
     before = dict(matplotlib.rcParams)
     with style.context():
-        assert matplotlib.rcParams["font.size"] == 8
+        assert matplotlib.rcParams["font.size"] == style.SETTINGS["font.size"]
     assert dict(matplotlib.rcParams) == before
 
 

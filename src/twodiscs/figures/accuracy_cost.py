@@ -169,13 +169,13 @@ def _area(panels, rows):
         for axes in panels:
             _points(axes, found, "shell", None if i else "shells", shade)
             axes.axhline(found[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
-        text = rf"$\epsilon={thickness:.2g}$"
+        text = rf"$\varepsilon={thickness:.2g}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
         drawing.label(panels[0], text, (7.5e-7, found[0]["floor"]), (0, 0.5), **style)
     best = [row for found in _of(rows, "area", "balanced_shell").values() for row in found]
     names = {"surface": "on the surface", "sobol": "the same, Sobol points"}
     for axes in panels:
-        _points(axes, best, "balanced_shell", rf"best $\epsilon$: {_slope(best[0])}")
+        _points(axes, best, "balanced_shell", rf"best $\varepsilon$: {_slope(best[0])}")
         for method, name in names.items():
             (found,) = _of(rows, "area", method).values()
             _points(axes, found, method, f"{name}: {_slope(found[0])}")

@@ -28,11 +28,11 @@ def draw(scene, tables):
     panels.logarithmic(main, radii, series)
     panels.legend(main, series, "upper left")
     panels.letter(main, "a")
-    _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), scene, found, label)
+    _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), scene, found)
     return figure
 
 
-def _approach(axes, scene, found, label):
+def _approach(axes, scene, found):
     """Draw the times over the distance from the radius at which the hop dies out."""
     width, height = scene["width"], scene["height"]
     largest = largest_radius(width, height)
@@ -54,6 +54,6 @@ def _approach(axes, scene, found, label):
         panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
-    axes.set_ylabel(label)
+    axes.set_ylabel(r"mean time $\tau$")
     axes.legend(loc="upper right")
     panels.letter(axes, "b")

@@ -58,7 +58,7 @@ def draw(scene, tables):
     left = _panel(figure, 1, 1.0, 1.4, "d", 0.9)
     _estimates(left, estimates, radii)
     _runs(_panel(figure, 1, 2.6, 1.8, "e", 0.1), runs, radii)
-    _times(_panel(figure, 1, 5.75, 1.15, "f", 1.0), parts.get("times", []))
+    _times(_panel(figure, 1, 5.8, 1.1, "f", 1.05), parts.get("times", []))
     _reversal(_panel(figure, 2, 0.5, 2.6, "g"), parts.get("reversal", []))
     _coverage(_panel(figure, 2, 3.65, 3.25, "h"), parts.get("coverage", []))
     return figure
@@ -228,13 +228,13 @@ def _runs(axes, rows, radii):
         events = rf"$10^{{{round(math.log10(row['count']))}}}$"
         at = 1, places[row["case"], row["radius"]]
         drawing.label(axes, events, at, (4, 0), fontsize=6.5, **beside)
-    drawing.label(axes, "events", (1, -0.6), (2, 5), fontsize=6.5, **beside)
+    drawing.label(axes, "events", (1, -0.6), (4, 5), fontsize=6.5, **beside)
 
 
 def _heading(axes):
     """Put the legend above the panel."""
-    tight = {"handletextpad": 0.1, "columnspacing": 0.8, "borderaxespad": 0.0, "borderpad": 0.1}
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1.01), ncols=3, **SMALL | tight)
+    tight = {"handletextpad": 0.1, "columnspacing": 0.5, "borderaxespad": 0.0, "borderpad": 0.1}
+    axes.legend(loc="lower right", bbox_to_anchor=(0.97, 1.01), ncols=3, **SMALL | tight)
 
 
 def _times(axes, rows):
@@ -246,7 +246,7 @@ def _times(axes, rows):
         style = {"color": colour, "marker": marker, "markersize": SIZES[marker]}
         axes.plot(row["value"], i, markerfacecolor="white", **style)
     axes.set(xscale="log", xlim=(0.1, 20))
-    axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)")
+    axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
     axes.xaxis.set_minor_formatter(NullFormatter())
     for row in rows[:1]:
         axes.axvline(row["high"], **BOUND)

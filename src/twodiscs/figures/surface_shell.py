@@ -68,10 +68,10 @@ def _hop(axes, b, epsilon):
     # ε is a distance in configuration space; along an axis the shell is √2 times wider.
     c, h = -0.3 * b, epsilon / sqrt(2)
     drawing.arrow(axes, (c, c), (c + h, c - h), width=0.8, size=6)
-    drawing.label(axes, r"$\epsilon$", (c + h, c - h), (5, -4))
+    drawing.label(axes, r"$\varepsilon$", (c + h, c - h), (5, -4))
     y = 0.4 * b
     drawing.arrow(axes, (y, y), (y - d, y), "<|-|>", width=0.6, size=5)
-    drawing.label(axes, r"$\sqrt{2}\,\epsilon$", (y - d, y), (-12, 1))
+    drawing.label(axes, r"$\sqrt{2}\,\varepsilon$", (y - d, y), (-12, 1))
 
 
 def _collision(axes, a, b, radius, epsilon):
@@ -100,4 +100,4 @@ def _collision(axes, a, b, radius, epsilon):
     c, s = 0.6, 0.8
     tail, head = (c * rim, s * rim), (c * (rim + epsilon), s * (rim + epsilon))
     drawing.arrow(axes, tail, head, width=0.8, size=6)
-    drawing.label(axes, r"$\epsilon$", head, (4, 5))
+    drawing.label(axes, r"$\varepsilon$", head, (4, 5))
