@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from copy import deepcopy
+from itertools import pairwise
 from pathlib import Path
 
 import jsonschema
@@ -297,12 +298,146 @@ def test_parameters_are_plain_sorted_and_complete():
     assert jobs(one(**BASE))["theory",]["radii"] == [0.0375, 0.1, 0.112, 0.188, 0.2, 0.262]
 
 
+# Effects
+
+WALLS = ("right_wall", "top_wall", "any_wall")
+
+#: What a scene may ask for, the events that have a place in it, and its hop histograms' radii.
+CALLS = [
+    ({"radius_ratio": 0.5, "mass_ratio": 2}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
+    ({"periodic": ["x"]}, ("vertical_hop", "disc_collision", "top_wall", "any_wall"),
+     (0.0375, 0.112, 0.188, 0.262)),
+    ({"periodic": ["y"]}, ("horizontal_hop", "disc_collision", "right_wall", "any_wall"),
+     (0.025, 0.075, 0.125, 0.175)),
+    ({"periodic": ["y", "x"]}, ("disc_collision",), ()),
+    ({"field": 1}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
+    ({"moment_of_inertia": 0.5}, EVENTS, ()),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("effects", "events", "histograms"), CALLS)
+def test_everything_is_what_has_a_place(effects, events, histograms):
+    request = one(effects=effects)
+    assert request.watch.areas == request.watch.mean_times == events
+    assert request.watch.hop_histogram == histograms
+    assert request.histogram_event == next((e for e in events if e.endswith("hop")), None)
+    assert (request.watch.trajectory is None) == (effects == {"periodic": ["y", "x"]})
+    named = {name: "".join(sorted(v)) if isinstance(v, list) else v for name, v in effects.items()}
+    for radius in request.radii + request.watch.hop_histogram:
+        assert request.scene(radius) == Scene(1.5, 1, radius, **named)
+    assert request.scene(0.1).effects == request.effects
+    asked = one(effects=effects, watch={"areas": True, "mean_times": True})
+    assert asked.watch.areas == asked.watch.mean_times == events
+
+
+def test_default_radii_keep_to_what_there_is():
+    """Equal steps to 0.9 of the largest; thresholds of hops follow from the energy too."""
+    channel = one(effects={"periodic": ["x"]}, radii={"smallest": 0.05, "count": 5})
+    largest = Scene(1.5, 1, 0.1, periodic="x").largest_radius
+    steps = [b - a for a, b in pairwise(channel.radii)]
+    assert channel.radii[0] == 0.05
+    assert channel.radii[-1] == pytest.approx(0.9 * largest, rel=0.01)
+    assert max(steps) == pytest.approx(min(steps), rel=0.1)
+    # With g = 2 two discs one above the other have the energy up to r = 1/(4g).
+    strong = one(effects={"field": 2}, watch={"hop_histogram": {"event": "horizontal_hop"}})
+    assert strong.watch.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
+    assert one(effects={"field": 2}).watch.trajectory == 0.12
+    # The larger disc has a hundredth of the side.
+    assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
+    assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
+    include = one(effects={"field": 1}, radii={"count": 4, "include": [0.123]}).radii
+    assert len(include) == 5
+
+
+def test_balls_are_discs_with_a_depth():
+    request = one(box={"width": 1.5, "height": 1, "depth": "1.2"}, effects={"periodic": ["z"]})
+    assert request.effects == {"depth": 1.2, "periodic": "z"}
+    assert request.scene(0.1) == Scene(1.5, 1, 0.1, depth=1.2, periodic="z")
+    assert request.watch.mean_times == EVENTS
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [{}, {"radius_ratio": 1, "mass_ratio": "1.0", "periodic": [], "field": 0}, {"field": 0.0}],
+)
+def test_effects_that_are_absent_leave_no_trace(effects):
+    assert one(effects=effects) == one()
+    assert one(effects=effects).effects == {}
+
+
+def test_parameters_say_the_effects_and_nothing_else():
+    plain = edited()
+    watch = BASE["watch"] | {"hop_histogram": [0.1]}
+    field = jobs(one(**BASE | {"watch": watch}, effects={"field": 1, "mass_ratio": 2}))
+    named = {"field": 1.0, "mass_ratio": 2.0}
+    assert all(parameters.pop("effects") == named for parameters in field.values())
+    assert "effects" not in repr(plain)
+    assert repr(field) == repr(jobs(one(**BASE | {"watch": watch})))
+    rough = jobs(one(effects={"moment_of_inertia": 0.4}, radii=[0.1]))
+    assert all(map(is_plain_and_sorted, rough.values()))
+    assert rough["dynamics", "0.1"]["effects"] == {"moment_of_inertia": 0.4}
+    torus = one(effects={"periodic": ["x", "y"]}, radii=[0.1])
+    assert torus.dynamics_parameters("0.1")["effects"] == {"periodic": "xy"}
+    assert torus.box_parameters() == {"effects": {"periodic": "xy"}, "height": 1.0, "width": 1.5}
+
+
+def test_parameters_of_plain_scenes_are_as_they_ever_were():
+    """Literally, for another spelling would rerun what is built."""
+    watch = BASE["watch"] | {"hop_histogram": [0.2], "mean_times": ["top_wall"]}
+    request = one(radii=[0.1], watch=watch, accuracy=0.01, event_budget=9)
+    assert repr(jobs(request)) == repr(PLAIN_JOBS)
+
+
+PLAIN_JOBS = {
+    ("theory",): {"height": 1.0, "radii": [0.1, 0.2], "width": 1.5},
+    ("scene",): {"height": 1.0, "radii": [0.1], "width": 1.5},
+    ("trajectory",): {"height": 1.0, "radius": 0.24, "seed": 271026068793761292, "width": 1.5},
+    ("monte_carlo", "0.1"): {
+        "areas": list(EVENTS), "height": 1.0, "radius": 0.1, "samples": 100000000,
+        "seed": 2870083659485779642, "shell": 0.02, "volume": True, "width": 1.5,
+    },
+    ("dynamics", "0.1"): {
+        "accuracy": {"top_wall": 0.01}, "event_budget": 9, "height": 1.0, "radius": 0.1,
+        "seed": 7773604374841850693, "width": 1.5,
+    },
+    ("intervals", "0.2"): {
+        "event": "vertical_hop", "height": 1.0, "intervals": 1000000, "radius": 0.2,
+        "seed": 8420814236072247529, "width": 1.5,
+    },
+}  # fmt: skip
+
+
+# What is built once
+
+
+def test_what_is_built_once():
+    known = config.schema()["properties"]["shared"]["items"]["enum"]
+    assert config.load(PLAIN).shared == tuple(known)
+    assert config.load(PLAIN | {"shared": []}).shared == ()
+    assert config.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
+    # The manuscript brings along what it reads.
+    paper = config.load(PLAIN | {"shared": ["paper"]}).shared
+    assert paper == ("errata", "accuracy_cost", "stability", "paper")
+    assert {*config.ABOUT_PLAIN, *config.READ_BY_PAPER} < set(known)
+
+
+def test_what_is_about_a_plain_scene_needs_one():
+    plain = PLAIN["scenes"][0] | {"name": "plain"}
+    field = PLAIN["scenes"][0] | {"name": "field", "effects": {"field": 1}}
+    assert config.load({"scenes": [field, plain]}).main.name == "plain"
+    alone = config.load({"scenes": [field]})
+    assert alone.main is None
+    assert not {*config.ABOUT_PLAIN} & {*alone.shared}
+    with pytest.raises(config.ConfigError, match="shared must leave out 'tails' where every scene"):
+        config.load({"scenes": [field], "shared": ["report", "tails"]})
+
+
 # Mistakes: a whole file, a line at its top or in its only scene, and the sentence that it gets.
 # "…" stands for any text.
 
 FILES = {
-    "": ": must hold a block of the keys results, seed, accuracy_cost, scenes, not empty",
-    "- 1": ": must hold a block of the keys results, seed, accuracy_cost, scenes, not [1]",
+    "": ": must hold a block of the keys results, seed, accuracy_cost, shared, scenes, not empty",
+    "- 1": ": must hold a block of the keys results, seed, accuracy_cost, shared, scenes, not [1]",
     "seed: 1\nseed: 2": ", line 2: the key 'seed' is given a second time",
     "scenes:\n- box: {width: 1, height: 1, width: 2}": ", line 2: the key 'width' is given a sec…",
     "results: here\nscenes: [": ", line 2: …",
@@ -322,7 +457,7 @@ LINES = {
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
     "zz: 1": (
         "the configuration has an unknown key 'zz'; its keys are results, seed, accuracy_cost, "
-        "scenes"
+        "shared, scenes"
     ),
     "1: 2": "the configuration has an unknown key 1; …",
     "seed: -1": "seed must be an integer from 0 to 2^63 - 1, not -1",
@@ -340,6 +475,10 @@ LINES = {
     "results: ''": "results must be a path …, not ''",
     "results: 7": "results must be a path …, not 7",
     "results:": "results must be a path …, not empty",
+    "shared: report": "shared must be a list of different names among errata, …, not 'report'",
+    "shared: [paper, paper]": "shared must be a list of different names …, not ['paper', 'paper']",
+    "shared: [papers]": "shared[0] must be one of …, not 'papers'; did you mean 'paper'?",
+    "shared:": "shared must be a list of different names …, not empty",
 }
 
 SCENES = {
@@ -352,11 +491,11 @@ SCENES = {
     'name: "a\\n"': ".name must be a name …, not 'a\\n'",
     "name: 2024": ".name must be a name …, not 2024",
     "name: [a]": ".name must be a name …, not ['a']",
-    "name: figures": ".name must be … none of benchmarks, draft, figures, logs, not 'figures'",
+    "name: figures": ".name must be … none of benchmarks, …, not 'figures'",
     "name: logs": ".name must be a name …, not 'logs'",
     "name: benchmarks": ".name must be a name …, not 'benchmarks'",
     "name: draft": ".name must be a name …, not 'draft'",
-    "box: [1.5, 1]": ".box must be a block of two keys, {width: …, height: …}, not [1.5, 1]",
+    "box: [1.5, 1]": ".box must be a block {width: …, height: …}, …, not [1.5, 1]",
     "box: {width: 1.5}": ".box needs the key 'height'",
     "box: {width: 1.5, heigth: 1}": ".box has an unknown key 'heigth'; did you mean 'height'?",
     "box: {width: -1.5, height: 1}": ".box.width must be a positive length …, not -1.5",
@@ -413,6 +552,29 @@ SCENES = {
     "watch: {trajectory: 0.5}": ".watch.trajectory: radius 0.5 does not fit: …",
     "watch: {trajectory: -1}": ".watch.trajectory must be true, false, or a positive …, not -1.0",
     "watch: {trajectory: [0.2]}": ".watch.trajectory must be true, …, not [0.2]",
+    "box: {width: 1, height: 1, depth: 0}": ".box.depth must be a positive length …, not 0.0",
+    "box: {width: 1, height: 1, dept: 1}": ".box has an unknown key 'dept'; did you mean 'depth'?",
+    "effects:": ".effects must be a block of the keys radius_ratio, …, not empty",
+    "effects: [field]": ".effects must be a block of the keys radius_ratio, …, not ['field']",
+    "effects: {gravity: 1}": ".effects has an unknown key 'gravity'; …",
+    "effects: {radius_ratio: 0}": ".effects.radius_ratio must be a ratio between …, not 0.0",
+    "effects: {radius_ratio: 2000}": ".effects.radius_ratio must be a ratio between …, not 2000.0",
+    "effects: {mass_ratio: -1}": ".effects.mass_ratio must be a ratio between …, not -1.0",
+    "effects: {mass_ratio: heavy}": ".effects.mass_ratio must be a ratio between …, not 'heavy'",
+    "effects: {mass_ratio: true}": ".effects.mass_ratio must be a ratio between …, not True",
+    "effects: {periodic: x}": ".effects.periodic must be a list of different axes …, not 'x'",
+    "effects: {periodic: xy}": ".effects.periodic must be a list of different axes …, not 'xy'",
+    "effects: {periodic: y}": ".effects.periodic must be a list of different axes …, not 'y'",
+    "effects: {periodic: true}": ".effects.periodic must be a list of different axes …, not True",
+    "effects: {periodic: [x, x]}": ".effects.periodic must be a list of …, not ['x', 'x']",
+    "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",
+    "effects: {periodic: [z]}": ".effects: periodic must be some of the axes xy, not 'z'",
+    "effects: {field: -1}": ".effects.field must be 0 or an acceleration …, not -1.0",
+    "effects: {field: .nan}": ".effects.field must be 0 or an acceleration …, not nan",
+    "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e+60, not 1e-70",
+    "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
+    "effects: {moment_of_inertia: 0}": ".effects.moment_of_inertia must be a number …, not 0.0",
+    "effects: {moment_of_inertia: 2}": ".effects.moment_of_inertia must be a number …, not 2.0",
     "accuracy: 0": ".accuracy must be a number above 0 and at most 1, a preset …, not 0.0",
     "accuracy: 1.01": ".accuracy must be a number above 0 and at most 1, …, not 1.01",
     "accuracy: -1e-3": ".accuracy must be a number above 0 and at most 1, …, not -0.001",
@@ -434,6 +596,56 @@ SCENES = {
     "monte_carlo: {shell: 1}": ".monte_carlo.shell must be … below 1, not 1.0",
     "monte_carlo: 1e8": ".monte_carlo must be a block of two keys, …, not '1e8'",
     "montecarlo: {}": " has an unknown key 'montecarlo'; did you mean 'monte_carlo'?",
+}
+
+
+#: Lines that go together.
+EFFECTS = {
+    ("box: {width: 1, height: 1, depth: 1}", "effects: {moment_of_inertia: 0.4}"): (
+        ".effects: moment_of_inertia must be left out in a box with a depth …, not 0.4"
+    ),
+    ("effects: {periodic: [x]}", "watch: {mean_times: [vertical_hop, horizontal_hop]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, vertical_hop, "
+        "disc_collision, top_wall, any_wall, not 'horizontal_hop'"
+    ),
+    ("effects: {periodic: [x]}", "watch: {areas: [right_wall]}"): (
+        ".watch.areas must keep to what has a place in the scene, …, not 'right_wall'"
+    ),
+    ("effects: {periodic: [y]}", "watch: {mean_times: [top_wall]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, …, not 'top_wall'"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {mean_times: [any_wall]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, disc_collision, not "
+        "'any_wall'"
+    ),
+    ("effects: {periodic: [x]}", "watch: {hop_histogram: {event: horizontal_hop}}"): (
+        ".watch.hop_histogram.event must have a place in the scene, as vertical_hop has, not "
+        "'horizontal_hop'"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {hop_histogram: true}"): (
+        ".watch.hop_histogram must be false, for on periodic axes hops have no place"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {trajectory: 0.1}"): (
+        ".watch.trajectory must be false, for on periodic axes hops have no place"
+    ),
+    ("effects: {moment_of_inertia: 0.5}", "watch: {hop_histogram: [0.1]}"): (
+        ".watch.hop_histogram must be false, for rough discs in a box are not ergodic and their "
+        "intervals have no exact mean; watch mean_times instead"
+    ),
+    ("effects: {field: 2}", "watch: {hop_histogram: {event: horizontal_hop, radii: [0.2]}}"): (
+        ".watch.hop_histogram must keep to radii below 0.125, where horizontal_hop is possible, "
+        "not 0.2"
+    ),
+    ("effects: {field: 100}", "radii: [0.38]"): (
+        ".radii: field 100.0 is too strong at radius 0.38: …"
+    ),
+    ("effects: {field: 1, mass_ratio: 2}", "radii: [0.378]"): (
+        ".radii: unequal discs in a field need room to pass each other …"
+    ),
+    ("effects: {radius_ratio: 2}", "radii: [0.25]"): ".radii: radius 0.25 does not fit: …",
+    ("effects: {radius_ratio: 2}", "radii: {smallest: 0.24}"): (
+        ".radii: smallest must be below 0.225…, not 0.24"
+    ),
 }
 
 
@@ -473,6 +685,14 @@ def test_a_bad_line_in_a_scene_gets_a_sentence(tmp_path, line, expected):
     block = "\n    ".join(lines.values())
     sentence = refusal(tmp_path / "bad.yaml", f"scenes:\n  - {block}\n")
     assert agrees(sentence, f"scenes[0]{expected}")
+
+
+@pytest.mark.parametrize(("lines", "expected"), EFFECTS.items())
+def test_effects_that_make_no_sense_get_a_sentence(tmp_path, lines, expected):
+    block = {"name": "name: one", "box": "box: {width: 1.5, height: 1}"}
+    block |= {line.split(":")[0]: line for line in lines}
+    text = "scenes:\n  - " + "\n    ".join(block.values()) + "\n"
+    assert agrees(refusal(tmp_path / "bad.yaml", text), f"scenes[0]{expected}")
 
 
 def test_two_scenes_of_one_name_are_refused():

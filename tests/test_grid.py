@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from twodiscs import grid
-from twodiscs.scene import fits, largest_radius
+from twodiscs.scene import Scene, fits, largest_radius
 
 sides = st.floats(-6, 6).map(lambda x: 10**x)
 
@@ -132,3 +132,51 @@ def test_bad_seeds_are_refused(arguments, sentence):
 def test_what_is_no_radius_has_no_key(bad):
     with pytest.raises(ValueError, match="radius must"):
         grid.key(bad)
+
+
+@given(st.floats(-6, 6).map(lambda x: 10**x), st.floats(1.01, 1e4), st.integers(2, 1000))
+def test_even_radii_are_even(smallest, ratio, count):
+    largest = ratio * smallest
+    radii = grid.even_radii(smallest, largest, count)
+    step = (largest - smallest) / (count - 1)
+    assert len(radii) == count
+    assert radii[0] == smallest
+    for i, radius in enumerate(radii):
+        assert abs(radius - (smallest + i * step)) < 0.2500001 * step
+        assert radius < 1.0100001 * largest
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ((0.2, 0.2, 5), r"smallest must be below 0\.2, not 0\.2"),
+        ((0.1, 0.2, 0), "count must be an integer from 1 to 1000, not 0"),
+        ((0.1, 0.2, 1001), "count must be an integer"),
+        ((0.1, 0.2, 2.0), "count must be an integer"),
+        ((-0.1, 0.2, 2), "smallest must be a positive"),
+        ((0.1, math.inf, 2), "largest must be a positive"),
+    ],
+)
+def test_even_radii_that_make_no_sense(arguments, sentence):
+    assert grid.even_radii(0.1, 0.2, 1) == (0.1,)
+    with pytest.raises(ValueError, match=sentence):
+        grid.even_radii(*arguments)
+
+
+@given(sides, sides)
+def test_ends_are_found_to_the_last_digit(width, height):
+    """The closed forms of a plain box: w/4 or the largest radius, which ``fits`` decides."""
+
+    def scene_at(radius):
+        return Scene(width, height, radius)
+
+    found = grid.end(scene_at, min(width, height) / 2)
+    assert not fits(width, height, found)
+    assert fits(width, height, math.nextafter(found, 0))
+    hop = grid.end(scene_at, min(width, height) / 2, lambda scene: scene.vertical_hops)
+    assert hop == (width / 4 if fits(width, height, math.nextafter(width / 4, 0)) else found)
+
+
+def test_an_end_that_is_not_there():
+    assert grid.end(lambda radius: Scene(1, 1, radius), 0.5, lambda scene: False) < 1e-18
+    assert grid.end(lambda radius: None, 0.5) == 0.5

@@ -12,13 +12,13 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import yaml
 
-from twodiscs import grid
-from twodiscs.scene import EVENTS, Scene, largest_radius
+from twodiscs import grid, parameters
+from twodiscs.scene import EFFECTS, EVENTS, HOPS, largest_radius
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -28,6 +28,16 @@ HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
 
 #: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
 TRAJECTORY_FRACTION = 0.24
+
+#: The same for a scene with effects, over the radius at which the first hop becomes blocked.
+BELOW_THRESHOLD = 0.96
+
+#: The default grid of a scene with effects ends at this fraction of its largest radius.
+LAST_FRACTION = 0.9
+
+#: What is built once and is about the first scene without effects, and what the manuscript reads.
+ABOUT_PLAIN = ("errata", "stability", "tails", "paper")
+READ_BY_PAPER = ("errata", "accuracy_cost", "stability")
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
@@ -66,16 +76,18 @@ class Watch:
 class SceneRequest:
     """One scene of the configuration, checked and with every default filled in.
 
-    ``radii`` ascend, and ``accuracy`` is {event: relative standard error} for the watched mean
-    times. Each ``…_parameters`` method returns what one job depends on and nothing else, as a dict
-    of plain Python values with sorted keys, so that an edit reruns the jobs it concerns and no
-    other. A job for one radius is named by its key; the jobs that exist are ``monte_carlo_keys``,
-    ``dynamics_keys`` and ``intervals_keys``.
+    ``effects`` are those of the ``Scene``, {name: value}, without those that are absent; ``radii``
+    ascend, and ``accuracy`` is {event: relative standard error} for the watched mean times. Each
+    ``…_parameters`` method returns what one job depends on and nothing else, as a dict of plain
+    Python values with sorted keys, so that an edit reruns the jobs it concerns and no other; with
+    effects they have an entry of that name besides. A job for one radius is named by its key; the
+    jobs that exist are ``monte_carlo_keys``, ``dynamics_keys`` and ``intervals_keys``.
     """
 
     name: str
     width: float
     height: float
+    effects: dict
     radii: tuple
     watch: Watch
     accuracy: dict
@@ -106,67 +118,70 @@ class SceneRequest:
         """Keys of the radii of the hop histograms."""
         return tuple(map(grid.key, self.watch.hop_histogram))
 
+    def scene(self, radius):
+        """Return the ``Scene`` at a ``radius``; raise ``ValueError`` where there is none."""
+        return parameters.scene(self.box_parameters(), radius)
+
+    def box_parameters(self):
+        """Return height, width."""
+        return self._sorted()
+
     def scene_parameters(self):
         """Return the box and the scene's radii: height, radii, width."""
-        return {"height": self.height, "radii": list(self.radii), "width": self.width}
+        return self._sorted(radii=list(self.radii))
 
     def theory_parameters(self):
         """Return height, radii (the scene's and those of its hop histograms), width."""
-        radii = sorted({*self.radii, *self.watch.hop_histogram})
-        return {"height": self.height, "radii": radii, "width": self.width}
+        return self._sorted(radii=sorted({*self.radii, *self.watch.hop_histogram}))
 
     def monte_carlo_parameters(self, key):
         """Return areas, height, radius, samples, seed, shell, volume, width.
 
         ``areas`` lists events and ``volume`` is a bool; ``shell`` is None where no area is watched.
         """
-        return {
-            "areas": list(self.watch.areas),
-            "height": self.height,
-            "radius": self._radius(key, self.monte_carlo_keys),
-            "samples": self.monte_carlo_samples,
-            "seed": grid.stream_seed(self.seed, self.name, "monte_carlo", key),
-            "shell": self.shell_fraction if self.watch.areas else None,
-            "volume": self.watch.volume,
-            "width": self.width,
-        }
+        return self._sorted(
+            areas=list(self.watch.areas),
+            radius=self._radius(key, self.monte_carlo_keys),
+            samples=self.monte_carlo_samples,
+            seed=grid.stream_seed(self.seed, self.name, "monte_carlo", key),
+            shell=self.shell_fraction if self.watch.areas else None,
+            volume=self.watch.volume,
+        )
 
     def dynamics_parameters(self, key):
         """Return accuracy, event_budget, height, radius, seed, width.
 
         ``accuracy`` is {event: relative standard error}, and its events are those to watch.
         """
-        return {
-            "accuracy": dict(sorted(self.accuracy.items())),
-            "event_budget": self.event_budget,
-            "height": self.height,
-            "radius": self._radius(key, self.dynamics_keys),
-            "seed": grid.stream_seed(self.seed, self.name, "dynamics", key),
-            "width": self.width,
-        }
+        return self._sorted(
+            accuracy=dict(sorted(self.accuracy.items())),
+            event_budget=self.event_budget,
+            radius=self._radius(key, self.dynamics_keys),
+            seed=grid.stream_seed(self.seed, self.name, "dynamics", key),
+        )
 
     def intervals_parameters(self, key):
         """Return event (the hop), height, intervals (their number), radius, seed, width."""
-        return {
-            "event": self.histogram_event,
-            "height": self.height,
-            "intervals": self.histogram_samples,
-            "radius": self._radius(key, self.intervals_keys),
-            "seed": grid.stream_seed(self.seed, self.name, "intervals", key),
-            "width": self.width,
-        }
+        return self._sorted(
+            event=self.histogram_event,
+            intervals=self.histogram_samples,
+            radius=self._radius(key, self.intervals_keys),
+            seed=grid.stream_seed(self.seed, self.name, "intervals", key),
+        )
 
     def trajectory_parameters(self):
         """Return height, radius, seed, width; raise ``ValueError`` if no trajectory is watched."""
         radius = self.watch.trajectory
         if radius is None:
             raise ValueError(f"scene {self.name} watches no trajectory")
-        return {
-            "height": self.height,
-            "radius": radius,
-            "seed": grid.stream_seed(self.seed, self.name, "trajectory", grid.key(radius)),
-            "width": self.width,
-        }
+        return self._sorted(
+            radius=radius,
+            seed=grid.stream_seed(self.seed, self.name, "trajectory", grid.key(radius)),
+        )
+
+    def _sorted(self, **more):
+        box = {"height": self.height, "width": self.width}
+        return dict(sorted((box | parameters.described(self.effects) | more).items()))
 
     def _radius(self, key, keys):
         if key not in keys:
@@ -178,13 +193,20 @@ class SceneRequest:
 class Configuration:
     """A whole configuration: the folder of results, the root seed and the scenes in their order.
 
-    ``accuracy_cost_seconds`` is the processor time for the comparison of methods.
+    ``accuracy_cost_seconds`` is the processor time for the comparison of methods, and ``shared``
+    names what is built once, in the order of the schema, with all that the manuscript reads.
     """
 
     results: str
     seed: int
     accuracy_cost_seconds: float
+    shared: tuple
     scenes: tuple
+
+    @property
+    def main(self):
+        """The first scene without effects, or None."""
+        return next((scene for scene in self.scenes if not scene.effects), None)
 
     def scene(self, name):
         """Return the scene called ``name``, or raise ``ValueError``."""
@@ -216,7 +238,8 @@ def load(mapping):
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
     seconds = settled["accuracy_cost"]["seconds"]
-    return Configuration(settled["results"], settled["seed"], seconds, scenes)
+    shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
+    return Configuration(settled["results"], settled["seed"], seconds, shared, scenes)
 
 
 def read(path):
@@ -337,15 +360,21 @@ def _fill_defaults(value, node):
 
 
 def _scene(block, path, seed):
-    box = block["box"]["width"], block["box"]["height"]
-    watched = block.get("watch", dict.fromkeys(Watch.__dataclass_fields__, True))
-    histogram = _histogram(watched["hop_histogram"], box, f"{path}.watch.hop_histogram")
+    place = _place(block, path)
+    radii = _radii(block["radii"], place, f"{path}.radii")
+    scene = parameters.scene(place, radii[0])
+    watched = block.get("watch")
+    if watched is None:
+        watched = dict.fromkeys(Watch.__dataclass_fields__, True)
+        watched["trajectory"] = bool(_hops(scene))
+        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene)
+    histogram = _histogram(watched["hop_histogram"], place, scene, f"{path}.watch.hop_histogram")
     watch = Watch(
         volume=watched["volume"],
-        areas=_events(watched["areas"]),
-        mean_times=_events(watched["mean_times"]),
+        areas=_events(watched["areas"], scene, f"{path}.watch.areas"),
+        mean_times=_events(watched["mean_times"], scene, f"{path}.watch.mean_times"),
         hop_histogram=histogram["radii"],
-        trajectory=_trajectory(watched["trajectory"], box, f"{path}.watch.trajectory"),
+        trajectory=_trajectory(watched["trajectory"], place, scene, f"{path}.watch.trajectory"),
     )
     if not watch.quantities:
         known = ", ".join(Watch.__dataclass_fields__)
@@ -356,9 +385,10 @@ def _scene(block, path, seed):
     precisions = {event: accuracy.get(event, accuracy["default"]) for event in watch.mean_times}
     return SceneRequest(
         name=block["name"],
-        width=box[0],
-        height=box[1],
-        radii=_radii(block["radii"], box, f"{path}.radii"),
+        width=place["width"],
+        height=place["height"],
+        effects=place.get("effects", {}),
+        radii=radii,
         watch=watch,
         accuracy={event: PRESETS.get(value, value) for event, value in precisions.items()},
         event_budget=block["event_budget"],
@@ -370,63 +400,157 @@ def _scene(block, path, seed):
     )
 
 
-def _radii(asked, box, path):
+def _place(block, path):
+    """Return the parameters of a scene's box and effects, which are checked to go together."""
+    box, named = dict(block["box"]), dict(block["effects"])
+    named["periodic"] = "".join(sorted(named["periodic"]))
+    if "depth" in box:
+        named["depth"] = box.pop("depth")
+    named = {name: value for name, value in named.items() if value != EFFECTS[name]}
+    place = box | parameters.described(named)
+    if named:
+        tiny = 1e-6 * min(_sides(place)) / max(1, named.get("radius_ratio", 1))
+        try:
+            parameters.scene(place, tiny)
+        except ValueError as error:
+            raise ConfigError(f"{path}.effects: {error}") from None
+    return place
+
+
+def _sides(place):
+    effects = place.get("effects", {})
+    return [place["width"], place["height"], *(effects[n] for n in ("depth",) if n in effects)]
+
+
+def _end(place, holds=lambda scene: True):
+    """Return the radius from which on there is no scene with effects or it no longer ``holds``."""
+    return grid.end(partial(parameters.scene, place), min(_sides(place)) / 2, holds)
+
+
+def _radii(asked, place, path):
     if isinstance(asked, list):
-        return _checked(asked, box, path)
-    smallest = asked.get("smallest", _short(min(box) / 100))
-    _checked([smallest], box, f"{path}.smallest")
-    include = _checked(asked.get("include", []), box, f"{path}.include")
+        return _checked(asked, place, path)
+    smallest = asked.get("smallest", _smallest(place))
+    _checked([smallest], place, f"{path}.smallest")
+    include = _checked(asked.get("include", []), place, f"{path}.include")
     try:
-        generated = grid.radii(*box, smallest, asked["count"])
+        if "effects" in place:
+            generated = grid.even_radii(smallest, LAST_FRACTION * _end(place), asked["count"])
+        else:
+            generated = grid.radii(place["width"], place["height"], smallest, asked["count"])
     except ValueError as error:
         raise ConfigError(f"{path}: {error}") from None
-    return tuple(sorted({*generated, *include}))
+    return _checked(tuple({*generated, *include}), place, path)
 
 
-def _histogram(asked, box, path):
+def _smallest(place):
+    ratio = place.get("effects", {}).get("radius_ratio", 1)
+    return _short(min(_sides(place)) / max(1, ratio) / 100)
+
+
+def _hops(scene):
+    return [hop for hop in HOPS if hop in scene.events]
+
+
+def _is_smooth(scene):
+    return scene.moment_of_inertia is None
+
+
+def _histogram(asked, place, scene, path):
     """Return the histogram's radii (a tuple, empty if it is off), event and number of intervals."""
     if isinstance(asked, bool):
         asked = {} if asked else {"radii": []}
     elif isinstance(asked, list):
         asked = {"radii": asked}
-    scene = schema()["properties"]["scenes"]["items"]
-    _fill_defaults(asked, scene["properties"]["watch"]["properties"]["hop_histogram"])
-    event = asked["event"]
-    threshold = min(box[0 if event == "vertical_hop" else 1] / 4, largest_radius(*box))
+    keys = schema()["properties"]["scenes"]["items"]["properties"]["watch"]["properties"]
+    _fill_defaults(asked, keys["hop_histogram"])
+    hops = _hops(scene)
+    event = asked.get("event", next(iter(hops), None))
+    if asked.get("radii") == []:
+        return {**asked, "radii": (), "event": event}
+    if not _is_smooth(scene):
+        raise ConfigError(
+            f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
+            "have no exact mean; watch mean_times instead"
+        )
+    if not hops:
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if event not in hops:
+        raise ConfigError(
+            f"{path}.event must have a place in the scene, as {hops[0]} has, not {event!r}"
+        )
+    threshold = _threshold(place, event)
     default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
-    radii = _checked(asked.get("radii", default), box, path)
+    radii = _checked(asked.get("radii", default), place, path)
     for radius in radii:
-        if not Scene(*box, radius).is_possible(event):
+        if not parameters.scene(place, radius).is_possible(event):
             raise ConfigError(
                 f"{path} must keep to radii below {threshold!r}, where {event} is possible, "
                 f"not {radius!r}"
             )
-    return {**asked, "radii": radii}
+    return {**asked, "radii": radii, "event": event}
 
 
-def _trajectory(asked, box, path):
+def _threshold(place, hop):
+    """Return the radius at which a hop becomes blocked, or the discs jam before."""
+    if "effects" in place:
+        return _end(place, lambda scene: scene.is_possible(hop))
+    box = place["width"], place["height"]
+    return min(box[0 if hop == "vertical_hop" else 1] / 4, largest_radius(*box))
+
+
+def _trajectory(asked, place, scene, path):
     if asked is False:
         return None
-    radius = _short(TRAJECTORY_FRACTION * min(box)) if asked is True else asked
-    return _checked([radius], box, path)[0]
+    if not _hops(scene):
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if asked is not True:
+        radius = asked
+    elif "effects" in place:
+        radius = _short(BELOW_THRESHOLD * min(_threshold(place, hop) for hop in _hops(scene)))
+    else:
+        radius = _short(TRAJECTORY_FRACTION * min(_sides(place)))
+    return _checked([radius], place, path)[0]
 
 
-def _events(asked):
+def _events(asked, scene, path):
+    """Return the events asked for in the order of ``EVENTS``, if all have a place in the scene."""
     if isinstance(asked, bool):
-        return EVENTS if asked else ()
+        return scene.events if asked else ()
+    for event in asked:
+        if event not in scene.events:
+            raise ConfigError(
+                f"{path} must keep to what has a place in the scene, {', '.join(scene.events)}, "
+                f"not {event!r}"
+            )
     return tuple(event for event in EVENTS if event in asked)
 
 
-def _checked(radii, box, path):
+def _checked(radii, place, path):
     """Return ``radii`` as an ascending tuple if all of them fit and none appears twice."""
     for i, radius in enumerate(radii):
         try:
-            Scene(*box, radius)
+            parameters.scene(place, radius)
         except ValueError as error:
             raise ConfigError(f"{path}: {error}") from None
         if radius in radii[:i]:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
     return tuple(sorted(radii))
+
+
+def _shared(asked, all_have_effects):
+    """Return the names of what is built once, in the order of the schema."""
+    known = schema()["properties"]["shared"]["items"]["enum"]
+    if asked is None:
+        asked = [name for name in known if not (all_have_effects and name in ABOUT_PLAIN)]
+    for name in asked:
+        if all_have_effects and name in ABOUT_PLAIN:
+            raise ConfigError(
+                f"shared must leave out {name!r} where every scene has effects, for it is about a "
+                "scene without them"
+            )
+    wanted = {*asked, *(READ_BY_PAPER if "paper" in asked else ())}
+    return tuple(name for name in known if name in wanted)
 
 
 def _short(value):

@@ -83,6 +83,40 @@ def radii(width, height, smallest, count):
     return tuple(result)
 
 
+def even_radii(smallest, largest, count):
+    """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
+
+    Each is rounded to the fewest digits that leave it near its place, but for the first. Raises
+    ``ValueError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
+    """
+    smallest, largest = length("smallest", smallest), length("largest", largest)
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
+        raise ValueError(f"count must be an integer from 1 to {MOST}, not {count!r}")
+    if smallest >= largest:
+        raise ValueError(f"smallest must be below {largest!r}, not {smallest!r}")
+    step = (largest - smallest) / max(count - 1, 1)
+    places = [largest - i * step for i in reversed(range(count - 1))]
+    return (smallest, *(_shortest_decimal(p, min(step / 4, p / 100), avoid=()) for p in places))
+
+
+def end(scene_at, widest, holds=lambda scene: True):
+    """Return the radius up to ``widest`` from which on there is no scene, or it no longer holds.
+
+    ``scene_at`` makes the scene of a radius and raises ``ValueError`` where there is none;
+    ``holds`` says something of a scene that is true of small discs and false of larger ones. By
+    bisection, to the last digit; below ``widest``/2⁶⁰ nothing is found.
+    """
+    low, high = 0.0, length("widest", widest)
+    for _ in range(60):
+        middle = (low + high) / 2
+        try:
+            found = holds(scene_at(middle))
+        except ValueError:
+            found = False
+        low, high = (middle, high) if found else (low, middle)
+    return high
+
+
 def _shortest_decimal(value, distance, avoid):
     """Return the number of fewest digits within ``distance`` of ``value`` and not in ``avoid``."""
     candidates = (float(f"{value:.{digits}g}") for digits in range(1, 18))
