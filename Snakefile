@@ -6,7 +6,7 @@ import sys
 from snakemake.utils import min_version
 
 from twodiscs.config import ConfigError, load, read
-from twodiscs.figures.catalogue import FIGURES, SHARED
+from twodiscs.figures.catalogue import ANIMATION, FIGURES, SHARED
 from twodiscs.sources import imported
 from twodiscs.tables import TABLES
 
@@ -38,6 +38,7 @@ include: "workflow/rules/tables.smk"
 include: "workflow/rules/check.smk"
 include: "workflow/rules/errata.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/animation.smk"
 include: "workflow/rules/accuracy_cost.smk"
 include: "workflow/rules/stability.smk"
 include: "workflow/rules/tails.smk"

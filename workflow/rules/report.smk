@@ -17,6 +17,7 @@ rule report:
             rules.stability.input,
             [list(table_files(scene).values()) for scene in SCENES.values()],
             [list(figure_files(scene).values()) for scene in SCENES.values()],
+            rules.animation.input,
         ],
         texts=expand(
             "workflow/report/{text}.rst", text=["workflow", "table", "figure", "paper"]

@@ -200,6 +200,17 @@ FIGURES = {
     ),
 }
 
+#: Not a figure for paper, and so none that the manuscript or the rule of figures knows.
+ANIMATION = Entry(
+    "The two discs, animated",
+    DYNAMICS,
+    "The discs as they move, before and after a hop of the rarer kind. Traces are the latest paths "
+    "of the centres, and the picture stops at the moment of the hop. Beneath, the separation of "
+    "the discs against time: the hop changes its sign.",
+    ("trajectory",),
+    frozenset({"trajectory"}),
+)
+
 COST, NUMERICS = "What accuracy costs", "Numerical stability"
 
 #: Figures that are made once, not for every scene.

@@ -1,0 +1,212 @@
+"""The two discs as they move: long on their sides, until they squeeze past each other.
+
+An animated GIF for the screen. The discs move freely between events, so straight lines through the
+rows of trajectory.csv are the trajectory itself; frames follow each other in equal steps of time,
+and one of them shows the moment of the hop.
+"""
+
+from collections import Counter
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgba
+from matplotlib.patches import Circle
+from PIL import Image
+
+from twodiscs.figures import drawing
+from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.scene import HOPS, length
+
+#: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
+DPI = 100
+ACROSS, TALLEST, STRIP = 3.8, 2.6, 0.62
+LEFT, RIGHT, TOP, GAP, BOTTOM = 0.5, 0.12, 0.28, 0.1, 0.36
+
+#: Frames before and after the hop, and those in which a disc at speed one goes as far as the box is
+#: wide and high.
+BEFORE, AFTER, CROSSING = 110, 60, 50
+
+#: Frames that a trace goes back and that the hop stays marked.
+TRACE, MARKED = 20, 20
+
+#: Milliseconds that a frame, the hop and the last frame are shown.
+FRAME, HOP, LAST = 50, 1500, 1000
+
+#: Colours of all frames, and how much they differ at least, summed over red, green and blue.
+COLOURS, APART = 32, 60
+
+
+def moments(rows, step):
+    """Return (times of the frames, name of the hop or None, its time) for rows of trajectory.csv.
+
+    The hop is the rarest kind that occurs, and of these the first with no other one within the
+    stretch of time that is shown, or else the first of all. Frames are ``step`` apart, the hop is
+    one of them, and all lie within the trajectory; without any hop they show how it starts. Raises
+    ``ValueError`` if it does not last two frames.
+    """
+    start, end = rows[0]["time"], rows[-1]["time"]
+    counts = Counter(row["event"] for row in rows if row["event"] in HOPS)
+    hop = min(sorted(counts), key=counts.get, default=None)
+    times = [start, *(row["time"] for row in rows if row["event"] == hop), end]
+    alone = [
+        time
+        for before, time, after in zip(times, times[1:], times[2:], strict=False)
+        if time - before > BEFORE * step and after - time > AFTER * step
+    ]
+    centre = (alone or times[1:])[0] if hop else start
+    found = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
+    found = found[(found >= start) & (found <= end)]
+    if len(found) < 2:
+        raise ValueError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
+    return found, hop, centre
+
+
+class Stage:
+    """The panels and what moves in them, for one stretch of a trajectory."""
+
+    def __init__(self, scene, rows):
+        width, height = drawing.box(scene)
+        radius = length("radius", scene["radius"])
+        step = (width + height) / CROSSING
+        self.rows = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        self.times, self.hop, self.centre = moments(rows, step)
+        self.trace, self.marked = TRACE * step, MARKED * step
+        self.axis = "y" if self.hop == "vertical_hop" else "x"
+
+        inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
+        beneath = BOTTOM + STRIP + GAP
+        self.figure = new_figure(beneath + inches * height + TOP, ACROSS)
+        self.figure.set_dpi(DPI)
+        spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
+        x, y = width / 2, height / 2
+        self.box = drawing.place(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
+        drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
+        above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
+        text = rf"$w\times h={width:g}\times{height:g}$,  $r={radius:g}$"
+        drawing.label(self.box, text, (0, 1), (0, 5), **above)
+        self._draw_strip()
+        self.moving = self._moving(radius, (-x, x, -y, y))
+
+    def places(self, disc, times):
+        """Return the centres (n, 2) of a disc at ``times``."""
+        return np.column_stack(
+            [np.interp(times, self.rows["time"], self.rows[f"{q}{disc}"]) for q in "xy"]
+        )
+
+    def path(self, start, end):
+        """Return the times of all rows between two moments, and these two."""
+        times = self.rows["time"]
+        return np.array([start, *times[(times > start) & (times < end)], end])
+
+    def apart(self, times):
+        """Return the separation of the discs along the axis of the hop."""
+        axis = "xy".index(self.axis)
+        return (self.places(2, times) - self.places(1, times))[:, axis]
+
+    def _draw_strip(self):
+        """Draw how the separation is going to change, below the box."""
+        up = self.figure.get_figheight()
+        area = (LEFT / ACROSS, BOTTOM / up, (ACROSS - LEFT - RIGHT) / ACROSS, STRIP / up)
+        self.strip = self.figure.add_axes(area)
+        times = self.path(self.times[0], self.times[-1])
+        apart = self.apart(times)
+        reach = 1.1 * np.abs(apart).max()
+        self.strip.set(
+            xlim=(times[0], times[-1]),
+            ylim=(-reach, reach),
+            xlabel="time $t$",
+            ylabel=f"${self.axis}_2-{self.axis}_1$",
+        )
+        self.strip.axhline(0, color=GREY, lw=0.5)
+        self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
+
+    def _moving(self, radius, extent):
+        """Return {name: artist} of what changes from frame to frame, in the order of drawing."""
+        x0, x1, y0, y1 = extent
+        found = {}
+        for disc, (face, edge) in enumerate(drawing.DISCS, 1):
+            found[f"disc {disc}"] = self.box.add_patch(
+                Circle((0, 0), radius, facecolor=face, edgecolor=edge, linewidth=1.2)
+            )
+        for disc, (_, edge) in enumerate(drawing.DISCS, 1):
+            found[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
+            (found[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
+            found[f"number {disc}"] = drawing.label(
+                self.box, f"{disc}", (0, 0), (-9, 9), color=edge, fontsize=11
+            )
+        middle = self.places(1, [self.centre])[0]
+        line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
+        (found["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
+        found["text"] = self.box.annotate(
+            rf"hop:  ${self.axis}_1={self.axis}_2$", (1, 1), (0, 5), "axes fraction",
+            "offset points", ha="right", va="bottom", fontsize=10,
+            bbox={"boxstyle": "round,pad=0.2", "facecolor": ORANGE, "edgecolor": "none"},
+        )  # fmt: skip
+        (found["past"],) = self.strip.plot([], [], color=BLUE, lw=0.9)
+        (found["hops"],) = self.strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
+        (found["now"],) = self.strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
+        return found
+
+    def show(self, time):
+        """Move everything to where it is at ``time``."""
+        moving = self.moving
+        past = self.path(max(time - self.trace, self.times[0]), time)
+        for disc, (_, edge) in enumerate(drawing.DISCS, 1):
+            places = self.places(disc, past)
+            fading = [to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]]
+            moving[f"trace {disc}"].set(
+                segments=np.stack([places[:-1], places[1:]], axis=1), colors=fading
+            )
+            moving[f"disc {disc}"].center = places[-1]
+            moving[f"centre {disc}"].set_data(*places[-1:].T)
+            moving[f"number {disc}"].xy = places[-1]
+        since = time - self.centre if self.hop else -1
+        moving["line"].set_visible(since == 0)
+        moving["text"].set_visible(0 <= since < self.marked)
+        past = self.path(self.times[0], time)
+        moving["past"].set_data(past, self.apart(past))
+        moving["now"].set_data([time], self.apart([time]))
+        kinds, times = self.rows["event"], self.rows["time"]
+        hops = times[(kinds == self.hop) & (times >= self.times[0]) & (times <= time)]
+        moving["hops"].set_data(hops, 0 * hops)
+
+
+def animate(scene, rows, path):
+    """Write an animated GIF of one hop to ``path``.
+
+    ``scene`` is a dict of width, height and radius; ``rows`` are those of trajectory.csv, at least
+    two frames of them. Raises ``ValueError`` for anything else.
+    """
+    if not rows:
+        raise ValueError("rows must be those of a trajectory, not none")
+    stage = Stage(scene, rows)
+    canvas = stage.figure.canvas
+    for artist in stage.moving.values():
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(stage.figure.bbox)
+
+    def image(time):
+        canvas.restore_region(still)
+        stage.show(time)
+        for artist in stage.moving.values():
+            stage.figure.draw_artist(artist)
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+
+    palette = _palette(image(stage.centre))  # in the frame of the hop everything is to be seen
+    first, *others = [image(t).quantize(palette=palette, dither=0) for t in stage.times]
+    shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
+    shown[-1] = LAST
+    options = {"duration": shown, "loop": 0, "disposal": 1}
+    first.save(path, "GIF", save_all=True, append_images=others, **options)
+
+
+def _palette(image):
+    """Return an image whose palette are the most frequent colours of ``image`` that differ."""
+    chosen = []
+    for _, colour in sorted(image.getcolors(1 << 24), reverse=True):
+        if all(sum(map(abs, np.subtract(colour, other))) >= APART for other in chosen):
+            chosen.append(colour)
+    found = Image.new("P", (1, 1))
+    found.putpalette([channel for colour in chosen[:COLOURS] for channel in colour])
+    return found
