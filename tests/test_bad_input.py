@@ -200,12 +200,18 @@ MISTAKES = {
     "accuracy": ["{}", "{'hop': 0.1}", "{'any_wall': 0}", "{'any_wall': '0.1'}", "0.1"],
     "event": ["'hop'", "3"],
 }
+EFFECTS = [
+    "1", "None", "['field']", "{'gravity': 1}", "{'field': -1.0}", "{'field': '1'}",
+    "{'periodic': 'xx'}", "{'periodic': 'z'}", "{'periodic': 1}", "{'mass_ratio': 0}",
+    "{'radius_ratio': 1e9}", "{'radius_ratio': 4.0}", "{'moment_of_inertia': 2.0}",
+    "{'field': 1.0, 'periodic': 'y'}", "{'depth': 1.0, 'moment_of_inertia': 0.4}",
+]  # fmt: skip
 CASES = [
     (job, name, text)
     for job, good in JOBS.items()
     for name in good
     for text in MISTAKES.get(name, [])
-]
+] + [(job, "effects", text) for job in JOBS for text in EFFECTS]
 
 
 def run_job(job, text, capsys, monkeypatch, tmp_path):

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from twodiscs import theory
+from twodiscs import scene, theory
 from twodiscs.cli import arguments, main
 from twodiscs.scene import EVENTS, Scene
 
@@ -73,6 +73,16 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
             "width must be a positive, finite",
         ),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
+        ([*BOX, "--radius", "0.1", "--mass-ratio", "0"], "mass_ratio must be a positive"),
+        ([*BOX, "--radius", "0.1", "--mass-ratio", "two"], "argument --mass-ratio: must be a num"),
+        ([*BOX, "--radius", "0.1", "--periodic", "z"], "periodic must be some of the axes xy"),
+        ([*BOX, "--radius", "0.1", "--gravity", "1"], "unrecognized arguments: --gravity 1"),
+        ([*BOX, "--radius", "0.1", "--field", "1", "--periodic", "y"], "field must be 0 where y"),
+        ([*BOX, "--radius", "0.4", "--radius-ratio", "2"], "radius 0.4 does not fit"),
+        (
+            [*BOX, "--radius", "0.1", "--depth", "1", "--moment-of-inertia", "0.4"],
+            "moment_of_inertia must be left out",
+        ),
     ],
 )
 def test_a_mistake_is_one_sentence(monkeypatch, capsys, words, sentence):
@@ -82,6 +92,21 @@ def test_a_mistake_is_one_sentence(monkeypatch, capsys, words, sentence):
     assert err.startswith("error: ")
     assert sentence in err
     assert err.count("\n") == 1
+
+
+EFFECTS = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
+
+
+def test_effects_are_options(monkeypatch, capsys):
+    assert main.EFFECTS.keys() == scene.EFFECTS.keys()
+    words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]
+    status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words, "--json")
+    assert status in (None, 0)
+    assert json.loads(out) == theory.exact(Scene(1.5, 1, 0.1, **EFFECTS))
+    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words)
+    assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in EFFECTS.items())
+    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--depth", "1.2")
+    assert out.startswith("Two balls of radius 0.1 in a box of 1.5 × 1.0 × 1.2\n")
 
 
 def test_the_installed_command():
@@ -95,6 +120,14 @@ def test_the_installed_command():
 def test_parameters_come_back_from_their_text():
     value = {"a": [1, 2.5, "x"], "b": {"c": None, "d": True}}
     assert arguments.parameters(repr(value)) == value
+
+
+def test_parameters_may_be_optional():
+    for value in ({"a": 1}, {"a": 1, "b": 2}):
+        assert arguments.parameters(repr(value), "a", optional=["b"]) == value
+    for value in ({"b": 1}, {"a": 1, "c": 2}):
+        with pytest.raises(ValueError, match="parameters must be a, not"):
+            arguments.parameters(repr(value), "a", optional=["b"])
 
 
 @pytest.mark.parametrize("text", ["", "1", "[1]", "{", "{a: 1}", "dict()", "{[]: 1}", "(" * 500])

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from twodiscs import grid, tables, theory
 from twodiscs.cli import figure as command
 from twodiscs.figures import catalogue, curves, hop_histogram, hopping_trajectory, panels, style
+from twodiscs.figures import limits as limits_module
 from twodiscs.figures.catalogue import FIGURES, SHARED
 from twodiscs.figures.limits import limits
 from twodiscs.scene import EVENTS, Scene
@@ -246,7 +247,8 @@ def test_texts_stand_clear(name, box, tables_of, shown_texts):
 @pytest.mark.parametrize("box", BOXES.values())
 def test_curves_approach_every_limit_from_both_sides(box):
     ends = [0, *(radius for radius, _ in limits(*box))]
-    for branch, (low, high) in zip(curves.branches(*box), pairwise(ends), strict=True):
+    scene = {"width": box[0], "height": box[1]}
+    for branch, (low, high) in zip(curves.branches(scene), pairwise(ends), strict=True):
         assert (np.diff(branch) > 0).all()
         assert low < branch[0]
         assert branch[-1] < high
@@ -255,7 +257,7 @@ def test_curves_approach_every_limit_from_both_sides(box):
 
 
 def test_curves_break_where_times_jump():
-    radii, exact = curves.exact(*PAPER)
+    radii, exact = curves.exact({"width": 1.5, "height": 1.0})
     gaps = np.flatnonzero(np.isnan(radii))
     assert len(gaps) == 3
     for event, factors in (("right_wall", [2, 1]), ("top_wall", [1, 2]), ("any_wall", [1, 1])):
@@ -274,6 +276,53 @@ def test_limits_of_the_boxes():
     assert [name for _, name in limits(1, 1.5)] == ["w/4", "h/4", r"r_{\mathrm{max}}"]
     assert [name for _, name in limits(1, 1)] == ["h/4=w/4", r"r_{\mathrm{max}}"]
     assert limits(3, 1) == [(0.25, "h/4"), (0.5, r"r_{\mathrm{max}}")]
+
+
+def test_limits_follow_from_the_box_or_from_the_scene():
+    """An effect too small to matter leaves the radii where they are, but for rounding."""
+    for width, height in BOXES.values():
+        box = {"width": width, "height": height}
+        plain = limits_module.scene_limits(box)
+        assert plain == limits(width, height)
+        same = limits_module.scene_limits(box | {"effects": {"mass_ratio": 1 + 1e-15}})
+        assert len(same) == len(plain)
+        for (a, _), (b, _) in zip(same, plain, strict=True):
+            assert a == pytest.approx(b, rel=1e-15)
+        ends = limits_module.hop_ends(box | {"effects": {"mass_ratio": 2.0}})
+        assert [end for end, _ in ends.values()] == pytest.approx(
+            [end for end, _ in limits_module.hop_ends(box).values()], rel=1e-15
+        )
+
+
+@pytest.mark.parametrize(
+    ("effects", "expected"),
+    [
+        ({"periodic": "x"}, {"v": 0.375}),
+        ({"periodic": "y"}, {"h": 0.25}),
+        ({"periodic": "xy"}, {}),
+        # Two discs one above the other need 2 g r < 1/2; one reaches the top if g (h − 2r) < 1/2.
+        ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),
+        # The larger disc 1 passes behind disc 2 as long as h < (√r1 + √r2)².
+        ({"radius_ratio": 0.25}, {"h": 0.4, "x": 4 / 9}),
+        ({"radius_ratio": 4.0}, {"h": 0.1}),
+    ],
+)
+def test_limits_of_scenes_with_effects(effects, expected):
+    scene = {"width": 1.5, "height": 1.0, "effects": effects}
+    *found, (largest, name) = limits_module.scene_limits(scene)
+    assert name == r"r_{\mathrm{max}}"
+    assert largest == pytest.approx(Scene(1.5, 1.0, 0.1, **effects).largest_radius, rel=1e-14)
+    named = {index: radius for radius, text in found for index in re.findall(r"\{(\w)\}", text)}
+    assert named == pytest.approx(expected, rel=1e-15)
+
+
+def test_a_field_lowers_the_largest_radius():
+    scene = {"width": 1.5, "height": 1.0, "effects": {"field": 10.0}}
+    *_, (largest, _) = limits_module.scene_limits(scene)
+    assert largest < Scene(1.5, 1.0, 0.1, field=10.0).largest_radius
+    Scene(1.5, 1.0, largest * (1 - 1e-15), field=10.0)
+    with pytest.raises(ValueError, match="too strong"):
+        Scene(1.5, 1.0, largest, field=10.0)
 
 
 @given(

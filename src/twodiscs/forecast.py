@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from twodiscs.checks import whole
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.scene import Scene
+from twodiscs.parameters import scene as scene_of
 
 STAGES = ("monte_carlo", "dynamics", "intervals")
 
@@ -84,7 +84,7 @@ def pilot_monte_carlo(job):
     """Return the ``Pilot`` of a job of Monte Carlo, given its parameters."""
     from twodiscs import montecarlo
 
-    scene = Scene(job["width"], job["height"], job["radius"])
+    scene = scene_of(job, job["radius"])
     quantities = ["volume"] * job["volume"] + [f"{event}_area" for event in job["areas"]]
 
     def sample(samples):
@@ -100,7 +100,7 @@ def pilot_intervals(job):
     """Return the ``Pilot`` of a job of hop intervals, given its parameters."""
     from twodiscs import dynamics
 
-    scene = Scene(job["width"], job["height"], job["radius"])
+    scene = scene_of(job, job["radius"])
     block = dynamics.CHAINS * dynamics.RETURNS
 
     def record():
@@ -115,7 +115,7 @@ def pilot_dynamics(job):
     """Return the ``Pilot`` of a job of molecular dynamics, given its parameters."""
     from twodiscs import dynamics
 
-    scene = Scene(job["width"], job["height"], job["radius"])
+    scene = scene_of(job, job["radius"])
     duration = dynamics.replica_duration(scene)
 
     def count(blocks):

@@ -15,10 +15,10 @@ class Parser(argparse.ArgumentParser):
         fail(message)
 
 
-def parameters(text, *names):
+def parameters(text, *names, optional=()):
     """Return the dict that ``text`` spells as a Python literal; raise ``ValueError`` otherwise.
 
-    If ``names`` are given, they must be its keys, all of them and no others.
+    If ``names`` are given, they must be its keys, all of them and no others but the ``optional``.
     """
     try:
         value = ast.literal_eval(text)
@@ -26,7 +26,7 @@ def parameters(text, *names):
         value = None
     if not isinstance(value, dict):
         raise ValueError(f"parameters must be a Python dict of plain values, not {text!r}")
-    if names and value.keys() != set(names):
+    if names and value.keys() - set(optional) != set(names):
         found = ", ".join(map(str, value)) or "none"
         raise ValueError(f"parameters must be {', '.join(sorted(names))}, not {found}")
     return value

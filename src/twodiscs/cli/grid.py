@@ -1,13 +1,12 @@
 """Write grid.csv: the radii of a scene, with the regime that each of them is in."""
 
-from twodiscs import tables
+from twodiscs import parameters, tables
 from twodiscs.cli import arguments
-from twodiscs.scene import Scene
 
 
-def rows(width, height, radii):
-    """Return the rows of grid.csv for a box of ``width`` × ``height``, one for each radius."""
-    scenes = [Scene(width, height, radius) for radius in radii]
+def rows(given):
+    """Return the rows of grid.csv for the parameters ``given``, one for each radius."""
+    scenes = [parameters.scene(given, radius) for radius in given["radii"]]
     return [
         {
             "radius": scene.radius,
@@ -21,11 +20,14 @@ def rows(width, height, radii):
 
 def main():
     parser = arguments.Parser(prog="python -m twodiscs.cli.grid", description=__doc__)
-    parser.add_argument("--parameters", required=True, help="a dict of height, radii, width")
+    parser.add_argument(
+        "--parameters", required=True, help="a dict of height, radii, width; effects"
+    )
     parser.add_argument("--output", required=True, help="grid.csv")
     options = parser.parse_args()
-    given = arguments.parameters(options.parameters, "height", "radii", "width")
-    tables.write(options.output, "grid", rows(**given))
+    names = ("height", "radii", "width")
+    given = arguments.parameters(options.parameters, *names, optional=["effects"])
+    tables.write(options.output, "grid", rows(given))
 
 
 if __name__ == "__main__":

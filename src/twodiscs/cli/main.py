@@ -3,7 +3,16 @@
 import json
 
 from twodiscs.cli import arguments
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.scene import Scene
+
+EFFECTS = {
+    "depth": "third side of the box; the discs are balls then",
+    "radius_ratio": "radius of disc 2 to that of disc 1",
+    "mass_ratio": "mass of disc 2 to that of disc 1",
+    "periodic": "axes with neither walls nor ends, such as x or xy",
+    "field": "acceleration along −y",
+    "moment_of_inertia": "that of rough discs, over m r²",
+}
 
 
 def main():
@@ -17,14 +26,19 @@ def _main():
     exact = commands.add_parser(
         "exact",
         help="exact volume, areas and mean times of one scene",
-        description="Exact volume, areas and mean times, for unit masses and total energy 1/2.",
+        description="Exact volume, areas and mean times; disc 1 has mass 1, total energy is 1/2.",
     )
     for name in ("width", "height", "radius"):
         exact.add_argument(f"--{name}", type=arguments.number, required=True)
+    effects = exact.add_argument_group("effects", "what the scene calls for besides")
+    for name, meaning in EFFECTS.items():
+        kind = str if name == "periodic" else arguments.number
+        effects.add_argument(f"--{name.replace('_', '-')}", type=kind, help=meaning)
     exact.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args()
 
-    scene = Scene(options.width, options.height, options.radius)
+    named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
+    scene = Scene(options.width, options.height, options.radius, **named)
     from twodiscs import theory
 
     numbers = theory.exact(scene)
@@ -35,17 +49,21 @@ def _main():
 
 def _table(scene, numbers):
     times = {e: "impossible" if t is None else repr(t) for e, t in numbers["mean_times"].items()}
+    effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.effects.items()]
+    what = "discs" if scene.depth is None else "balls"
+    box = " × ".join(repr(scene.side(axis)) for axis in scene.axes)
     return "\n".join(
         [
-            f"Two discs of radius {scene.radius!r} in a box of {scene.width!r} × {scene.height!r}",
+            f"Two {what} of radius {scene.radius!r} in a box of {box}",
             "",
+            *effects,
             f"{'regime':<20}{numbers['regime']}",
             f"{'ergodic components':<20}{numbers['ergodic_components']}",
             f"{'largest radius':<20}{numbers['largest_radius']!r}",
             f"{'volume':<20}{numbers['volume']!r}",
             "",
             f"{'event':<20}{'area':<24}mean time",
-            *(f"{event:<20}{numbers['areas'][event]!r:<24}{times[event]}" for event in EVENTS),
+            *(f"{event:<20}{area!r:<24}{times[event]}" for event, area in numbers["areas"].items()),
         ]
     )
 

@@ -4,21 +4,22 @@ import json
 import time
 
 from twodiscs.cli.arguments import Parser, parameters
-from twodiscs.scene import Scene
+from twodiscs.parameters import scene
 
 
 def arguments(description, *names):
     """Return (parameters, scene, path of the point file, path of the cost file or None).
 
-    The parameters are width, height, radius, seed and those of the ``names``.
+    The parameters are width, height, radius, seed, those of the ``names`` and maybe effects.
     """
     parser = Parser(description=description)
     parser.add_argument("--parameters", required=True, help="all the job depends on, a dict")
     parser.add_argument("--output", required=True, help="the point file to write, JSON")
     parser.add_argument("--cost", help="where to write the number of events and the seconds, JSON")
     given = parser.parse_args()
-    point = parameters(given.parameters, "width", "height", "radius", "seed", *names)
-    return point, Scene(point["width"], point["height"], point["radius"]), given.output, given.cost
+    names = ("width", "height", "radius", "seed", *names)
+    point = parameters(given.parameters, *names, optional=["effects"])
+    return point, scene(point, point["radius"]), given.output, given.cost
 
 
 def write_json(path, content):

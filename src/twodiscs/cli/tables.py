@@ -7,9 +7,9 @@
 import json
 from pathlib import Path
 
-from twodiscs import comparison, tables
+from twodiscs import comparison, parameters, tables
 from twodiscs.cli import arguments
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.scene import EVENTS
 
 #: The tables made here, and the points that each of them takes.
 TAKES = {
@@ -77,7 +77,7 @@ def _rows(name, box, exact, points, forecast):
     if name == "cost":
         return comparison.cost_rows(points["cost"], forecast)
     radius = next(point["radius"] for kind in TAKES[name] for point in points[kind])
-    scene = Scene(box["width"], box["height"], radius)
+    scene = parameters.scene(box, radius)
     watched = box.get("areas", EVENTS)
     found = {
         "volume": lambda: comparison.volume_rows(exact, points["monte_carlo"]),
@@ -94,7 +94,7 @@ def _rows(name, box, exact, points, forecast):
 def main():
     parser = arguments.Parser(prog="twodiscs.cli.tables", description="Write one table of a scene.")
     parser.add_argument("name", choices=TAKES)
-    parser.add_argument("--scene", required=True, help="dict with width and height; areas (events)")
+    parser.add_argument("--scene", required=True, help="dict with width, height; areas, effects")
     parser.add_argument("--theory", help="theory.csv of the scene, needed by all tables but cost")
     parser.add_argument("--points", nargs="+", required=True, metavar="JSON")
     parser.add_argument("--forecast", help="forecast.csv, if there is one, for cost.csv")

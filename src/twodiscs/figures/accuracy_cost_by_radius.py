@@ -74,7 +74,7 @@ def _times(axes, rows):
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=1, handlelength=0.8)
     panels.name_limits(axes, found)
-    panels.name_box(axes, width, height)
+    panels.name_box(axes, {"width": width, "height": height})
     panels.letter(axes, "a")
 
 

@@ -9,7 +9,7 @@ def series(scene, tables, events):
     ``events`` is {event: name in the legend}. Where an area is zero and no sample fell into the
     shell, the estimate is zero.
     """
-    radii, exact = curves.exact(scene["width"], scene["height"])
+    radii, exact = curves.exact(scene)
     found = []
     for event, name in events.items():
         rows = [row for row in tables["areas"] if row["quantity"] == f"{event}_area"]

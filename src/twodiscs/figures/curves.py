@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs import theory
-from twodiscs.figures.limits import limits
-from twodiscs.scene import EVENTS, Scene
+from twodiscs import parameters, theory
+from twodiscs.figures.limits import scene_limits
+from twodiscs.scene import EVENTS
 
 #: Closest approach to the limits of a regime, over its length.
 CLOSEST = 1e-9
@@ -14,36 +14,42 @@ CLOSEST = 1e-9
 #: Radii in each regime: evenly spaced, and in geometric progression towards either end.
 EVEN, GEOMETRIC = 60, 25
 
+#: The same for scenes with effects, whose theory takes longer.
+FEWER_EVEN, FEWER_GEOMETRIC = 24, 8
 
-def branches(width, height):
-    """Return one ascending array of radii for each regime of the box, none on its limits.
+
+def branches(scene):
+    """Return one ascending array of radii for each regime of a ``scene``, none on its limits.
 
     The first one starts at 1e-4 of its length, where the law for small radii has long set in.
     """
-    near = np.geomspace(CLOSEST, 1 / EVEN, GEOMETRIC)
-    inner = np.linspace(0, 1, EVEN + 1)[1:-1]
+    plain = "effects" not in scene
+    even, geometric = (EVEN, GEOMETRIC) if plain else (FEWER_EVEN, FEWER_GEOMETRIC)
+    near = np.geomspace(CLOSEST, 1 / even, geometric)
+    inner = np.linspace(0, 1, even + 1)[1:-1]
     found = []
-    for low, high in pairwise([0, *(radius for radius, _ in limits(width, height))]):
-        start = np.geomspace(1e-4, 1 / EVEN, GEOMETRIC) if low == 0 else near
+    for low, high in pairwise([0, *(radius for radius, _ in scene_limits(scene))]):
+        start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
         found.append(np.unique(radii[(radii > low) & (radii < high)]))
     return found
 
 
-def exact(width, height):
-    """Return (radii, {quantity: values}) for a box; quantities are named as in theory.csv.
+def exact(scene):
+    """Return (radii, {quantity: values}) for the ``scene`` of a figure, a dict.
 
-    Between two regimes stands a NaN, so that a line drawn through the values is never joined across
-    a limit, where some of them jump; NaN also means that an event is impossible.
+    Quantities are named as in theory.csv. Between two regimes stands a NaN, so that a line drawn
+    through the values is never joined across a limit, where some of them jump; NaN also means that
+    an event is impossible.
     """
     radii, rows = [], []
-    for branch in branches(width, height):
+    for branch in branches(scene):
         for radius in branch:
-            scene = Scene(width, height, radius)
-            values = {"volume": theory.volume(scene)}
-            values |= {f"{event}_area": area for event, area in theory.areas(scene).items()}
-            values |= {f"{event}_time": time for event, time in theory.mean_times(scene).items()}
+            here = parameters.scene(scene, float(radius))
+            values = {"volume": theory.volume(here)}
+            values |= {f"{event}_area": area for event, area in theory.areas(here).items()}
+            values |= {f"{event}_time": time for event, time in theory.mean_times(here).items()}
             radii.append(radius)
             rows.append(values)
         radii.append(np.nan)

@@ -4,10 +4,9 @@ from itertools import groupby
 
 import numpy as np
 
-from twodiscs import theory
-from twodiscs.figures import drawing, panels
+from twodiscs import parameters, theory
+from twodiscs.figures import panels
 from twodiscs.figures.style import BLACK, SERIES, new_figure
-from twodiscs.scene import Scene
 
 #: Inches: the panel of all intervals, that of the short ones, the gap between them, the room above.
 ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
@@ -28,7 +27,6 @@ APART, APART_SHORT = 1.2, 0.4
 
 def draw(scene, tables):
     """Draw the densities of hop_histogram.csv, in units of the exact mean interval."""
-    width, height = drawing.box(scene)
     rows = tables["hop_histogram"]
     figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP)
     whole = panels.add_panel(figure, panels.BOTTOM + SHORT + GAP, ALL)
@@ -51,10 +49,11 @@ def draw(scene, tables):
             axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
-        first = group[0]
-        at_zero = theory.density_at_zero(Scene(width, height, first["radius"]), first["event"])
-        value = first["exact_mean"] * at_zero
-        short.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
+        if "effects" not in scene:
+            first = group[0]
+            here = parameters.scene(scene, first["radius"])
+            value = first["exact_mean"] * theory.density_at_zero(here, first["event"])
+            short.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
@@ -65,7 +64,7 @@ def draw(scene, tables):
     panels.letter(whole, "a")
     panels.letter(short, "b")
     hop = rows[0]["event"].replace("_", " ")
-    panels.name_box(whole, width, height, f",  {hop}s")
+    panels.name_box(whole, scene, f",  {hop}s")
     return figure
 
 

@@ -42,7 +42,7 @@ def draw(scene, tables):
         panels.letter(axes, name)
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0)
     radius = scene.get("radius")
-    panels.name_box(whole, width, height, f",  $r={radius:g}$" if radius else "")
+    panels.name_box(whole, scene, f",  $r={radius:g}$" if radius else "")
     return figure
 
 

@@ -1,7 +1,6 @@
 """The mean time between collisions of the discs."""
 
 from twodiscs.figures import panels, times
-from twodiscs.scene import largest_radius
 
 
 def draw(scene, tables):
@@ -13,7 +12,7 @@ def draw(scene, tables):
     series = list(found.values())
     panels.draw_series(main, lower, radii, series, single=True)
     times.small_law(main, scene, "disc_collision")
-    times.last_law(main, scene, "disc_collision", largest_radius(scene["width"], scene["height"]))
+    times.last_law(main, scene, "disc_collision")
     panels.logarithmic(main, radii, series)
     panels.legend(main, series, "beside", single="MD")
     return figure

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from twodiscs import theory
+from twodiscs import parameters, theory
 from twodiscs.figures import panels, times
+from twodiscs.figures.limits import hop_ends
 from twodiscs.figures.style import SERIES
-from twodiscs.scene import Scene, largest_radius
 
 EVENTS = {"vertical_hop": "vertical hops", "horizontal_hop": "horizontal hops"}
 
@@ -34,22 +34,20 @@ def draw(scene, tables):
 
 def _approach(axes, scene, found):
     """Draw the times over the distance from the radius at which the hop dies out."""
-    width, height = scene["width"], scene["height"]
-    largest = largest_radius(width, height)
     distances = np.geomspace(CLOSEST, 0.99, 70)
-    ends = {"vertical_hop": (width, "w/4"), "horizontal_hop": (height, "h/4")}
+    ends = hop_ends(scene)
     shown = []
     for (colour, marker), (event, one) in zip(SERIES, found.items(), strict=False):
-        side, name = ends[event]
-        end, name = (side / 4, name) if side / 4 < largest else (largest, r"r_{\mathrm{max}}")
-        scenes = [Scene(width, height, end * (1 - d)) for d in distances]
+        end, name = ends[event]
+        scenes = [parameters.scene(scene, float(end * (1 - d))) for d in distances]
         exact = [theory.mean_times(s)[event] for s in scenes]
         (line,) = axes.plot(distances, exact, color=colour, zorder=5)
         line.set_label(rf"{one.name}, $r_{{\mathrm{{c}}}}={name}$")
         shown += exact
-        near = distances < LAW
-        laws = [theory.threshold_time(s, event) for s in scenes]
-        panels.asymptote(axes, distances[near], np.array(laws)[near])
+        if "effects" not in scene:
+            near = distances < LAW
+            laws = [theory.threshold_time(s, event) for s in scenes]
+            panels.asymptote(axes, distances[near], np.array(laws)[near])
         rows = [row | {"radius": 1 - row["radius"] / end} for row in one.rows]
         panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))

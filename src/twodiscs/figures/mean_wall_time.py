@@ -1,7 +1,6 @@
 """The mean times between hits of the walls."""
 
 from twodiscs.figures import panels, times
-from twodiscs.scene import largest_radius
 
 EVENTS = {
     "right_wall": "disc 1, right wall",
@@ -18,7 +17,7 @@ def draw(scene, tables):
     panels.draw_series(main, lower, radii, series)
     for event in found:
         times.small_law(main, scene, event)
-        times.last_law(main, scene, event, largest_radius(scene["width"], scene["height"]))
+        times.last_law(main, scene, event)
     panels.logarithmic(main, radii, series)
     panels.legend(main, series, "lower left")
     return figure

@@ -12,18 +12,32 @@ from dataclasses import dataclass
 import numpy as np
 
 from twodiscs.figures import drawing
-from twodiscs.figures.limits import limits
+from twodiscs.figures.limits import scene_limits
 from twodiscs.figures.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 
 #: Inches: margins, the panel of the curves, the gap and the panel of the residuals.
 LEFT, RIGHT, BOTTOM, TOP = 0.48, 0.1, 0.34, 0.3
 MAIN, GAP, LOWER = 1.9, 0.07, 0.82
 
+#: Inches and points: a second line above, for the box and its effects.
+LINE, ABOVE = 0.13, 14
+
 #: Residuals beyond this many standard errors are drawn as triangles at the edge.
 LARGEST_RESIDUAL = 6.5
 
 #: Guide lines: within the inner ones lie 95 % of all residuals; no test lets pass what is beyond 5.
 GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
+
+
+#: How effects are written.
+SYMBOLS = {
+    "depth": "$d={:g}$",
+    "field": "$g={:g}$",
+    "mass_ratio": "$m_2/m_1={:g}$",
+    "moment_of_inertia": "$I/mr^2={:g}$",
+    "periodic": "{} periodic",
+    "radius_ratio": "$r_2/r_1={:g}$",
+}
 
 
 @dataclass(frozen=True)
@@ -40,8 +54,9 @@ def panels(scene, label, beneath=0):
 
     ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
     """
-    width, height = drawing.box(scene)
-    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP)
+    drawing.box(scene)
+    line = LINE if "effects" in scene else 0
+    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line)
     lower = add_panel(figure, beneath + BOTTOM, LOWER)
     main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
     main.set_ylabel(label)
@@ -53,14 +68,14 @@ def panels(scene, label, beneath=0):
     for size, dashes in GUIDES.items():
         for z in (-size, size):
             lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
-    found = limits(width, height)
+    found = scene_limits(scene)
     largest = found[-1][0]
     for axes in (main, lower):
         axes.set_xlim(0, 1.02 * largest)
         for radius, _ in found:
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
     name_limits(main, found)
-    name_box(main, width, height)
+    name_box(main, scene, up=ABOVE if line else 0)
     return figure, main, lower
 
 
@@ -77,11 +92,20 @@ def letter(axes, name):
     drawing.label(axes, f"({name})", (0, 1), (2 - 72 * LEFT, 3), **align)
 
 
-def name_box(axes, width, height, more=""):
-    """Write the sides of the box, and ``more``, above the left end of ``axes``."""
-    text = rf"$w\times h={width:g}\times{height:g}${more}"
+def name_box(axes, scene, more="", up=0):
+    """Write the sides of the box, ``more`` and the effects above the left end of ``axes``.
+
+    ``up`` are points by which that is higher than usual.
+    """
+    text = rf"$w\times h={scene['width']:g}\times{scene['height']:g}${more}{_effects(scene)}"
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
-    drawing.label(axes, text, (0, 1), (0, 5), **corner)
+    drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
+
+
+def _effects(scene):
+    """Return the effects of a figure's ``scene`` in symbols, "" if it has none."""
+    named = scene.get("effects", {})
+    return "".join(f",  {SYMBOLS[name].format(value)}" for name, value in named.items())
 
 
 def name_limits(axes, found):

@@ -15,7 +15,7 @@ def series(scene, tables, events):
 
     ``events`` is {event: name in the legend}.
     """
-    radii, exact = curves.exact(scene["width"], scene["height"])
+    radii, exact = curves.exact(scene)
     found = {}
     for event, name in events.items():
         rows = [row for row in tables["mean_times"] if row["event"] == event]
@@ -27,15 +27,20 @@ def series(scene, tables, events):
 
 
 def small_law(axes, scene, event):
-    """Draw the first-order law for small discs."""
+    """Draw the first-order law for small discs, which is known for plain scenes."""
+    if "effects" in scene:
+        return
     width, height = scene["width"], scene["height"]
     radii = np.linspace(0, SMALL, 41)[1:] * largest_radius(width, height)
     times = [theory.small_radius_time(width, height, event, r) for r in radii]
     panels.asymptote(axes, radii, times)
 
 
-def last_law(axes, scene, event, end):
-    """Draw the leading law below the radius ``end``, at which the event dies out."""
+def last_law(axes, scene, event):
+    """Draw the leading law below the largest radius, which is known for plain scenes."""
+    if "effects" in scene:
+        return
+    end = largest_radius(scene["width"], scene["height"])
     radii = end * (1 - np.geomspace(LAST, 1e-6, 60))
     times = [theory.threshold_time(Scene(scene["width"], scene["height"], r), event) for r in radii]
     panels.asymptote(axes, radii, times)

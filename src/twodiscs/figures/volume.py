@@ -5,7 +5,7 @@ from twodiscs.figures import curves, panels
 
 def draw(scene, tables):
     """Draw the volume of the box of ``scene`` over the radius, with the rows of volume.csv."""
-    radii, exact = curves.exact(scene["width"], scene["height"])
+    radii, exact = curves.exact(scene)
     series = [panels.Series("volume", tables["volume"], exact["volume"])]
     figure, main, lower = panels.panels(scene, "volume $V$")
     panels.draw_series(main, lower, radii, series, single=True)
