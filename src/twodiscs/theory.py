@@ -16,6 +16,10 @@ Written out in powers and inverse sines (``closed_form``) these cancel to nothin
 radius. Here they are sums of positive terms: integrals over the arc of products of the slacks
 A − σ cos θ and B − σ sin θ, each itself a sum of positive terms. Every length, angle and difference
 that cancels is rounded once, from exact fractions of the given doubles.
+
+That is the plain scene. Scenes that call for effects are handed over to ``rates``, which needs
+NumPy and is imported only then: ``volume``, ``areas``, ``rate``, ``mean_times``, ``exact`` and
+``shell_expectation`` hold for every scene, closed forms and limits for plain ones only.
 """
 
 import math
@@ -144,9 +148,23 @@ def _measures(arc):
     return _Measures(volume, 2 * math.sqrt(2) * disc, right, top)
 
 
+def _plain(scene):
+    """Return ``scene``; raise ``ValueError`` unless it is a ``Scene`` without effects."""
+    if a_scene(scene).has_effects:
+        raise ValueError(
+            "scene must be plain for closed forms, limits and distributions, but it has "
+            f"{', '.join(scene.effects)}"
+        )
+    return scene
+
+
 @lru_cache(maxsize=1024)
 def _exact(scene):
     """Return (volume, {event: area})."""
+    if scene.has_effects:
+        from twodiscs import rates
+
+        return rates.volume(scene), rates.areas(scene)
     arc = _Arc.of(scene)
     volume, disc, right, top = _measures(arc)
     return volume, {
@@ -160,10 +178,11 @@ def _exact(scene):
 
 
 def volume(scene):
-    """Return the volume of the configuration space of a ``Scene``, in length⁴.
+    """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
-    Within a few roundings of the exact value for every box and radius. Raises ``ValueError`` for
-    anything that is not a ``Scene``.
+    Within a few roundings of the exact value for every box and radius. In a field it is weighted
+    with the invariant density (see ``rates``). Raises ``ValueError`` for anything that is not a
+    ``Scene``.
     """
     return _exact(a_scene(scene))[0]
 
@@ -171,8 +190,10 @@ def volume(scene):
 def areas(scene):
     """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
 
-    Keys are ``scene.EVENTS`` in their order. The area is exactly 0.0 where the event is impossible;
-    that of all walls is 4 (right + top). Accuracy and errors as for ``volume``.
+    Keys are ``scene.EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
+    or has no place; that of all walls is 4 (right + top) for equal discs without a field. It is in
+    length⁵ for balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``rates``).
+    Accuracy and errors as for ``volume``.
     """
     return dict(_exact(a_scene(scene))[1])
 
@@ -181,26 +202,28 @@ def rate(scene, event):
     """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
 
     This is the mean over the whole configuration space. A trajectory that can reach the right (top)
-    wall at all hits it twice as often once horizontal (vertical) hops are blocked: ``mean_times``.
-    Raises ``ValueError`` for anything that is not a ``Scene`` or one of ``scene.EVENTS``.
+    wall at all hits it twice as often where it is confined to one side of the other disc:
+    ``mean_times``. Raises ``ValueError`` for anything that is not a ``Scene`` or one of
+    ``scene.EVENTS``.
     """
-    volume, areas = _exact(a_scene(scene))
+    if a_scene(scene).has_effects:
+        from twodiscs import rates
+
+        return rates.rate(scene, event)
+    volume, areas = _exact(scene)
     sides = 2 if one_of("event", event, EVENTS) in HOPS else 1
     return sides * areas[event] / (1.5 * math.pi * volume)
 
 
 def mean_times(scene):
-    """Return {event: mean time between two of them}, for unit masses and total energy 1/2.
+    """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
 
     Keys are ``scene.EVENTS`` in their order, values lengths over unit speed, or None where the
     event is impossible. Wall times are those of disc 1 on the trajectories that can reach the wall:
-    half of configuration space once the hops in its way are blocked. Accuracy and errors as for
-    ``volume``.
+    half of configuration space where ``Scene.confined``. Accuracy and errors as for ``volume``.
     """
-    share = {
-        "right_wall": 1 if a_scene(scene).horizontal_hops else 0.5,
-        "top_wall": 1 if scene.vertical_hops else 0.5,
-    }
+    share = dict(zip(("right_wall", "top_wall"), a_scene(scene).confined, strict=True))
+    share = {event: 0.5 if confined else 1 for event, confined in share.items()}
     return {
         event: share.get(event, 1) / rate(scene, event) if scene.is_possible(event) else None
         for event in EVENTS
@@ -284,10 +307,16 @@ def shell_expectation(scene, event, epsilon):
         right wall       0 ≤ g ≤ ε, g = a − x1             top wall         0 ≤ g ≤ ε, g = b − y1
 
     Just beyond the radius where a hop becomes blocked its shell is not empty yet, though its area
-    is 0. Raises ``ValueError`` for anything that is not a ``Scene``, for an ``epsilon`` that is not
-    a length up to the radius, and for ``any_wall``, which has no shell of its own.
+    is 0. Shells of scenes with effects, whose discs may differ in mass, are in
+    ``rates.shell_expectation``. Raises ``ValueError`` for anything that is not a ``Scene``, for an
+    ``epsilon`` that is not a length up to the radius, and for ``any_wall``, which has no shell of
+    its own in a plain scene.
     """
-    arc = _Arc.of(a_scene(scene))
+    if a_scene(scene).has_effects:
+        from twodiscs import rates
+
+        return rates.shell_expectation(scene, event, epsilon)
+    arc = _Arc.of(scene)
     one_of("event", event, SHELLS)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
@@ -310,9 +339,9 @@ def closed_form(scene):
     For reading, for comparisons and to show how they fail: just above a threshold they can lose
     half of the digits or more, and near the largest radius, at r = (1 − δ) r_max, all of them (the
     volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for
-    anything that is not a ``Scene``.
+    anything that is not a plain ``Scene``.
     """
-    r = a_scene(scene).radius
+    r = _plain(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
     # Of the quarter circle, the angle within [0, a] × [0, b].
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
@@ -378,9 +407,9 @@ def threshold_time(scene, event):
     (h/4 − r)⁻² (horizontal). All other times follow from the room left below the largest radius
     r_max: they vanish like r_max − r, except that if one side is more than twice the other those of
     disc collisions and of the walls at the far ends stay finite. Raises ``ValueError`` for anything
-    that is not a ``Scene`` or one of ``scene.EVENTS``.
+    that is not a plain ``Scene`` or one of ``scene.EVENTS``.
     """
-    w, h, r = a_scene(scene).width, scene.height, scene.radius
+    w, h, r = _plain(scene).width, scene.height, scene.radius
     if not scene.is_possible(event):
         return None
     one_sided = 1.5 * math.pi
@@ -475,11 +504,11 @@ def tail_constant(scene, event):
     it, and only (u1, u2) and (v1, v2) are transversal to none. Argued, not proved, is that what is
     left (neighbourhoods of periodic motions, of the order t⁻³ each in P(none within t)) adds up to
     less, and, for hops, that what comes before and after the drift, with disc collisions, is
-    forgotten exponentially fast. Raises ``ValueError`` for anything that is not a ``Scene``, and
-    for a wall.
+    forgotten exponentially fast. Raises ``ValueError`` for anything that is not a plain ``Scene``,
+    and for a wall.
     """
     one_of("event", event, (*HOPS, "disc_collision"))
-    arc, area = _Arc.of(a_scene(scene)), areas(scene)[event]
+    arc, area = _Arc.of(_plain(scene)), areas(scene)[event]
     if not scene.is_possible(event):
         return None
     along_x = arc.range_x**2 * arc.beyond_y**4
