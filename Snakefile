@@ -36,13 +36,19 @@ include: "workflow/rules/monte_carlo.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/check.smk"
-include: "workflow/rules/errata.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/animation.smk"
 include: "workflow/rules/accuracy_cost.smk"
-include: "workflow/rules/stability.smk"
-include: "workflow/rules/tails.smk"
-include: "workflow/rules/manuscript.smk"
+
+
+if MAIN:  # these are about a scene without effects
+
+    include: "workflow/rules/errata.smk"
+    include: "workflow/rules/stability.smk"
+    include: "workflow/rules/tails.smk"
+    include: "workflow/rules/manuscript.smk"
+
+
 include: "workflow/rules/report.smk"
 include: "workflow/rules/benchmark.smk"
 
@@ -50,4 +56,4 @@ include: "workflow/rules/benchmark.smk"
 rule all:
     input:
         rules.report.input.results,
-        rules.report.output,
+        rules.report.output if "report" in CONFIGURATION.shared else [],

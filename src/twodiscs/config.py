@@ -37,7 +37,7 @@ LAST_FRACTION = 0.9
 
 #: What is built once and is about the first scene without effects, and what the manuscript reads.
 ABOUT_PLAIN = ("errata", "stability", "tails", "paper")
-READ_BY_PAPER = ("errata", "accuracy_cost", "stability")
+READ_BY_PAPER = ("errata", "accuracy_cost", "stability", "tails")
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 

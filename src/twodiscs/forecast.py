@@ -49,8 +49,11 @@ MODULES = {"monte_carlo": "montecarlo"}
 #: Times each sample job runs, after a first one that may find its code not compiled.
 TRIALS = 2
 
-#: Seconds of what is made once, whatever the configuration; round figures.
-ONCE = {"compile": 12.0, "errata": 3.0, "stability": 30.0, "documents": 3.0}
+#: Seconds of what is made once, if the configuration asks for it; round figures.
+ONCE = {"errata": 3.0, "stability": 30.0, "tails": 15.0, "paper": 1.5, "report": 1.5}
+
+#: Seconds in which the kernels are compiled.
+COMPILATION = 12.0
 
 #: Seconds in which the comparison of what accuracy costs compiles what only it needs.
 COMPARISON = 10.0
@@ -270,7 +273,8 @@ def scene_rows(request, pilots, starts, cores):
         found = [one for one in jobs if one["stage"] == stage]
         if found:
             sums.append(summed(request.name, stage, cores, found))
-    figures = sum(figure.is_called(request.watch.quantities) for figure in FIGURES.values())
+    watched, effects = request.watch.quantities, request.effects
+    figures = sum(figure.is_called(watched, effects) for figure in FIGURES.values())
     for kind, count in (("tables", tables_of(request)), ("figures", figures)):
         sums.append(row(request.name, kind, cores, count, startup=count * sum(starts[kind])))
     return [*jobs, *sums, summed(request.name, "total", cores, sums)]
@@ -291,7 +295,11 @@ def rows(configuration, cores):
     for request, one in zip(requests, jobs, strict=True):
         found += scene_rows(request, [next(pilots) for _ in one], starts, cores)
         sums.append(found[-1])
-    seconds = configuration.accuracy_cost_seconds
-    shared = [row("all", "accuracy_cost", cores, 1, seconds=seconds, startup=COMPARISON)]
-    shared += [row("all", stage, cores, 1, startup=once) for stage, once in ONCE.items()]
+    shared = [row("all", "compile", cores, 1, startup=COMPILATION)]
+    for name in configuration.shared:
+        if name == "accuracy_cost":
+            seconds = configuration.accuracy_cost_seconds
+            shared.append(row("all", name, cores, 1, seconds=seconds, startup=COMPARISON))
+        else:
+            shared.append(row("all", name, cores, 1, startup=ONCE[name]))
     return [*found, *shared, summed("all", "total", cores, [*sums, *shared])]

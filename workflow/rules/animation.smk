@@ -3,7 +3,7 @@
 
 def animation_files(scene):
     """Return the animation of a scene in a list, which is empty if the scene has no trajectory."""
-    called = ANIMATION.is_called(scene.watch.quantities)
+    called = ANIMATION.is_called(scene.watch.quantities, scene.effects)
     return [f"{RESULTS}/{scene.name}/figures/animation.gif"] if called else []
 
 

@@ -1,9 +1,10 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 
 RESULTS = CONFIGURATION.results
-MAIN = CONFIGURATION.scenes[0]  # the scene that the manuscript is about
+MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 METHODS = ("monte_carlo", "dynamics", "intervals")
 SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
+PLAIN = [scene for scene in CONFIGURATION.scenes if not scene.effects]
 
 # The Python that runs Snakemake also runs the jobs.
 os.environ.update(
@@ -78,16 +79,12 @@ def forecast_file(table):
 
 def table_parameters(scene):
     """Return what the tables of a scene need beside the files that they read."""
-    return {
-        "areas": list(scene.watch.areas),
-        "height": scene.height,
-        "width": scene.width,
-    }
+    return {"areas": list(scene.watch.areas)} | scene.box_parameters()
 
 
 def figure_parameters(scene, figure):
     """Return what a figure of a scene needs beside the tables that it reads."""
-    box = {"height": scene.height, "width": scene.width}
+    box = scene.box_parameters()
     if "trajectory" in FIGURES[figure].tables:
         box["radius"] = scene.watch.trajectory
     return dict(sorted(box.items()))
@@ -98,7 +95,7 @@ def figure_files(scene):
     return {
         name: multiext(f"{RESULTS}/{scene.name}/figures/{name}", ".pdf", ".png")
         for name, figure in FIGURES.items()
-        if figure.is_called(scene.watch.quantities)
+        if figure.is_called(scene.watch.quantities, scene.effects)
     }
 
 
@@ -116,7 +113,7 @@ def manuscript_parameters():
                 "tables": list(table_files(scene)),
                 "width": scene.width,
             }
-            for scene in SCENES.values()
+            for scene in PLAIN
         ],
     }
 

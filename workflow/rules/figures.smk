@@ -27,7 +27,7 @@ rule figure:
         tables=lambda w, input: " ".join(
             f"--table {Path(t).stem}={t}" for t in input.tables
         ),
-        caption=lambda w: FIGURES[w.figure].caption,
+        caption=lambda w: FIGURES[w.figure].caption_with(SCENES[w.scene].effects),
     shell:
         "python -m twodiscs.cli.figure {wildcards.figure} --scene {params.scene:q}"
         " {params.tables} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"

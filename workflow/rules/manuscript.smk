@@ -6,9 +6,7 @@ rule paper:
         template="paper/paper.typ",
         references="paper/references.bib",
         figures=[files[0] for files in figure_files(MAIN).values()],
-        tables=[
-            path for scene in SCENES.values() for path in table_files(scene).values()
-        ],
+        tables=[path for scene in PLAIN for path in table_files(scene).values()],
         shared=[
             rules.errata.output,
             rules.accuracy_cost.input,

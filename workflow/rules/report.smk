@@ -7,14 +7,17 @@ import json
 report: "../report/workflow.rst"
 
 
+def shared_results():
+    """Return what is built once, as far as the configuration asks for it."""
+    made = [getattr(rules, name) for name in CONFIGURATION.shared if name != "report"]
+    return [path for rule in made for path in rule.output or rule.input]
+
+
 rule report:
     input:
         results=[
             rules.check.output,
-            rules.paper.output,
-            rules.errata.output,
-            rules.accuracy_cost.input,
-            rules.stability.input,
+            shared_results(),
             [list(table_files(scene).values()) for scene in SCENES.values()],
             [list(figure_files(scene).values()) for scene in SCENES.values()],
             rules.animation.input,

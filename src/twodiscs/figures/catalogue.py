@@ -13,7 +13,8 @@ class Entry:
 
     ``tables`` are the names of the tables that it reads. ``needs`` are quantities, named as those
     of theory.csv or ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are
-    watched, and is of use if any is. A drawing needs nothing: it takes the sides of the box alone.
+    watched, and is of use if any is. A drawing needs nothing: it takes the sides of the box alone,
+    and shows equal discs between walls. ``of_plain`` figures are for such scenes only.
     """
 
     title: str
@@ -21,10 +22,20 @@ class Entry:
     caption: str
     tables: tuple = ()
     needs: frozenset = field(default_factory=frozenset)
+    of_plain: bool = False
 
-    def is_called(self, watched):
-        """Say whether a scene that watches the quantities ``watched`` calls for the figure."""
+    def is_called(self, watched, effects=()):
+        """Say whether a scene that watches the quantities ``watched`` calls for the figure.
+
+        ``effects`` are those of the scene, if it has any.
+        """
+        if effects and (self.of_plain or not self.needs):
+            return False
         return not self.needs or not self.needs.isdisjoint(watched)
+
+    def caption_with(self, effects):
+        """Return the caption in a scene with ``effects``, or without any."""
+        return f"{self.caption} {EFFECTS}" if effects else self.caption
 
     @property
     def labels(self):
@@ -43,6 +54,13 @@ LIMITS = (
     "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius. "
     "Residuals "
     "z beneath are in standard errors, with guide lines at ±2 and ±5"
+)
+
+#: What captions add where there are effects.
+EFFECTS = (
+    "With the effects of this scene vertical hops become blocked at r_v and horizontal ones at "
+    "r_h; from r_t on discs reach the top wall, and from r_x or r_y on disc 1 keeps to its side. "
+    "Limiting laws of the plain box are not drawn."
 )
 
 SAMPLED = f"{SYMBOLS} {LIMITS}."
@@ -209,6 +227,7 @@ ANIMATION = Entry(
     "the discs against time: the hop changes its sign.",
     ("trajectory",),
     frozenset({"trajectory"}),
+    of_plain=True,
 )
 
 COST, NUMERICS = "What accuracy costs", "Numerical stability"
