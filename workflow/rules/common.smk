@@ -1,4 +1,5 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
+from hashlib import blake2b
 
 RESULTS = CONFIGURATION.results
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
@@ -99,15 +100,37 @@ def figure_files(scene):
     }
 
 
+def shared_tables():
+    """Return the names of the tables that belong to no scene, those behind figures and errata."""
+    return list(
+        dict.fromkeys(
+            ["errata", *(t for entry in SHARED.values() for t in entry.tables)]
+        )
+    )
+
+
+def shared_files():
+    """Return the tables that belong to no scene, and the figures as the manuscript takes them."""
+    return [
+        *(f"{RESULTS}/{name}.csv" for name in shared_tables()),
+        *(f"{RESULTS}/figures/{name}.pdf" for name in SHARED),
+    ]
+
+
 def manuscript_parameters():
-    """Return what the manuscript needs beside the tables and figures that it reads."""
+    """Return what the manuscript needs beside the tables and figures that it reads.
+
+    The hash is that of the configuration with every default filled in.
+    """
     return {
+        "configuration": blake2b(
+            repr(CONFIGURATION).encode(), digest_size=8
+        ).hexdigest(),
+        "figures": list(SHARED),
         "results": RESULTS,
         "scenes": [
             {
-                "figures": {
-                    name: FIGURES[name].caption for name in figure_files(scene)
-                },
+                "figures": list(figure_files(scene)),
                 "height": scene.height,
                 "name": scene.name,
                 "tables": list(table_files(scene)),
@@ -115,6 +138,7 @@ def manuscript_parameters():
             }
             for scene in PLAIN
         ],
+        "tables": shared_tables(),
     }
 
 

@@ -4,14 +4,11 @@
 rule paper:
     input:
         template="paper/paper.typ",
+        numbers="paper/results.typ",
         references="paper/references.bib",
         figures=[files[0] for files in figure_files(MAIN).values()],
         tables=[path for scene in PLAIN for path in table_files(scene).values()],
-        shared=[
-            rules.errata.output,
-            rules.accuracy_cost.input,
-            rules.stability.input,
-        ],
+        shared=shared_files(),
         code=code("cli.manuscript"),
     output:
         pdf=report(

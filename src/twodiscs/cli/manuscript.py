@@ -2,27 +2,63 @@
 
 import json
 import os
+import platform
+import subprocess
+from importlib.metadata import version
 
 from twodiscs.cli import arguments
-from twodiscs.figures.catalogue import FIGURES, SHARED
+from twodiscs.figures.catalogue import FIGURES, SAMPLED, SHARED, SHELLS, SIMULATED
+
+#: What the manuscript names the versions of, beside Python.
+PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
+
+
+def split(caption):
+    """Return ``caption`` as (what is the figure's own, what it explains as others do or "")."""
+    for alike in (SHELLS, SIMULATED, SAMPLED):
+        if caption.endswith(alike):
+            return caption.removesuffix(alike).rstrip(), alike
+    return caption, ""
+
+
+def commit(folder):
+    """Return the commit that ``folder`` is at, marked where files differ from it, or "unknown"."""
+    words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
+    try:
+        run = subprocess.run(
+            [*words, "--dirty= with changes"], capture_output=True, text=True, check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return run.stdout.strip()
+
+
+def versions():
+    """Return {name: version} of Python and of the packages that do the work."""
+    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
 
 
 def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
-    The template finds ``contents`` under ``sys.inputs.contents``, as JSON, with the captions of all
-    figures added as ``captions``; its entry ``results``, their folder, is there a path from the
-    root that template and results have in common. The same inputs give the same bytes on every
+    The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
+    ``captions`` of all figures, each as in ``split``, the ``commit`` of the template and the
+    ``versions``; its entry ``results``, their folder, becomes a path from the root that template
+    and results have in common. The same inputs at the same commit give the same bytes on every
     machine: fonts are those that come with Typst. Raises ``ValueError`` if the template does not
     compile.
     """
     import typst
 
     results = os.path.abspath(contents["results"])
-    root = os.path.commonpath([results, os.path.dirname(os.path.abspath(template))])
-    place = "/" + os.path.relpath(results, root).replace(os.sep, "/")
-    captions = {name: entry.caption for name, entry in (FIGURES | SHARED).items()}
-    contents = {**contents, "captions": captions, "results": place}
+    folder = os.path.dirname(os.path.abspath(template))
+    root = os.path.commonpath([results, folder])
+    contents = contents | {
+        "captions": {name: split(entry.caption) for name, entry in (FIGURES | SHARED).items()},
+        "commit": commit(folder),
+        "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
+        "versions": versions(),
+    }
     try:
         typst.compile(
             template,
@@ -38,7 +74,11 @@ def typeset(template, output, contents):
 def main():
     parser = arguments.Parser(prog="python -m twodiscs.cli.manuscript", description=__doc__)
     parser.add_argument("--template", required=True, help="the Typst file")
-    parser.add_argument("--parameters", required=True, help="a dict of results, scenes")
+    parser.add_argument(
+        "--parameters",
+        required=True,
+        help="a dict of configuration (its hash), figures and tables of no scene, results, scenes",
+    )
     parser.add_argument("--output", required=True, help="the PDF file")
     options = parser.parse_args()
     typeset(options.template, options.output, arguments.parameters(options.parameters))
