@@ -41,11 +41,6 @@ def test_results_page_describes_the_tables():
     assert page.endswith(tables.documentation()), "its end must be tables.documentation()"
 
 
-def test_manuscript_has_a_place_for_every_figure():
-    text = (REPOSITORY / "paper" / "paper.typ").read_text()
-    assert sorted(re.findall(r'#drawn\("(\w+)"\)', text)) == sorted(FIGURES)
-
-
 def test_readme_lists_every_target():
     page = (REPOSITORY / "README.md").read_text()
     assert [
