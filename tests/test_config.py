@@ -642,6 +642,13 @@ EFFECTS = {
     ("effects: {field: 1, mass_ratio: 2}", "radii: [0.378]"): (
         ".radii: unequal discs in a field need room to pass each other …"
     ),
+    ("effects: {field: 1}", "radii: [0.1, 0.378]"): (
+        ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places, and a scene with "
+        "effects needs more room, 0.0001 of it"
+    ),
+    ("effects: {field: 200}", "watch: {mean_times: true}"): (
+        ".radii.smallest: radius 0.01 leaves the discs … and a scene with effects needs more room…"
+    ),
     ("effects: {radius_ratio: 2}", "radii: [0.25]"): ".radii: radius 0.25 does not fit: …",
     ("effects: {radius_ratio: 2}", "radii: {smallest: 0.24}"): (
         ".radii: smallest must be below 0.225…, not 0.24"

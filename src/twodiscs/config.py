@@ -1,8 +1,8 @@
 """From the configuration file to the scenes: what to compute, how accurately, with which seeds.
 
-Quick to import, for the Snakefile reads it: no numerical package. What a file may say, its units
-and its defaults stand in ``config.schema.yaml`` and nowhere else; ``python -m twodiscs.config``
-prints that as the page config/README.md.
+Quick to import, for the Snakefile reads it: no numerical package but for effects. What a file may
+say, its units and its defaults stand in ``config.schema.yaml`` and nowhere else; ``python -m
+twodiscs.config`` prints that as the page config/README.md.
 """
 
 import math
@@ -34,6 +34,10 @@ BELOW_THRESHOLD = 0.96
 
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9
+
+#: The least share of the prism, in which both centres keep to their ranges, that must be free of
+#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
+LEAST_SHARE = 1e-4
 
 #: What is built once and is about the first scene without effects, and what the manuscript reads.
 ABOUT_PLAIN = ("errata", "stability", "tails", "paper")
@@ -530,12 +534,30 @@ def _checked(radii, place, path):
     """Return ``radii`` as an ascending tuple if all of them fit and none appears twice."""
     for i, radius in enumerate(radii):
         try:
-            parameters.scene(place, radius)
+            scene = parameters.scene(place, radius)
         except ValueError as error:
             raise ConfigError(f"{path}: {error}") from None
+        if scene.has_effects and (share := _free_share(scene)) < LEAST_SHARE:
+            raise ConfigError(
+                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
+                f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
+            )
         if radius in radii[:i]:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
     return tuple(sorted(radii))
+
+
+def _free_share(scene):
+    """Return the share of the prism in which the discs are free, weighted in a field."""
+    # Numerical packages are imported here, for nothing else needs them.
+    from twodiscs import rates
+
+    ranges = (
+        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
+        for axis in scene.axes
+        for radius in scene.radii
+    )
+    return rates.volume(scene) / math.prod(ranges)
 
 
 def _shared(asked, all_have_effects):

@@ -13,13 +13,16 @@ CLOSE = 150
 
 
 def draw(scene, tables):
-    """Draw x2 − x1 against time (y2 − y1 in a box higher than wide) from trajectory.csv.
+    """Draw x2 − x1 against time from trajectory.csv.
 
-    ``scene`` may give the radius too, to be written above. The discs move freely between events, so
-    straight lines through the rows are the trajectory itself.
+    In a box higher than wide, or where x is periodic, it is y2 − y1. ``scene`` may give the radius
+    too, to be written above. The discs move freely between events, or fall alike, so straight lines
+    through the rows are the trajectory itself.
     """
     width, height = drawing.box(scene)
-    axis, hop = ("x", "horizontal_hop") if width >= height else ("y", "vertical_hop")
+    periodic = scene.get("effects", {}).get("periodic", "")
+    along_x = "y" in periodic or (width >= height and "x" not in periodic)
+    axis, hop = ("x", "horizontal_hop") if along_x else ("y", "vertical_hop")
     rows = tables["trajectory"]
     times = np.array([row["time"] for row in rows])
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
