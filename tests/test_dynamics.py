@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from twodiscs import dynamics, scalar, theory
-from twodiscs.events import DISC, WALL_X1, WALL_X2, WALL_Y1, WALL_Y2
+from twodiscs.events import DISC, WALL_X1, WALL_X2, WALL_Y1, WALL_Y2, law_of
 from twodiscs.invariant import draw_configuration, draw_constants, draw_velocity
 from twodiscs.scene import EVENTS, Scene
 from twodiscs.streams import open_stream
@@ -52,7 +52,7 @@ def test_the_scalar_engine_counts_the_same(radius):
     scene = PAPER.with_radius(radius)
     duration = dynamics.replica_duration(scene)
     arguments = (duration, scene.contact_distance, draw_constants(scene), (0, 0))
-    usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments, dynamics.blocked_hops(scene))
+    usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments, scene.confined)
     lockstep = dynamics.run_blocks(scene, EVENTS, 3, 0, 1, duration)
     assert same(usual, lockstep)
 
@@ -93,11 +93,11 @@ def test_events_are_those_of_50_digits(radius, seed):
     """Event by event until the errors, which grow exponentially, have eaten all but six digits."""
     scene = PAPER.with_radius(radius)
     state = start(scene, seed)
-    half_x, half_y, now, compared = scene.range_x / 2, scene.range_y / 2, 0.0, 0
+    law, now, compared = law_of(scene), 0.0, 0
     with mpmath.workdps(50):
         for true_time, true_code in exact_events(scene, state, 60):
-            time, code = dynamics.next_event(*state, math.inf, half_x, half_y, 2 * radius)
-            state = dynamics.after_event(*state, time, code, half_x, half_y)
+            time, code = dynamics.next_event(state, math.inf, law)
+            state = dynamics.after_event(state, time, code, law)
             now += time
             if abs(now - true_time) > 1e-6:
                 break
@@ -256,7 +256,7 @@ def test_hop_chains_do_not_depend_on_lanes():
     for lanes in (5, 64):
         histogram = np.zeros(65, np.int64)
         totals = dynamics.record_returns(
-            np.uint64(1), 0, 2, 64, lanes, 16, 0.4, draw, draw.beyond_x, 0.25, histogram
+            np.uint64(1), 0, 2, 64, lanes, 16, law_of(PAPER), draw, None, None, 0.25, histogram
         )
         results.append((totals, histogram))
     assert same(*results)

@@ -44,7 +44,7 @@ def exact_contact(dx, dy, du, dv, sigma):
 
 
 def contact_time(dx, dy, du, dv, sigma):
-    gap, speed, approach = events.contact_quotient(dx, dy, du, dv, sigma)
+    gap, speed, approach = events.contact_quotient(dx, dy, None, du, dv, None, sigma)
     return max(gap / speed, 0.0) if approach and speed > 0 else None
 
 
@@ -143,8 +143,9 @@ def test_wall_time(limit, place, velocity):
 
 
 def step(state, remaining=math.inf, half_x=HALF_X, half_y=HALF_Y, sigma=SIGMA):
-    time, code = events.next_event(*state, remaining, half_x, half_y, sigma)
-    after = events.after_event(*state, time, code, half_x, half_y)
+    law = events.Law(half_x, half_y, sigma)
+    time, code = events.next_event(state, remaining, law)
+    after = events.after_event(state, time, code, law)
     assert math.isfinite(time)
     assert time >= 0
     assert all(map(math.isfinite, after))

@@ -244,7 +244,7 @@ def test_predicted_times_are_right_to_a_few_roundings(box):
 
 
 def test_the_textbook_discriminant_would_not_pass(monkeypatch):
-    def textbook(dx, dy, du, dv, sigma):
+    def textbook(dx, dy, _dz, du, dv, _dw, sigma):
         a, b, c = du**2 + dv**2, dx * du + dy * dv, dx * dx + dy * dy - sigma * sigma
         discriminant = b * b - a * c
         return c, (math.sqrt(discriminant) if discriminant > 0 else math.nan) - b, b < 0

@@ -14,6 +14,7 @@ from twodiscs import dynamics, tables, tails, theory
 from twodiscs.cli import tails as command
 from twodiscs.figures import style
 from twodiscs.figures import tails as drawing
+from twodiscs.events import law_of
 from twodiscs.invariant import draw_constants
 from twodiscs.scene import HOPS, Scene
 from twodiscs.streams import open_stream
@@ -87,9 +88,8 @@ def test_a_wait_ends_where_the_trajectory_says(event):
     dynamics.draw_starts(open_stream(np.uint64(6), 0), draw_constants(scene), 0, 0, state)
     for start in state.T:
         rows = dynamics.follow(scene, start, 30.0)
-        expected = next(time for time, *_, name in rows if name == event)
-        sizes = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
-        found = tails.wait(*start, *sizes, event == "vertical_hop")
+        expected = next(row[0] for row in rows if row[5] == event)
+        found = tails.wait(tuple(start), law_of(scene), event == "vertical_hop")
         assert found == pytest.approx(expected, rel=1e-12)
 
 

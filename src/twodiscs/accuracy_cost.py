@@ -277,7 +277,7 @@ def by_scalar(scene, replicas, seed):
     duration = dynamics.replica_duration(scene)
     counts = scalar.count_blocks(
         np.uint64(seed), 0, 1, replicas, duration, scene.contact_distance, draw_constants(scene),
-        (0, 0), dynamics.blocked_hops(scene),
+        (0, 0), scene.confined,
     )[0]  # fmt: skip
     return times(counts, replicas, duration), events_in(counts), 1
 

@@ -27,13 +27,26 @@ from twodiscs.events import (
     WALL_X2,
     WALL_Y1,
     WALL_Y2,
+    WALL_Z1,
+    WALL_Z2,
+    WRAP_X,
+    WRAP_Y,
+    WRAP_Z,
     after_event,
     crosses,
     crossing_time,
+    law_of,
     next_event,
 )
-from twodiscs.invariant import draw_configuration, draw_constants, draw_crossing, draw_velocity
-from twodiscs.jit import compiled
+from twodiscs.invariant import (
+    draw_configuration,
+    draw_constants,
+    draw_crossing,
+    draw_velocity,
+    fill_start,
+    prism_of,
+)
+from twodiscs.jit import compiled, inlined, optional
 from twodiscs.scene import EVENTS, HOPS, Scene
 from twodiscs.streams import open_stream
 
@@ -84,6 +97,79 @@ def draw_starts(state, draw, side_x, side_y, starts):
         starts[4, i], starts[5, i], starts[6, i], starts[7, i] = u1, v1, u2, v2
 
 
+def _plain_starts(state, draw, sides, starts, prism):
+    draw_starts(state, draw, sides[0], sides[1], starts)
+
+
+@optional(_plain_starts)
+def draw_any_starts(state, draw, sides, starts, prism):
+    """Fill ``starts`` with states of the invariant measure, from ``prism`` unless it is None."""
+    for i in range(starts.shape[1]):
+        fill_start(state, prism, None, starts, i)
+
+
+# Rows: the states of all lanes, a tuple of as many arrays as a state has components ---------------
+
+
+@optional(lambda lanes, present: ())
+def pair_of_rows(lanes, present):
+    """Return two arrays, or nothing if the effect they belong to is absent."""
+    return np.zeros(lanes), np.zeros(lanes)
+
+
+@inlined
+def new_rows(lanes, law):
+    """Return the rows of a ``Law``: (lanes,) zeros for each component of a state."""
+    plain = (
+        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes),
+        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes),
+    )  # fmt: skip
+    deep = pair_of_rows(lanes, law.depth) + pair_of_rows(lanes, law.depth)
+    return plain + deep + pair_of_rows(lanes, law.rough)
+
+
+@optional(lambda rows, k, i, present: ())
+def pair_at(rows, k, i, present):
+    """Return the entries of lane ``i`` in rows ``k`` and ``k`` + 1, or nothing if absent."""
+    return rows[k][i], rows[k + 1][i]
+
+
+@inlined
+def state_at(rows, i, law):
+    """Return the state of lane ``i``."""
+    plain = (
+        rows[0][i], rows[1][i], rows[2][i], rows[3][i],
+        rows[4][i], rows[5][i], rows[6][i], rows[7][i],
+    )  # fmt: skip
+    deep = pair_at(rows, 8, i, law.depth) + pair_at(rows, 10, i, law.depth)
+    return plain + deep + pair_at(rows, 8, i, law.rough)
+
+
+@optional(lambda rows, k, i, state, present: None)
+def put_pair(rows, k, i, state, present):
+    """Set the entries of lane ``i`` in rows ``k`` and ``k`` + 1, unless they are absent."""
+    rows[k][i], rows[k + 1][i] = state[k], state[k + 1]
+
+
+@inlined
+def put_state(rows, i, state, law):
+    """Set the state of lane ``i``."""
+    rows[0][i], rows[1][i], rows[2][i], rows[3][i] = state[0], state[1], state[2], state[3]
+    rows[4][i], rows[5][i], rows[6][i], rows[7][i] = state[4], state[5], state[6], state[7]
+    put_pair(rows, 8, i, state, law.depth)
+    put_pair(rows, 10, i, state, law.depth)
+    put_pair(rows, 8, i, state, law.rough)
+
+
+@inlined
+def state_in(starts, i):
+    """Return the plain state in column ``i`` of ``starts``."""
+    return (
+        starts[0, i], starts[1, i], starts[2, i], starts[3, i],
+        starts[4, i], starts[5, i], starts[6, i], starts[7, i],
+    )  # fmt: skip
+
+
 @compiled
 def unpack(packed, counts, lane):
     """Move the packed counts of a ``lane`` to ``counts`` (6, lanes)."""
@@ -95,26 +181,23 @@ def unpack(packed, counts, lane):
 
 @compiled
 def count_blocks(
-    seed, first, stop, replicas, lanes, duration, sigma, draw, sides, blocked, hops, walls
+    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, confined, hops, walls
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products, eligible): Σ N_e (6), Σ N_e N_f for e ≤ f (6, 6) over all replicas, and
-    how many replicas can see each event (6), all int64, in the order of EVENTS. ``sides`` chooses
-    components as in ``draw_configuration``; ``blocked`` says which hops are blocked, so that only
-    starts with disc 1 on the right (on top) see the right (top) wall. ``hops`` and ``walls`` are
-    True or None: what is None is not compiled.
+    how many replicas can see each event (6), all int64, in the order of EVENTS. Starts come from
+    ``draw`` with ``sides`` as in ``draw_configuration``, or from ``prism`` unless it is None.
+    ``confined`` says whether only starts with disc 1 on the right (on top) see the right (top)
+    wall. ``hops`` and ``walls`` are True or None: what is None is not compiled.
     """
-    x1, y1, x2, y2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    u1, v1, u2, v2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    rows, starts = new_rows(lanes, law), np.zeros((12, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, counts = np.zeros(lanes), np.zeros((6, lanes), np.int64)
     sums, products = np.zeros(6, np.int64), np.zeros((6, 6), np.int64)
     eligible = np.zeros(6, np.int64)
     busy = np.zeros(lanes, np.bool_)
-    starts = np.zeros((8, replicas))
     one = np.zeros(6, np.int64)
-    half_x, half_y = draw.half_x, draw.half_y
     block, used, running, looks = first, replicas, 0, 0
 
     while True:
@@ -134,56 +217,41 @@ def count_blocks(
                 busy[i] = False
                 running -= 1
             if used == replicas and block < stop:
-                draw_starts(open_stream(seed, block), draw, sides[0], sides[1], starts)
+                draw_any_starts(open_stream(seed, block), draw, sides, starts, prism)
                 block, used = block + 1, 0
             if used < replicas:
-                x1[i], y1[i], x2[i], y2[i] = (
-                    starts[0, used],
-                    starts[1, used],
-                    starts[2, used],
-                    starts[3, used],
-                )
-                u1[i], v1[i], u2[i], v2[i] = (
-                    starts[4, used],
-                    starts[5, used],
-                    starts[6, used],
-                    starts[7, used],
-                )
+                put_state(rows, i, starts[:, used], law)
                 remaining[i] = duration
-                used += 1
                 busy[i] = True
                 running += 1
                 for e in range(6):
                     eligible[e] += 1
-                if blocked[0] and x1[i] < x2[i]:
+                if confined[0] and starts[0, used] < starts[2, used]:
                     eligible[3] -= 1
-                if blocked[1] and y1[i] < y2[i]:
+                if confined[1] and starts[1, used] < starts[3, used]:
                     eligible[4] -= 1
+                used += 1
         if running == 0:
             return sums, products, eligible
 
         for _ in range(PASSES):
             for i in range(lanes):
-                times[i], codes[i] = next_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    remaining[i], half_x, half_y, sigma,
-                )  # fmt: skip
+                times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
             for i in range(lanes):
-                code, tally = codes[i], packed[i]
-                before_x, before_y, u, v = x1[i] - x2[i], y1[i] - y2[i], u1[i], v1[i]
+                before, code, tally = state_at(rows, i, law), codes[i], packed[i]
                 remaining[i] -= times[i]
-                x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = after_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    times[i], code, half_x, half_y,
-                )  # fmt: skip
+                after = after_event(before, times[i], code, law)
+                put_state(rows, i, after, law)
                 tally += ANY if code > END_OF_TIME else 0.0
                 tally += COLLISION if code == DISC else 0.0
                 if hops is not None:
-                    tally += VERTICAL if crosses(before_y, y1[i] - y2[i]) else 0.0
-                    tally += HORIZONTAL if crosses(before_x, x1[i] - x2[i]) else 0.0
+                    vertical = crosses(before[1] - before[3], after[1] - after[3])
+                    horizontal = crosses(before[0] - before[2], after[0] - after[2])
+                    tally += VERTICAL if vertical else 0.0
+                    tally += HORIZONTAL if horizontal else 0.0
                 if walls is not None:
-                    tally += RIGHT if (code == WALL_X1) & (u > 0.0) else 0.0
-                    tally += TOP if (code == WALL_Y1) & (v > 0.0) else 0.0
+                    tally += RIGHT if (code == WALL_X1) & (after[0] > 0.0) else 0.0
+                    tally += TOP if (code == WALL_Y1) & (after[1] > 0.0) else 0.0
                 packed[i] = tally
         looks += 1
         if looks == LOOKS:
@@ -217,9 +285,11 @@ def replica_duration(scene):
     return duration
 
 
-def blocked_hops(scene):
-    """Return whether the discs are confined to their sides of x and of y."""
-    return not scene.horizontal_hops, not scene.vertical_hops
+def origins(scene):
+    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None."""
+    if scene.has_effects:
+        return None, prism_of(scene)
+    return draw_constants(scene), None
 
 
 def run_blocks(
@@ -235,8 +305,8 @@ def run_blocks(
     hops = True if any(event in HOPS for event in events) else None
     walls = True if {"right_wall", "top_wall"} & set(events) else None
     return count_blocks(
-        np.uint64(seed), first, stop, replicas, lanes, duration, scene.contact_distance,
-        draw_constants(scene), sides, blocked_hops(scene), hops, walls,
+        np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
+        sides, scene.confined, hops, walls,
     )  # fmt: skip
 
 
@@ -338,24 +408,45 @@ def count_events(scene, target, budget, seed, report=None):
     }
 
 
+def _plain_start(state, draw, surface, start, prism):
+    start[0, 0], start[1, 0], start[2, 0], start[3, 0], u1, v1, u2, v2 = draw_crossing(
+        state, draw.half_x, draw.half_y, draw.beyond_x
+    )
+    start[4, 0], start[5, 0], start[6, 0], start[7, 0] = u1, v1, u2, v2
+
+
+@optional(_plain_start)
+def start_on_surface(state, draw, surface, start, prism):
+    """Fill the column ``start`` (12, 1) with a state on the surface of a hop, by its flux."""
+    fill_start(state, prism, surface, start, 0)
+
+
+@inlined
+def across(state, horizontal):
+    """Return the separation and relative velocity along y, or along x if ``horizontal``."""
+    if horizontal is None:
+        return state[1] - state[3], state[5] - state[7]
+    return state[0] - state[2], state[4] - state[6]
+
+
 @compiled
 def record_returns(
-    seed, first, stop, chains, lanes, returns, sigma, draw, beyond_x, width, histogram
+    seed, first, stop, chains, lanes, returns, law, draw, prism, horizontal, width, histogram
 ):
-    """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` vertical hops each.
+    """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
 
-    Adds the intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what
-    is longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in
-    order.
+    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
+    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. Adds the
+    intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what is
+    longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in order.
     """
-    x1, y1, x2, y2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    u1, v1, u2, v2 = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    rows, start = new_rows(lanes, law), np.zeros((12, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     chain, found = np.full(lanes, -1), np.zeros(lanes + 1)
     totals = np.zeros((stop - first) * chains)
-    half_x, half_y = draw.half_x, draw.half_y
     per_width, last_bin, wanted = 1.0 / width, histogram.size - 1, np.float64(returns)
+    surface = 1 if horizontal is None else 0
     state = open_stream(seed, first)
     started, running = 0, 0
 
@@ -371,13 +462,13 @@ def record_returns(
                 continue
             if started % chains == 0:
                 state = open_stream(seed, first + started // chains)
-            x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = draw_crossing(
-                state, half_x, half_y, beyond_x
-            )
+            start_on_surface(state, draw, surface, start, prism)
+            put_state(rows, i, start[:, 0], law)
             chain[i], elapsed[i], age[i] = started, 0.0, 0.0
-            # A start that falls through y1 = y2 is seen to cross it at time 0; that is not a
+            # A start that falls through the surface is seen to cross it at time 0; that is not a
             # return.
-            left[i] = wanted + (1.0 if v1[i] < v2[i] else 0.0)
+            _, rising = across(state_at(rows, i, law), horizontal)
+            left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
             started += 1
             running += 1
         if running == 0:
@@ -385,18 +476,14 @@ def record_returns(
 
         for _ in range(PASSES):
             for i in range(lanes):
-                times[i], codes[i] = next_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    np.inf, half_x, half_y, sigma,
-                )  # fmt: skip
+                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
             for i in range(lanes):
-                before, rising, waited = y1[i] - y2[i], v1[i] - v2[i], age[i]
-                x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = after_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    times[i], codes[i], half_x, half_y,
-                )  # fmt: skip
-                hop = crosses(before, y1[i] - y2[i])
-                until = crossing_time(before, rising)
+                before, waited = state_at(rows, i, law), age[i]
+                after = after_event(before, times[i], codes[i], law)
+                put_state(rows, i, after, law)
+                apart, rising = across(before, horizontal)
+                hop = crosses(apart, across(after, horizontal)[0])
+                until = crossing_time(apart, rising)
                 recorded = hop & (left[i] > 0.0) & (left[i] <= wanted)
                 intervals[i] = waited + until if recorded else -1.0
                 elapsed[i] += waited + until if recorded else 0.0
@@ -431,13 +518,16 @@ def hop_intervals(scene, event, intervals, seed):
     blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
     seed = whole("seed", seed, 0)
     width = nearest_power_of_two(theory.mean_times(scene)[event] / 16)
-    # A horizontal hop is a vertical one of the box on its side.
-    upright = scene if event == "vertical_hop" else Scene(scene.height, scene.width, scene.radius)
-    draw = draw_constants(upright)
+    upright, horizontal = scene, None
+    if event == "horizontal_hop" and scene.has_effects:
+        horizontal = True
+    elif event == "horizontal_hop":
+        # That is a vertical hop of the box on its side.
+        upright = Scene(scene.height, scene.width, scene.radius)
     histogram = np.zeros(BINS + 1, np.int64)
     totals = record_returns(
-        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, scene.contact_distance, draw,
-        draw.beyond_x, width, histogram,
+        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, law_of(upright), *origins(upright),
+        horizontal, width, histogram,
     )  # fmt: skip
     means = totals / RETURNS
     return {
@@ -454,32 +544,49 @@ def hop_intervals(scene, event, intervals, seed):
 
 
 #: Names of what ends a flight, by code; only disc 1 on the right and on top has a name as an event.
-_NAMES = {WALL_X1: "wall_x1", WALL_Y1: "wall_y1", WALL_X2: "wall_x2", WALL_Y2: "wall_y2"}
-_NAMES |= {DISC: "disc_collision", END_OF_TIME: "end"}
+_NAMES = {
+    END_OF_TIME: "end",
+    WALL_X1: "wall_x1",
+    WALL_Y1: "wall_y1",
+    WALL_X2: "wall_x2",
+    WALL_Y2: "wall_y2",
+    DISC: "disc_collision",
+    WALL_Z1: "wall_z1",
+    WALL_Z2: "wall_z2",
+    WRAP_X: "wrap_x",
+    WRAP_Y: "wrap_y",
+    WRAP_Z: "wrap_z",
+}
+
+
+def _row(time, event, state, scene):
+    """Return (time, x1, y1, x2, y2, event, z1, z2), None for z in the plane."""
+    return (time, *state[:4], event, *((None, None) if scene.depth is None else state[8:10]))
 
 
 def follow(scene, state, duration):
-    """Yield (time, x1, y1, x2, y2, event) for all that happens within ``duration``.
+    """Yield (time, x1, y1, x2, y2, event, z1, z2) for all that happens within ``duration``.
 
-    ``state`` of the ``Scene`` is (x1, y1, x2, y2, u1, v1, u2, v2). Hops are events here, reported
-    where they occur in a flight; walls are named by disc and axis; the first row is the start, the
-    last one the end.
+    ``state`` of the ``Scene`` is as in ``events``; z1 and z2 are None in the plane. Hops are events
+    here, reported where they occur in a flight; walls are named by disc and axis, and the places
+    after a jump of a periodic separation follow the name of its axis; the first row is the start,
+    the last one the end.
     """
-    half_x, half_y, time = scene.range_x / 2, scene.range_y / 2, 0.0
-    yield (time, *state[:4], "start")
+    law, time = law_of(scene), 0.0
+    yield _row(time, "start", state, scene)
     while True:
-        flight, code = next_event(*state, duration - time, half_x, half_y, scene.contact_distance)
-        after = after_event(*state, flight, code, half_x, half_y)
+        flight, code = next_event(state, duration - time, law)
+        after = after_event(state, flight, code, law)
         hops = []
-        for name, axis in (("vertical_hop", 1), ("horizontal_hop", 0)):
-            before = state[axis] - state[axis + 2]
-            if crosses(before, after[axis] - after[axis + 2]):
-                hops.append((crossing_time(before, state[axis + 4] - state[axis + 6]), name))
+        for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
+            before, rising = across(state, horizontal)
+            passed = crosses(before, across(after, horizontal)[0])
+            if name in scene.events and passed:
+                hops.append((crossing_time(before, rising), name))
         for until, name in sorted(hops):
-            places = (q + v * until for q, v in zip(state[:4], state[4:], strict=True))
-            yield (time + until, *places, name)
+            yield _row(time + until, name, after_event(state, until, END_OF_TIME, law), scene)
         time, state = time + flight, after
-        yield (time, *state[:4], _NAMES[code])
+        yield _row(time, _NAMES[code], state, scene)
         if code == END_OF_TIME:
             return
 
@@ -492,10 +599,11 @@ def trajectory(scene, seed):
     is not a ``Scene``, and for a seed that is not an integer ≥ 0.
     """
     stream = open_stream(np.uint64(whole("seed", seed, 0)), 0)
-    start = (
-        *draw_configuration(stream, draw_constants(a_scene(scene)), 0, 0),
-        *draw_velocity(stream),
-    )
+    start = np.zeros((12, 1))
+    draw, prism = origins(a_scene(scene))
+    draw_any_starts(stream, draw, (0, 0), start, prism)
+    components = 8 + 4 * (scene.depth is not None) + 2 * (scene.moment_of_inertia is not None)
+    start = tuple(map(float, start[:components, 0]))
     rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
     hops = [theory.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
     duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)

@@ -54,8 +54,41 @@ _use_wide_vectors()
 _use_keyed_cache()
 
 import numba  # noqa: E402
+from numba.core import types  # noqa: E402
+from numba.extending import overload  # noqa: E402
+
+#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it.
+OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True}
 
 
 def compiled(function):
     """Compile ``function`` with the house settings; what a kernel calls is compiled into it."""
-    return numba.njit(function, cache=True, error_model="numpy", boundscheck=False, nogil=True)
+    return numba.njit(function, cache=True, **OPTIONS)
+
+
+def inlined(function):
+    """Compile ``function`` into whatever calls it, however long it is: for the innermost loops."""
+    return numba.njit(function, cache=True, forceinline=True, **OPTIONS)
+
+
+def optional(absent):
+    """Decorate a function of an effect; ``absent`` takes its place where its last argument is None.
+
+    Which of them it is follows from the type of that argument, when the kernel that calls it is
+    compiled: the other one is not even looked at, so it need make no sense for these arguments.
+    """
+
+    def decorate(present):
+        def chosen(*arguments):
+            return (absent if arguments[-1] is None else present)(*arguments)
+
+        chosen.__name__, chosen.__doc__ = present.__name__, present.__doc__
+
+        @overload(chosen, strict=False, jit_options=OPTIONS | {"forceinline": True})
+        def choose(*arguments):
+            missing = isinstance(arguments[-1], types.NoneType | types.Omitted)
+            return absent if missing else present
+
+        return chosen
+
+    return decorate

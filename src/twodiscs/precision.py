@@ -14,18 +14,19 @@ import numpy as np
 
 from twodiscs import events
 from twodiscs.checks import a_scene, one_of, whole
-from twodiscs.dynamics import LANES, LOOKS, PASSES, REPLICAS, draw_starts
+from twodiscs.dynamics import LANES, LOOKS, PASSES, REPLICAS, draw_starts, put_state, state_at
 from twodiscs.invariant import draw_constants
-from twodiscs.jit import numba
+from twodiscs.jit import OPTIONS, numba
 from twodiscs.scene import length
 from twodiscs.streams import open_stream
 
-#: Not kept on disk: what is compiled here depends on more than its source.
-OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True}
-
 
 def law(dtype):
-    """Return {name: constant or compiled function} of ``events`` for numbers of ``dtype``."""
+    """Return {name: constant or compiled function} of ``events`` for numbers of ``dtype``.
+
+    What is compiled here is not kept on disk, for it depends on more than its source. What stands
+    in for absent effects has no constants, and is taken as it is.
+    """
 
     def rounded(value):
         return dtype(value) if isinstance(value, float) else value
@@ -36,7 +37,7 @@ def law(dtype):
         if hasattr(value, "py_func"):
             code = value.py_func.__code__
             code = code.replace(co_consts=tuple(map(rounded, code.co_consts)))
-            names[name] = numba.njit(FunctionType(code, names, name), **OPTIONS)
+            names[name] = numba.njit(FunctionType(code, names, name), forceinline=True, **OPTIONS)
     return names
 
 
@@ -44,10 +45,10 @@ def law(dtype):
 def kernel(dtype):
     """Return ``dynamics.count_blocks`` for states of ``dtype``, with sums only.
 
-    Its arguments are seed, first, stop, replicas, lanes, duration, sigma, half_x, half_y, draw; the
-    four lengths are of ``dtype``. It returns Σ N_e (6, int64) in the order of EVENTS, and the sum
-    and sum of squares of u1² + v1² + u2² + v2² − 1 over the ends of all replicas. Starts are drawn
-    in double precision and rounded.
+    Its arguments are seed, first, stop, replicas, lanes, duration, law, draw; the duration and the
+    lengths in the ``events.Law`` are of ``dtype``. It returns Σ N_e (6, int64) in the order of
+    EVENTS, and the sum and sum of squares of u1² + v1² + u2² + v2² − 1 over the ends of all
+    replicas. Starts are drawn in double precision and rounded.
     """
     names = law(dtype)
     next_event, after_event = names["next_event"], names["after_event"]
@@ -57,10 +58,11 @@ def kernel(dtype):
     low, middle, high, zero = dtype(1), dtype(256), dtype(65536), dtype(0)
 
     @numba.njit(**OPTIONS)
-    def count(seed, first, stop, replicas, lanes, duration, sigma, half_x, half_y, draw):
+    def count(seed, first, stop, replicas, lanes, duration, law, draw):
         state = np.zeros((8, lanes), dtype)
-        x1, y1, x2, y2 = state[0], state[1], state[2], state[3]
-        u1, v1, u2, v2 = state[4], state[5], state[6], state[7]
+        rows = (
+            state[0], state[1], state[2], state[3], state[4], state[5], state[6], state[7],
+        )  # fmt: skip
         remaining, busy = np.zeros(lanes, dtype), np.zeros(lanes, np.bool_)
         times, codes = np.zeros(lanes, dtype), np.zeros(lanes, dtype)
         inner, outer = np.zeros(lanes, dtype), np.zeros(lanes, dtype)
@@ -91,23 +93,17 @@ def kernel(dtype):
             if running > 0:
                 for _ in range(PASSES):
                     for i in range(lanes):
-                        times[i], codes[i] = next_event(
-                            x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                            remaining[i], half_x, half_y, sigma,
-                        )  # fmt: skip
+                        times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
                     for i in range(lanes):
-                        code, a, b = codes[i], inner[i], outer[i]
-                        before_x, before_y, u, v = x1[i] - x2[i], y1[i] - y2[i], u1[i], v1[i]
+                        before, code, a, b = state_at(rows, i, law), codes[i], inner[i], outer[i]
                         remaining[i] -= times[i]
-                        x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = after_event(
-                            x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                            times[i], code, half_x, half_y,
-                        )  # fmt: skip
-                        a += low if crosses(before_y, y1[i] - y2[i]) else zero
-                        a += middle if crosses(before_x, x1[i] - x2[i]) else zero
+                        after = after_event(before, times[i], code, law)
+                        put_state(rows, i, after, law)
+                        a += low if crosses(before[1] - before[3], after[1] - after[3]) else zero
+                        a += middle if crosses(before[0] - before[2], after[0] - after[2]) else zero
                         a += high if code == disc else zero
-                        b += low if (code == wall_x1) & (u > zero) else zero
-                        b += middle if (code == wall_y1) & (v > zero) else zero
+                        b += low if (code == wall_x1) & (after[0] > zero) else zero
+                        b += middle if (code == wall_y1) & (after[1] > zero) else zero
                         b += high if code > end_of_time else zero
                         inner[i], outer[i] = a, b
             looks += 1
@@ -139,8 +135,7 @@ def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
     one_of("dtype", dtype.__name__ if isinstance(dtype, type) else dtype, ("float32", "float64"))
     sums, gained, squared = kernel(dtype)(
         np.uint64(seed), first, stop, REPLICAS, LANES, dtype(duration),
-        dtype(scene.contact_distance), dtype(scene.range_x / 2), dtype(scene.range_y / 2),
-        draw_constants(scene),
+        events.Law(*map(dtype, events.law_of(scene)[:3])), draw_constants(scene),
     )  # fmt: skip
     ends = (stop - first) * REPLICAS
     return sums, gained / ends, (squared / ends) ** 0.5

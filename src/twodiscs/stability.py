@@ -15,7 +15,8 @@ from mpmath import mp, mpf
 
 from twodiscs import comparison, dynamics, events, montecarlo, statistics, theory
 from twodiscs.checks import whole
-from twodiscs.events import after_event, next_event
+from twodiscs.dynamics import new_rows, put_state, state_at, state_in
+from twodiscs.events import after_event, law_of, next_event
 from twodiscs.grid import thresholds
 from twodiscs.invariant import draw_constants
 from twodiscs.jit import compiled
@@ -323,7 +324,7 @@ def contact_error(dx, dy, du, dv, sigma):
     None where roundings of the inputs decide between hit and miss; infinite for a contact that is
     missed, or predicted where there is none.
     """
-    gap, speed, approach = events.contact_quotient(dx, dy, du, dv, sigma)
+    gap, speed, approach = events.contact_quotient(dx, dy, None, du, dv, None, sigma)
     impact, graze = abs(dx * dv - dy * du), sigma * math.hypot(du, dv)
     if abs(impact - graze) <= 8 * EPSILON * (abs(dx * dv) + abs(dy * du) + graze):
         return None
@@ -397,7 +398,7 @@ def time_rows(width, height, seed, cases=400):
 
 
 @compiled
-def audit(starts, windows, window, half_x, half_y, sigma, shortest):
+def audit(starts, windows, window, law, shortest):
     """Run the lanes that begin at ``starts`` (8, lanes) for ``windows`` × ``window`` events each.
 
     Returns for each lane, over the states after all of its events: the smallest |Δx|², the largest
@@ -405,8 +406,9 @@ def audit(starts, windows, window, half_x, half_y, sigma, shortest):
     through with the events of a window in less than the time ``shortest``.
     """
     lanes = starts.shape[1]
-    x1, y1, x2, y2 = starts[0].copy(), starts[1].copy(), starts[2].copy(), starts[3].copy()
-    u1, v1, u2, v2 = starts[4].copy(), starts[5].copy(), starts[6].copy(), starts[7].copy()
+    rows = new_rows(lanes, law)
+    for i in range(lanes):
+        put_state(rows, i, starts[:, i], law)
     times, codes, elapsed = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     nearest, energy = np.full(lanes, np.inf), np.zeros(lanes)
     far_x, far_y = np.zeros(lanes), np.zeros(lanes)
@@ -415,17 +417,12 @@ def audit(starts, windows, window, half_x, half_y, sigma, shortest):
         elapsed[:] = 0.0
         for _ in range(window):
             for i in range(lanes):
-                times[i], codes[i] = next_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    np.inf, half_x, half_y, sigma,
-                )  # fmt: skip
+                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
             for i in range(lanes):
                 elapsed[i] += times[i]
-                x, y, z, w, p, q, r, s = after_event(
-                    x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i],
-                    times[i], codes[i], half_x, half_y,
-                )  # fmt: skip
-                x1[i], y1[i], x2[i], y2[i], u1[i], v1[i], u2[i], v2[i] = x, y, z, w, p, q, r, s
+                state = after_event(state_at(rows, i, law), times[i], codes[i], law)
+                put_state(rows, i, state, law)
+                x, y, z, w, p, q, r, s = state
                 square = (x - z) * (x - z) + (y - w) * (y - w)
                 nearest[i] = square if square < nearest[i] else nearest[i]
                 error = abs(p * p + q * q + r * r + s * s - 1.0)
@@ -435,7 +432,9 @@ def audit(starts, windows, window, half_x, half_y, sigma, shortest):
                 far = abs(y) if abs(y) > abs(w) else abs(w)
                 far_y[i] = far if far > far_y[i] else far_y[i]
         for i in range(lanes):
-            total = x1[i] + y1[i] + x2[i] + y2[i] + u1[i] + v1[i] + u2[i] + v2[i] + elapsed[i]
+            total = elapsed[i]
+            for component in state_at(rows, i, law):
+                total += component
             lost[i] |= not (np.isfinite(total) and elapsed[i] >= shortest)
     return nearest, energy, far_x, far_y, lost
 
@@ -467,17 +466,19 @@ def run(scene, number, seed):
     per_lane = -(-whole("number", number) // LANES)
     windows = -(-per_lane // WINDOW)
     window = -(-per_lane // windows)
-    half_x, half_y, sigma = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+    law = law_of(scene)
     nearest, energy, far_x, far_y, lost = audit(
-        invariant_starts(scene, seed, 0, LANES), windows, window, half_x, half_y, sigma,
+        invariant_starts(scene, seed, 0, LANES), windows, window, law,
         STUCK * window / event_rate(scene),
     )  # fmt: skip
     unit_x, unit_y = box_units(scene)
-    excess = max((float(far_x.max()) - half_x) / unit_x, (float(far_y.max()) - half_y) / unit_y)
+    excess = max(
+        (float(far_x.max()) - law.half_x1) / unit_x, (float(far_y.max()) - law.half_y1) / unit_y
+    )
     return {
         "events": windows * window * LANES,
         "energy_error": float(energy.max()) / 2,
-        "smallest_gap": (math.sqrt(nearest.min()) - sigma) / max(unit_x, unit_y),
+        "smallest_gap": (math.sqrt(nearest.min()) - law.sigma) / max(unit_x, unit_y),
         "excess": excess,
         "lanes_lost": int(np.count_nonzero(lost)),
     }
@@ -505,30 +506,21 @@ def dynamics_rows(width, height, seed, ordinary, hard):
 
 
 @compiled
-def advance(state, half_x, half_y, sigma):
+def advance(state, law):
     """Return the state after the next event, and the time and code of that event."""
-    time, code = next_event(*state, np.inf, half_x, half_y, sigma)
-    return after_event(*state, time, code, half_x, half_y), time, code
+    time, code = next_event(state, np.inf, law)
+    return after_event(state, time, code, law), time, code
 
 
 @compiled
-def pick(starts, i):
-    """Return column ``i`` of ``starts`` as a state."""
-    return (
-        starts[0, i], starts[1, i], starts[2, i], starts[3, i],
-        starts[4, i], starts[5, i], starts[6, i], starts[7, i],
-    )  # fmt: skip
-
-
-@compiled
-def separation(state, other, half_x, half_y):
+def separation(state, other, law):
     """Return the distance of two states: positions over the half-ranges, velocities as they are."""
     dx1, dy1, dx2, dy2, du1, dv1, du2, dv2 = (
         state[0] - other[0], state[1] - other[1], state[2] - other[2], state[3] - other[3],
         state[4] - other[4], state[5] - other[5], state[6] - other[6], state[7] - other[7],
     )  # fmt: skip
-    x = (dx1 * dx1 + dx2 * dx2) / (half_x * half_x)
-    y = (dy1 * dy1 + dy2 * dy2) / (half_y * half_y)
+    x = (dx1 * dx1 + dx2 * dx2) / (law.half_x1 * law.half_x1)
+    y = (dy1 * dy1 + dy2 * dy2) / (law.half_y1 * law.half_y1)
     return math.sqrt(x + y + du1 * du1 + dv1 * dv1 + du2 * du2 + dv2 * dv2)
 
 
@@ -540,7 +532,7 @@ def turned_back(state):
 
 
 @compiled
-def return_errors(starts, number, half_x, half_y, sigma):
+def return_errors(starts, number, law):
     """Follow each start for ``number`` events, reverse, come back, and return how far off it ends.
 
     The way back has as many events, the first of them at once, and then the flight that led to the
@@ -548,23 +540,23 @@ def return_errors(starts, number, half_x, half_y, sigma):
     """
     errors = np.empty(starts.shape[1])
     for i in range(errors.size):
-        start = pick(starts, i)
-        state, first, _ = advance(start, half_x, half_y, sigma)
+        start = state_in(starts, i)
+        state, first, _ = advance(start, law)
         for _ in range(number - 1):
-            state, _, _ = advance(state, half_x, half_y, sigma)
+            state, _, _ = advance(state, law)
         state = turned_back(state)
         for _ in range(number):
-            state, _, _ = advance(state, half_x, half_y, sigma)
+            state, _, _ = advance(state, law)
         x1, y1, x2, y2, u1, v1, u2, v2 = state
         end = (
             x1 + u1 * first, y1 + v1 * first, x2 + u2 * first, y2 + v2 * first, u1, v1, u2, v2
         )  # fmt: skip
-        errors[i] = separation(turned_back(end), start, half_x, half_y)
+        errors[i] = separation(turned_back(end), start, law)
     return errors
 
 
 @compiled
-def growth(starts, forgotten, measured, small, half_x, half_y, sigma):
+def growth(starts, forgotten, measured, small, law):
     """Return by which factor a ``small`` separation from each start grows, NaN if the two part.
 
     It grows for ``forgotten`` events first, then for the ``measured`` ones. After every event the
@@ -574,21 +566,21 @@ def growth(starts, forgotten, measured, small, half_x, half_y, sigma):
     """
     factors = np.empty(starts.shape[1])
     for i in range(factors.size):
-        state = pick(starts, i)
+        state = state_in(starts, i)
         x1, y1, x2, y2, u1, v1, u2, v2 = state
-        x, y = small * half_x, small * half_y
+        x, y = small * law.half_x1, small * law.half_y1
         other = (
             x1 - 0.3 * x, y1 + 0.4 * y, x2 + 0.2 * x, y2 - 0.3 * y,
             u1 + 0.5 * small, v1 - 0.4 * small, u2 - 0.3 * small, v2 + 0.4 * small,
         )  # fmt: skip
         factors[i] = 1.0
         for k in range(forgotten + measured):
-            state, _, code = advance(state, half_x, half_y, sigma)
-            other, _, same = advance(other, half_x, half_y, sigma)
+            state, _, code = advance(state, law)
+            other, _, same = advance(other, law)
             if code != same:
                 factors[i] = np.nan
                 break
-            distance = separation(state, other, half_x, half_y)
+            distance = separation(state, other, law)
             if k >= forgotten:
                 factors[i] *= distance / small
             back = small / distance
@@ -623,11 +615,11 @@ def reversal_rows(width, height, seed):
     long = max(width, height) / min(width, height)
     for radius in ordinary_radii(width, height):
         scene = Scene(width, height, radius)
-        shape = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+        law = law_of(scene)
 
-        def exponent(forgotten, measured, scene=scene, shape=shape):
+        def exponent(forgotten, measured, scene=scene, law=law):
             starts = invariant_starts(scene, seed, 0, REVERSED)
-            factors = growth(starts, forgotten, measured, SEPARATION, *shape)
+            factors = growth(starts, forgotten, measured, SEPARATION, law)
             return mean(np.log(factors[np.isfinite(factors)]) / measured)
 
         expected, _ = exponent(FORGOTTEN, PILOT)
@@ -648,7 +640,7 @@ def reversal_rows(width, height, seed):
         for block, number in enumerate(numbers, start=1):
             starts = invariant_starts(scene, seed, block, REVERSED)
             # A way back without any rounding is possible; it counts as an eighth of one.
-            off = np.maximum(return_errors(starts, number, *shape), 2.0**-56)
+            off = np.maximum(return_errors(starts, number, law), 2.0**-56)
             errors.append(mean(np.log(off)))
             value = math.exp(errors[-1][0])
             yield row(

@@ -460,6 +460,8 @@ TABLES = {
             Column("x2", "length", "disc 2, from the centre of the box"),
             Column("y2", "length", "disc 2, from the centre of the box"),
             Column("event", "", "what happens", str),
+            Column("z1", "length", "ball 1; empty in the plane"),
+            Column("z2", "length", "ball 2; empty in the plane"),
         ),
     ),
 }

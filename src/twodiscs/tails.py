@@ -20,8 +20,8 @@ import numpy as np
 
 from twodiscs import theory
 from twodiscs.checks import a_scene, one_of, whole
-from twodiscs.dynamics import draw_starts, nearest_power_of_two
-from twodiscs.events import DISC, after_event, crosses, crossing_time, next_event
+from twodiscs.dynamics import across, draw_starts, nearest_power_of_two, state_in
+from twodiscs.events import DISC, after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.invariant import draw_configuration, draw_constants, draw_in_disc
 from twodiscs.jit import compiled
 from twodiscs.scene import HOPS, Scene, fits, length
@@ -55,26 +55,22 @@ def draw_drifting_velocity(state, largest, least):
 
 
 @compiled
-def wait(x1, y1, x2, y2, u1, v1, u2, v2, half_x, half_y, sigma, hop):
+def wait(state, law, hop):
     """Return the time to the next vertical hop, or to the next disc collision if not ``hop``."""
     elapsed = 0.0
     while True:
-        time, code = next_event(
-            x1, y1, x2, y2, u1, v1, u2, v2, np.inf, half_x, half_y, sigma
-        )  # fmt: skip
+        time, code = next_event(state, np.inf, law)
         if code == DISC and not hop:
             return elapsed + time
-        before, rising = y1 - y2, v1 - v2
-        x1, y1, x2, y2, u1, v1, u2, v2 = after_event(
-            x1, y1, x2, y2, u1, v1, u2, v2, time, code, half_x, half_y
-        )  # fmt: skip
-        if hop and crosses(before, y1 - y2):
+        before, rising = across(state, None)
+        state = after_event(state, time, code, law)
+        if hop and crosses(before, across(state, None)[0]):
             return elapsed + crossing_time(before, rising)
         elapsed += time
 
 
 @compiled
-def straddled(seed, first, stop, strata, samples, times, sigma, draw, hop):
+def straddled(seed, first, stop, strata, samples, times, law, draw, hop):
     """Return ⟨1[F + G > t]/(F + G)⟩ for each of blocks ``first`` … ``stop`` − 1 and each time.
 
     A block has ``samples`` starts in each of ``strata`` strata; ``times`` ascend. The result has
@@ -82,7 +78,6 @@ def straddled(seed, first, stop, strata, samples, times, sigma, draw, hop):
     """
     found = np.zeros((stop - first, times.size))
     sums = np.zeros(times.size)
-    half_x, half_y = draw.half_x, draw.half_y
     for block in range(first, stop):
         state = open_stream(seed, block)
         largest = 0.5
@@ -92,11 +87,8 @@ def straddled(seed, first, stop, strata, samples, times, sigma, draw, hop):
             for _ in range(samples):
                 x1, y1, x2, y2 = draw_configuration(state, draw, 0, 0)
                 u1, v1, u2, v2 = draw_drifting_velocity(state, largest, least)
-                interval = wait(
-                    x1, y1, x2, y2, u1, v1, u2, v2, half_x, half_y, sigma, hop
-                ) + wait(
-                    x1, y1, x2, y2, -u1, -v1, -u2, -v2, half_x, half_y, sigma, hop
-                )  # fmt: skip
+                interval = wait((x1, y1, x2, y2, u1, v1, u2, v2), law, hop)
+                interval += wait((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop)
                 for i in range(times.size):
                     if interval <= times[i]:
                         break
@@ -109,31 +101,26 @@ def straddled(seed, first, stop, strata, samples, times, sigma, draw, hop):
 
 
 @compiled
-def count_long(seed, first, stop, replicas, window, times, sigma, draw, hop):
+def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
     """Return the counts of intervals that begin within a ``window`` of time, (replicas, times + 1).
 
     The first column has all intervals, the next those longer than each of ``times``.
     """
     counts = np.zeros(((stop - first) * replicas, times.size + 1), np.int64)
     starts = np.zeros((8, replicas))
-    half_x, half_y = draw.half_x, draw.half_y
     for block in range(first, stop):
         draw_starts(open_stream(seed, block), draw, 0, 0, starts)
         for replica in range(replicas):
             count = counts[(block - first) * replicas + replica]
-            x1, y1, x2, y2 = starts[:4, replica]
-            u1, v1, u2, v2 = starts[4:, replica]
+            state = state_in(starts, replica)
             now, last = 0.0, -1.0
             while True:
-                time, code = next_event(
-                    x1, y1, x2, y2, u1, v1, u2, v2, np.inf, half_x, half_y, sigma
-                )  # fmt: skip
-                before, rising = y1 - y2, v1 - v2
-                x1, y1, x2, y2, u1, v1, u2, v2 = after_event(
-                    x1, y1, x2, y2, u1, v1, u2, v2, time, code, half_x, half_y
-                )  # fmt: skip
+                time, code = next_event(state, np.inf, law)
+                before, rising = across(state, None)
+                state = after_event(state, time, code, law)
                 if hop:
-                    met, moment = crosses(before, y1 - y2), now + crossing_time(before, rising)
+                    met = crosses(before, across(state, None)[0])
+                    moment = now + crossing_time(before, rising)
                 else:
                     met, moment = code == DISC, now + time
                 now += time
@@ -185,7 +172,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
     found = straddled(
-        np.uint64(seed), 0, blocks, strata, samples, times, upright.contact_distance,
+        np.uint64(seed), 0, blocks, strata, samples, times, law_of(upright),
         draw_constants(upright), hop,
     )  # fmt: skip
     found *= theory.mean_times(scene)[event]
@@ -200,7 +187,7 @@ def _counts(scene, event, upright, hop, times, replicas, seed):
     """Return what each replica has of P(T > t), (replicas, times): its count over the mean one."""
     window = 8 * theory.mean_times(scene)[event]
     counts = count_long(
-        np.uint64(seed), 0, 1, replicas, window, times, upright.contact_distance,
+        np.uint64(seed), 0, 1, replicas, window, times, law_of(upright),
         draw_constants(upright), hop,
     )  # fmt: skip
     return counts[:, 1:] / 8

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from twodiscs import stability
+from twodiscs.events import law_of
 from twodiscs.scene import Scene, largest_radius
 
 BOXES = [
@@ -50,9 +51,8 @@ def test_energy_error_grows_like_a_random_walk():
 
 def audited(starts, shortest=0.0, events=50):
     scene = PAPER
-    half = scene.range_x / 2, scene.range_y / 2
     columns = np.array(starts, float).T.copy()
-    return stability.audit(columns, 1, events, *half, scene.contact_distance, shortest)
+    return stability.audit(columns, 1, events, law_of(scene), shortest)
 
 
 GOOD = (-0.4, 0.1, 0.4, -0.1, 0.6, 0.48, -0.64, 0.0)

@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics import follow
+from twodiscs.events import law_of
 from twodiscs.invariant import draw_configuration, draw_constants, draw_velocity
 from twodiscs.scene import Scene, largest_radius
 from twodiscs.stability import advance, box_units, hard_radii
@@ -135,7 +136,7 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
     for velocities in ((0.0, 0.0, 0.0, 1.0), (0.0, -1e-160, 0.0, 1.0)):
         state = (-half_x, 0.0, -half_x, -half_y, *velocities)
         for _ in range(20):
-            state, time, _ = advance(state, half_x, half_y, scene.contact_distance)
+            state, time, _ = advance(state, law_of(scene))
             assert 0 <= time < math.inf
             assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
 
@@ -185,7 +186,7 @@ def test_any_combination_of_extremes_goes_on(box, data, places, velocities):
     unit_x, unit_y = box_units(scene)
     elapsed, number = 0.0, 0
     for number in range(300):
-        state, time, _ = advance(state, half_x, half_y, sigma)
+        state, time, _ = advance(state, law_of(scene))
         assert time >= 0
         if time == math.inf:
             # Only if nothing ever happens again, to within what a denormal speed takes.

@@ -6,8 +6,9 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from twodiscs import stability
+from twodiscs import dynamics, stability
 from twodiscs.dynamics import follow
+from twodiscs.events import Law, law_of
 from twodiscs.scene import Scene
 
 
@@ -33,29 +34,29 @@ def test_the_same_events_in_reverse_order(radius):
     """Walls and collisions one by one: none is missed or added on the way back."""
     scene, number = Scene(1.5, 1.0, radius), 30
     for i in range(5):
-        start = stability.pick(stability.invariant_starts(scene, 9, 0, 5), i)
-        shape = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+        start = dynamics.state_in(stability.invariant_starts(scene, 9, 0, 5), i)
+        law = law_of(scene)
         out, back, state = [], [], start
         for _ in range(number):
-            state, _, code = stability.advance(state, *shape)
+            state, _, code = stability.advance(state, law)
             out.append(code)
         state = stability.turned_back(state)
         for _ in range(number):
-            state, _, code = stability.advance(state, *shape)
+            state, _, code = stability.advance(state, law)
             back.append(code)
         assert back == out[::-1]
 
 
 def test_hops_are_retraced_too():
     scene = Scene(1.5, 1.0, 0.2)
-    start = stability.pick(stability.invariant_starts(scene, 4, 0, 1), 0)
+    start = dynamics.state_in(stability.invariant_starts(scene, 4, 0, 1), 0)
     out = list(islice(follow(scene, start, 8.0), 60))
     end = out[-1]
     assert end[5] == "end"
     state, elapsed = start, 0.0
-    shape = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+    law = law_of(scene)
     while True:
-        after, time, _ = stability.advance(state, *shape)
+        after, time, _ = stability.advance(state, law)
         if elapsed + time > 8.0:
             break
         state, elapsed = after, elapsed + time
@@ -67,9 +68,9 @@ def test_hops_are_retraced_too():
 def test_growth_does_not_depend_on_the_size_of_the_separation():
     """It is that of the tangent space: the same for separations of 1e-7, 1e-8 and 1e-9."""
     scene = Scene(1.5, 1.0, 0.2)
-    shape = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+    law = law_of(scene)
     starts = stability.invariant_starts(scene, 1, 0, 50)
-    logs = [np.log(stability.growth(starts, 5, 20, size, *shape)) for size in (1e-7, 1e-8, 1e-9)]
+    logs = [np.log(stability.growth(starts, 5, 20, size, law)) for size in (1e-7, 1e-8, 1e-9)]
     assert np.median(logs[1]) > 3
     for other in (logs[0], logs[2]):
         assert np.median(np.abs(other - logs[1])) < 1e-3
@@ -78,7 +79,7 @@ def test_growth_does_not_depend_on_the_size_of_the_separation():
 def test_growth_ends_where_the_events_differ():
     """Discs that hit opposite walls at once: for the neighbour the other one comes first."""
     state = np.array([[-0.4], [0.0], [0.4], [0.0], [-0.5], [0.0], [0.5], [0.0]])
-    assert math.isnan(stability.growth(state, 0, 10, 1e-9, 0.55, 0.3, 0.4)[0])
+    assert math.isnan(stability.growth(state, 0, 10, 1e-9, Law(0.55, 0.3, 0.4))[0])
 
 
 def test_a_straight_line_is_fitted_with_its_error():

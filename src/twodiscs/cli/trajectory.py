@@ -2,7 +2,7 @@
 
 from twodiscs.cli.arguments import run
 from twodiscs.cli.points import arguments
-from twodiscs.tables import write
+from twodiscs.tables import TABLES, write
 
 
 def main():
@@ -10,7 +10,7 @@ def main():
     point, scene, output, _ = arguments(__doc__)
     from twodiscs import dynamics
 
-    columns = ("time", "x1", "y1", "x2", "y2", "event")
+    columns = TABLES["trajectory"].names
     rows = dynamics.trajectory(scene, point["seed"])
     write(output, "trajectory", [dict(zip(columns, row, strict=True)) for row in rows])
 
