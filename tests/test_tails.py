@@ -12,9 +12,9 @@ import pytest
 
 from twodiscs import dynamics, tables, tails, theory
 from twodiscs.cli import tails as command
+from twodiscs.events import law_of
 from twodiscs.figures import style
 from twodiscs.figures import tails as drawing
-from twodiscs.events import law_of
 from twodiscs.invariant import draw_constants
 from twodiscs.scene import HOPS, Scene
 from twodiscs.streams import open_stream
