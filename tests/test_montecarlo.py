@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from effects import SCENES
 from scipy.special import bdtr
 
-from twodiscs import montecarlo, theory
+from twodiscs import invariant, montecarlo, theory
 from twodiscs.scene import EVENTS, HOPS, Scene, largest_radius
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -145,3 +146,141 @@ def test_no_hits_where_rejection_is_hopeless():
 def test_bad_requests_are_refused(quantities, samples, shell, seed):
     with pytest.raises(ValueError, match="must"):
         montecarlo.sample_point(PAPER, quantities, samples, shell, seed)
+
+
+# Scenes with effects ----------------------------------------------------------------------------
+
+#: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
+#: fields that keep discs from passing, or from the top.
+MORE_SCENES = [
+    Scene(1.5, 1.0, 0.3, periodic="x"),
+    Scene(1.5, 1.0, 0.3, periodic="y"),
+    Scene(1.0, 1.0, 0.34, periodic="xy"),
+    Scene(1.5, 0.9, 0.4, radius_ratio=0.2, mass_ratio=1e-3),
+    Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
+    Scene(1.5, 1.0, 0.05, field=1.5),
+    Scene(1.5, 1.0, 0.3, field=1.5),
+    Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0),
+    Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
+    Scene(1.0, 1.0, 0.26, depth=1.0),
+    Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz"),
+]
+
+
+def everything(scene):
+    return ["volume", *(f"{event}_area" for event in scene.events)]
+
+
+def prism(scene):
+    return invariant.prism_of(scene)._replace(inertia=None)
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
+@pytest.mark.parametrize("shell", [0.05, 0.8])
+def test_weighted_hits_have_their_exact_probability(scene, shell):
+    point = montecarlo.sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
+    samples, found = point["samples"], point["quantities"]
+    assert found.keys() == set(everything(scene))
+    assert "right_and_top" not in point
+    volume = found.pop("volume")
+    assert_binomial(volume["hits"], samples, theory.volume(scene) / volume["measure"])
+    for quantity, sampled in found.items():
+        event = quantity.removesuffix("_area")
+        expected = theory.shell_expectation(scene, event, sampled["epsilon"])
+        assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_weighted_estimates_tend_to_the_areas(scene):
+    point = montecarlo.sample_point(scene, everything(scene), 4 * montecarlo.BLOCK, 0.02, 6)
+    areas = theory.areas(scene)
+    for event in scene.events:
+        sampled = point["quantities"][f"{event}_area"]
+        estimate = sampled["measure"] * sampled["hits"] / point["samples"]
+        if scene.is_possible(event):
+            # Five standard errors and the bias, which is of the order of ε over the room.
+            assert abs(estimate / areas[event] - 1) <= 5 / math.sqrt(sampled["hits"]) + 0.03
+
+
+#: Of one block of each scene with the seed 9: volume, then the events.
+COUNTS = {
+    "unequal": [893325, 38911, 17192, 27208, 15793, 26396, 16273],
+    "torus": [697303, 0, 0, 51237, 0, 0, 0],
+    "channel": [629218, 45135, 0, 47991, 0, 24824, 24987],
+    "field": [295344, 16259, 2287, 18513, 5392, 4788, 7393],
+    "rough": [567288, 39071, 5868, 47171, 13683, 23130, 18392],
+    "balls": [772643, 60328, 22189, 44803, 16015, 28478, 22101],
+    "combination": [524812, 45094, 0, 37421, 0, 7544, 24896],
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_weighted_counts_are_the_same_everywhere(name):
+    scene = SCENES[name]
+    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
+    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    assert montecarlo.weighted_blocks(np.uint64(9), 0, 1, *arguments).tolist() == COUNTS[name]
+
+
+@pytest.mark.parametrize("name", ["torus", "combination"])
+def test_weighted_blocks_add_up(name):
+    scene = SCENES[name]
+    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
+    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    whole = montecarlo.weighted_blocks(np.uint64(3), 0, 3, *arguments)
+    parts = [
+        montecarlo.weighted_blocks(np.uint64(3), a, b, *arguments) for a, b in ((2, 3), (0, 2))
+    ]
+    assert np.array_equal(whole, sum(parts))
+    other = montecarlo.weighted_blocks(np.uint64(4), 0, 3, *arguments)
+    assert not np.array_equal(whole, other)
+
+
+def test_only_what_is_watched_is_sampled_with_effects():
+    scene = SCENES["combination"]
+    for event in ("vertical_hop", "any_wall"):
+        point = montecarlo.sample_point(scene, [f"{event}_area"], 1, 0.1, 1)
+        assert point["quantities"].keys() == {f"{event}_area"}
+        epsilon = [0.02 if e == event else 0.0 for e in EVENTS]
+        shells = montecarlo.weighted_shells(scene, epsilon)
+        assert [name for name in EVENTS if getattr(shells, name) is not None] == [event]
+        counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), shells)
+        assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
+    assert montecarlo.weighted_shells(scene, [0.0] * 6) is None
+    point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
+    assert point["quantities"].keys() == {"volume"}
+    assert point["samples"] == montecarlo.BLOCK
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
+def test_weighted_shells_stay_inside_the_box(scene):
+    """No thicker, as lengths, than the discs or than the room they have."""
+    for event in scene.events:
+        epsilon = montecarlo.shell_thickness(scene, event, 0.999)
+        assert 0 < epsilon < min(scene.radii)
+        relative = epsilon * math.sqrt(sum(1 / mass for mass in scene.masses))
+        if event in (*HOPS, "disc_collision"):
+            assert relative <= math.sqrt(2) * min(scene.radii)
+            continue
+        for disc, mass in enumerate(scene.masses):
+            if disc == 0 or event == "any_wall":
+                room = min(scene.side(axis) - 2 * scene.radii[disc] for axis in scene.walled)
+                assert epsilon / math.sqrt(mass) < room
+
+
+def test_the_sampler_suits_the_scene():
+    scene = Scene(1.5, 1.0, 0.38, mass_ratio=2.0)
+    samples = 2 * montecarlo.BLOCK
+    assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted_point, samples)
+    arguments = scene, ["volume", "any_wall_area"], samples, 0.1, 5
+    point = montecarlo.better_point(*arguments)
+    assert point == montecarlo.sample_point(*arguments) == montecarlo.weighted_point(*arguments)
+    with pytest.raises(ValueError, match="scene must have no effects"):
+        montecarlo.conditioned_point(*arguments)
+
+
+def test_what_has_no_place_is_refused():
+    with pytest.raises(ValueError, match="quantity must be one of volume, disc_collision_area,"):
+        montecarlo.sample_point(SCENES["torus"], ["any_wall_area"], 1, 0.1, 1)
+    with pytest.raises(ValueError, match="event must be one of vertical_hop, disc_collision, "):
+        montecarlo.shell_thickness(SCENES["channel"], "right_wall", 0.1)
