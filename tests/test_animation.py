@@ -15,7 +15,7 @@ from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.scene import Scene
 
 SCENE = {"width": 1.5, "height": 1.0, "radius": 0.24}
-COLUMNS = ("time", "x1", "y1", "x2", "y2", "event")
+COLUMNS = tables.TABLES["trajectory"].names
 
 
 @pytest.fixture(scope="module")
@@ -33,17 +33,27 @@ def stage(rows):
 
 @pytest.fixture(scope="module")
 def frames(rows, tmp_path_factory):
-    """Return (path, [(milliseconds, pixels)]) of an animation."""
-    path = tmp_path_factory.mktemp("animation") / "a.gif"
+    """Return (path, [(milliseconds, pixels)]) of a GIF that shows the same as the PNG beside it."""
+    folder = tmp_path_factory.mktemp("animation")
+    paths = [folder / "a.gif", folder / "a.png"]
     with style.context():
-        animation.animate(SCENE, rows, path)
+        animation.animate(SCENE, rows, paths)
+    gif, png = map(unpacked, paths)
+    for ours, theirs in zip(gif, png, strict=True):
+        assert ours[0] == theirs[0]
+        np.testing.assert_array_equal(ours[1], theirs[1])
+    return paths[0], gif
+
+
+def unpacked(path):
+    """Return [(milliseconds, pixels)] of the frames of a file that repeats for ever."""
     found = []
     with Image.open(path) as image:
         assert image.info["loop"] == 0
         for k in range(image.n_frames):
             image.seek(k)
             found.append((image.info["duration"], np.asarray(image.convert("RGB"), int)))
-    return path, found
+    return found
 
 
 def at(*events, end=1000.0):
@@ -73,7 +83,9 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     with pytest.raises(ValueError, match=r"rows must last two frames, a time of 1, not 0\.5"):
         animation.moments(at(end=0.5), 1.0)
     with pytest.raises(ValueError, match="rows must be those of a trajectory, not none"):
-        animation.animate(SCENE, [], "a.gif")
+        animation.animate(SCENE, [], ["a.gif"])
+    with pytest.raises(ValueError, match=r"output must be a \.gif or \.png file, not 'a\.mp4'"):
+        animation.animate(SCENE, [], ["a.gif", "a.mp4"])
 
 
 # What they show ----------------------------------------------------------------------------------
@@ -126,7 +138,7 @@ def test_other_boxes(width, height, tmp_path):
     found = [dict(zip(COLUMNS, row, strict=True)) for row in dynamics.trajectory(scene, 3)]
     with style.context():
         place = {"width": width, "height": height, "radius": 0.24}
-        animation.animate(place, found, tmp_path / "a.gif")
+        animation.animate(place, found, [tmp_path / "a.gif"])
     assert (tmp_path / "a.gif").stat().st_size < 600_000
 
 
@@ -134,7 +146,8 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     table, style_file = tmp_path / "trajectory.csv", tmp_path / "matplotlibrc"
     tables.write(table, "trajectory", rows)
     style_file.write_text("font.size: 20\nlines.linewidth: 7\n")
-    words = ["--scene", repr(SCENE), "--trajectory", table, "--output", tmp_path / "b.gif"]
+    outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
+    words = ["--scene", repr(SCENE), "--trajectory", table, "--output", *outputs]
     run = subprocess.run(
         [sys.executable, "-m", "twodiscs.cli.animation", *map(str, words)],
         env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
@@ -142,8 +155,9 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
         text=True,
     )
     assert (run.returncode, run.stdout + run.stderr) == (0, "")
-    assert (tmp_path / "b.gif").read_bytes() == frames[0].read_bytes()
-    assert frames[0].stat().st_size < 600_000
+    for path in outputs:
+        assert path.read_bytes() == frames[0].with_name(f"a{path.suffix}").read_bytes()
+        assert path.stat().st_size < 600_000
 
 
 def test_mistakes_are_told_in_one_sentence(monkeypatch, capsys):

@@ -1,10 +1,12 @@
-# The two discs as they move, from the table of one trajectory, for every scene that has one.
+# The two discs as they move, from the table of one trajectory, for every scene that has one:
+# a GIF for any program, and a PNG because the report shows no other animated image.
 
 
 def animation_files(scene):
-    """Return the animation of a scene in a list, which is empty if the scene has no trajectory."""
+    """Return the files of the animation of a scene, none if the scene has no trajectory."""
     called = ANIMATION.is_called(scene.watch.quantities, scene.effects)
-    return [f"{RESULTS}/{scene.name}/figures/animation.gif"] if called else []
+    path = f"{RESULTS}/{scene.name}/figures/animation"
+    return multiext(path, ".gif", ".png") if called else []
 
 
 def animation_parameters(scene):
@@ -21,8 +23,9 @@ rule animate:
         table=f"{RESULTS}/{{scene}}/trajectory.csv",
         code=code("cli.animation"),
     output:
-        gif=report(
-            f"{RESULTS}/{{scene}}/figures/animation.gif",
+        gif=f"{RESULTS}/{{scene}}/figures/animation.gif",
+        png=report(
+            f"{RESULTS}/{{scene}}/figures/animation.png",
             caption="../report/figure.rst",
             category=ANIMATION.category,
             subcategory="{scene}",
@@ -37,7 +40,7 @@ rule animate:
         caption=ANIMATION.caption,
     shell:
         "python -m twodiscs.cli.animation --scene {params.scene:q} --trajectory {input.table:q}"
-        " --output {output.gif:q} > {log:q} 2>&1"
+        " --output {output.gif:q} {output.png:q} > {log:q} 2>&1"
 
 
 rule animation:

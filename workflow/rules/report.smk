@@ -2,6 +2,7 @@
 # takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
 # the whole configuration, however that was put together.
 import json
+from glob import glob
 
 
 report: "../report/workflow.rst"
@@ -22,9 +23,8 @@ rule report:
             [list(figure_files(scene).values()) for scene in SCENES.values()],
             rules.animation.input,
         ],
-        texts=expand(
-            "workflow/report/{text}.rst", text=["workflow", "table", "figure", "paper"]
-        ),
+        texts=sorted(glob("workflow/report/*.rst")),
+        style="workflow/report/style.css",
     output:
         html=f"{RESULTS}/report.html",
         configuration=f"{RESULTS}/configuration.json",
@@ -36,5 +36,6 @@ rule report:
         configuration=json.dumps(config, indent=1, sort_keys=True),
     shell:
         "printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
-        " snakemake --report {output.html:q} --nolock --workflow-profile none"
+        " snakemake --report {output.html:q} --report-stylesheet {input.style:q}"
+        " --nolock --workflow-profile none"
         " --configfile {output.configuration:q} -- {input.results:q} > {log:q} 2>&1"

@@ -1,7 +1,7 @@
-"""Animate one trajectory as a GIF: the job of rule ``animate``.
+"""Animate one trajectory: the job of rule ``animate``.
 
     python -m twodiscs.cli.animation --scene "{'width': 1.5, 'height': 1.0, 'radius': 0.24}" \\
-        --trajectory results/paper/trajectory.csv --output animation.gif
+        --trajectory results/paper/trajectory.csv --output animation.gif animation.png
 """
 
 from twodiscs import tables
@@ -9,11 +9,11 @@ from twodiscs.cli import arguments
 
 
 def main():
-    """Read the trajectory, draw the frames, write the file."""
+    """Read the trajectory, draw the frames, write the files."""
     parser = arguments.Parser(prog="twodiscs.cli.animation", description="Animate a trajectory.")
     parser.add_argument("--scene", required=True, help="dict with width, height, radius")
     parser.add_argument("--trajectory", required=True, metavar="CSV")
-    parser.add_argument("--output", required=True, metavar="FILE", help="a .gif file")
+    parser.add_argument("--output", nargs="+", required=True, metavar="FILE", help=".gif, .png")
     options = parser.parse_args()
 
     scene = arguments.parameters(options.scene, "height", "radius", "width")

@@ -1,8 +1,9 @@
 """The two discs as they move: long on their sides, until they squeeze past each other.
 
-An animated GIF for the screen. The discs move freely between events, so straight lines through the
-rows of trajectory.csv are the trajectory itself; frames follow each other in equal steps of time,
-and one of them shows the moment of the hop.
+For the screen: a GIF, which every program shows, or an animated PNG, which is an image to a report.
+The discs move freely between events, so straight lines through the rows of trajectory.csv are the
+trajectory itself; frames follow each other in equal steps of time, and one of them shows the moment
+of the hop.
 """
 
 from collections import Counter
@@ -68,7 +69,8 @@ class Stage:
         width, height = drawing.box(scene)
         radius = length("radius", scene["radius"])
         step = (width + height) / CROSSING
-        self.rows = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        names = ("time", "x1", "y1", "x2", "y2", "event")
+        self.rows = {name: np.array([row[name] for row in rows]) for name in names}
         self.times, self.hop, self.centre = moments(rows, step)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
@@ -171,12 +173,15 @@ class Stage:
         moving["hops"].set_data(hops, 0 * hops)
 
 
-def animate(scene, rows, path):
-    """Write an animated GIF of one hop to ``path``.
+def animate(scene, rows, paths):
+    """Write an animation of one hop to every one of ``paths``, which are .gif or .png files.
 
     ``scene`` is a dict of width, height and radius; ``rows`` are those of trajectory.csv, at least
     two frames of them. Raises ``ValueError`` for anything else.
     """
+    for path in paths:
+        if not str(path).endswith((".gif", ".png")):
+            raise ValueError(f"output must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise ValueError("rows must be those of a trajectory, not none")
     stage = Stage(scene, rows)
@@ -197,8 +202,8 @@ def animate(scene, rows, path):
     first, *others = [image(t).quantize(palette=palette, dither=0) for t in stage.times]
     shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
     shown[-1] = LAST
-    options = {"duration": shown, "loop": 0, "disposal": 1}
-    first.save(path, "GIF", save_all=True, append_images=others, **options)
+    for path in paths:
+        first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
 
 
 def _palette(image):

@@ -43,7 +43,8 @@ class Entry:
         return {"figure": self.title}
 
 
-GEOMETRY, SPACE, DYNAMICS = "Geometry", "Volume and areas", "Mean times and hopping"
+# A report lists categories by the alphabet.
+GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
 SYMBOLS = (
     "Error bars are one standard error, and hidden where smaller than the symbols; crosses are "
@@ -230,7 +231,7 @@ ANIMATION = Entry(
     of_plain=True,
 )
 
-COST, NUMERICS = "What accuracy costs", "Numerical stability"
+COST, NUMERICS = "4 What accuracy costs", "5 Numerical stability"
 
 #: Figures that are made once, not for every scene.
 SHARED = {
