@@ -24,6 +24,24 @@ MISTAKES = {
         "'hop'",
     ),
     "no scenes": ("scenes: []\n", "scenes must be"),
+    "an unknown effect": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, effects: {gravity: 1}}]\n",
+        "unknown key 'gravity'",
+    ),
+    "a hop without a place": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, effects: {periodic: [x]},"
+        " watch: {mean_times: [horizontal_hop]}}]\n",
+        "must keep to what has a place in the scene, vertical_hop, disc_collision, top_wall",
+    ),
+    "no room for starts": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, effects: {field: 900}}]\n",
+        "needs more room",
+    ),
+    "an errata table without a plain scene": (
+        "shared: [errata]\n"
+        "scenes: [{name: a, box: {width: 1, height: 1}, effects: {mass_ratio: 2}}]\n",
+        "shared must leave out 'errata'",
+    ),
     "results in the sources": ("results: src\n", "results must be"),
 }
 

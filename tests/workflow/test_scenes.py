@@ -1,0 +1,153 @@
+"""The jobs of a scene are what it calls for: whatever it watches, whatever its effects are."""
+
+import pytest
+import yaml
+from checkout import REPOSITORY
+
+from twodiscs import config
+from twodiscs.figures.catalogue import FIGURES
+
+FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
+BLOCKS = {path.stem: config.read(path) for path in FILES}
+
+#: Rules for all scenes together, whatever else is built once.
+ALWAYS = {"check", "compile", "manifest"}
+
+DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
+
+#: What a scene watches, the jobs that find it, the tables that hold it, the figures that show it.
+WATCHED = {
+    "volume": (True, {"monte_carlo"}, {"volume"}, {"volume"}),
+    "areas": (["right_wall"], {"monte_carlo"}, {"areas"}, {"wall_area"}),
+    "mean_times": (["top_wall"], {"dynamics"}, {"mean_times"}, {"mean_wall_time"}),
+    "hop_histogram": ([0.1], {"intervals"}, {"hop_histogram"}, {"hop_histogram"}),
+    "trajectory": (0.1, {"trajectory", "animate"}, set(), {"hopping_trajectory"}),
+}
+
+#: The figures that the six scenes call for.
+AREAS = {"collision_area", "wall_area"}
+TIMES = {"mean_collision_time", "mean_wall_time"}
+HOPS = {"vertical_hop_area", "horizontal_hop_area", "mean_hop_time", "hopping_trajectory"}
+CALLED = {
+    "unequal": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+    "torus": {"volume", "collision_area", "mean_collision_time"},
+    "channel": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS} - {"horizontal_hop_area"},
+    "field": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+    "rough": {"volume", *AREAS, *TIMES, *HOPS},
+    "balls": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+}
+
+
+def jobs(checkout, path, scenes, *targets):
+    """Return the jobs of a dry run of these ``scenes`` and nothing that is made once."""
+    path.write_text(yaml.safe_dump({"shared": [], "scenes": scenes}))
+    return checkout.jobs("--configfile", str(path), "--", *targets)
+
+
+def of(jobs, scene):
+    """Return (rules, tables, figures) of the jobs of a scene."""
+    mine = [(rule, wildcards) for rule, wildcards in jobs if f"scene={scene}" in wildcards]
+
+    def named(kind):
+        parts = (part for _, wildcards in mine for part in wildcards)
+        return {part.partition("=")[2] for part in parts if part.startswith(f"{kind}=")}
+
+    return {rule for rule, _ in mine}, named("table"), named("figure")
+
+
+@pytest.mark.parametrize("effects", [{}, {"field": 0.5, "mass_ratio": 2}])
+def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
+    """One thing at a time, and all but one."""
+    names = list(WATCHED)
+    subsets = [{name} for name in names] + [{*names} - {name} for name in names]
+    scenes = [
+        {
+            "name": f"s{i}",
+            "box": {"width": 1.5, "height": 1},
+            "radii": [0.1, 0.2],
+            "effects": effects,
+            "watch": {name: WATCHED[name][0] for name in subset},
+        }
+        for i, subset in enumerate(subsets)
+    ]
+    found = jobs(unbuilt, tmp_path / "subsets.yaml", scenes)
+    for i, subset in enumerate(subsets):
+        parts = [WATCHED[name][1:] for name in subset]
+        rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
+        if effects:
+            rules -= {"animate"}
+        else:
+            figures |= DRAWINGS
+        if tables:
+            rules |= {"table", "check_table"}
+            tables |= {"cost"}
+        assert of(found, f"s{i}") == (rules | {"grid", "theory", "figure"}, tables, figures)
+
+
+def test_kernels_that_nothing_needs_are_not_compiled(unbuilt, tmp_path):
+    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
+    found = jobs(unbuilt, tmp_path / "one.yaml", [scene])
+    assert [w for rule, w in found if rule == "compile"] == [("kernels=montecarlo",)]
+
+
+def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
+    scenes = [block["scenes"][0] for block in BLOCKS.values()]
+    assert [scene["name"] for scene in scenes] == list(BLOCKS) == sorted(CALLED)
+    found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
+    assert {rule for rule, wildcards in found if "scene" not in repr(wildcards)} == ALWAYS
+    for request in config.load({"scenes": scenes}).scenes:
+        rules, tables, figures = of(found, request.name)
+        assert figures == CALLED[request.name]
+        assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
+        assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
+        assert rules - {"intervals", "trajectory"} == {
+            *("grid", "theory", "monte_carlo", "dynamics", "table", "check_table", "figure"),
+        }
+        for rule in ("monte_carlo", "dynamics", "intervals"):
+            keys = [w for r, w in found if r == rule and f"scene={request.name}" in w]
+            expected = getattr(request, f"{rule}_keys")
+            assert {(f"scene={request.name}", f"key={key}") for key in expected} == set(keys)
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+def test_a_file_is_a_quick_look_at_one_scene(name):
+    block = BLOCKS[name]
+    (request,) = config.load(block).scenes
+    assert request.name == name
+    assert request.effects
+    assert block["results"] == f"results/scenes/{name}"
+    assert block["shared"] == []
+    assert 6 <= len(request.radii) <= 8
+    assert (request.width, request.height) == (1.5, 1.0)
+    assert set(request.accuracy.values()) == {1e-2}
+
+
+def test_a_file_builds_its_scene_alone(unbuilt):
+    found = unbuilt.jobs("--configfile", "config/scenes/torus.yaml")
+    assert {w for _, wildcards in found for w in wildcards if w.startswith("scene=")} == {
+        "scene=torus"
+    }
+    # What is about a box without effects is no target there.
+    run = unbuilt.snakemake(
+        "-n", "--configfile", "config/scenes/torus.yaml", "--", "paper", passes=False
+    )
+    assert run.returncode != 0
+    assert "No rule to produce paper" in run.stdout + run.stderr
+
+
+def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
+    made = {
+        "errata": {"errata"},
+        "accuracy_cost": {"accuracy_cost_table", "accuracy_cost_figure"},
+        "stability": {"stability_table", "stability_figure"},
+        "tails": {"tails_table", "tails_figure"},
+    }
+    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
+    path = tmp_path / "shared.yaml"
+    for names in (["errata", "report"], ["paper"]):
+        path.write_text(yaml.safe_dump({"shared": names, "scenes": [scene]}))
+        found = {
+            rule for rule, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)
+        }
+        read = made if names == ["paper"] else {name: made.get(name, {name}) for name in names}
+        assert found == ALWAYS.union(names, *read.values())
