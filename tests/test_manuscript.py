@@ -117,7 +117,7 @@ def test_every_number_is_read_from_the_results():
 
 def test_there_is_one_place_for_every_figure():
     source = (PAPER / "paper.typ").read_text()
-    calls = re.findall(r'#(?:drawn|abreast|common)\((".*?)(?:\)|, scope)', source)
+    calls = re.findall(r"#(?:drawn|abreast|beside)\((.*)\)", source)
     named = [name for call in calls for name in re.findall(r'"(\w+)"', call)]
     assert len(set(named)) == len(named)
     assert {*FIGURES, *SHARED} <= set(named)
