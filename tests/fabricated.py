@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -36,15 +37,20 @@ class Laws:
     """The exact numbers behind the points of one radius, computed once."""
 
     def __init__(self, scene, shell=0.02):
-        self.scene = scene
+        self.scene, self.shell = scene, shell
         self.times = {e: t for e, t in theory.mean_times(scene).items() if t is not None}
+
+    @cached_property
+    def parts(self):
+        """{quantity: (probability of a hit, measure, ε)} in a plain scene."""
+        scene, epsilon = self.scene, self.shell * self.scene.radius
         prism = (scene.range_x * scene.range_y) ** 2
-        self.parts = {"volume": (theory.volume(scene) / prism, prism, None)}
+        parts = {"volume": (theory.volume(scene) / prism, prism, None)}
         for event in SHELLS:
-            epsilon = shell * scene.radius
             measure = prism / (epsilon * (2 if event in HOPS else 1))
             expectation = theory.shell_expectation(scene, event, epsilon)
-            self.parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
+            parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
+        return parts
 
     def monte_carlo(self, rng, samples):
         """Return a Monte Carlo point; the shells are hit independently of each other."""
@@ -73,14 +79,13 @@ class Laws:
         slowest = max(self.times[event] for event in events if event in self.times)
         duration = 2 * slowest / (relative**2 * replicas)
         counts = {}
-        halves = {"right_wall": "horizontal_hop", "top_wall": "vertical_hop"}
+        confined = dict(zip(("right_wall", "top_wall"), self.scene.confined, strict=True))
         eligible = {}
         for event in events:
             mean = duration / self.times[event] if event in self.times else 0.0
             counts[event] = rng.poisson(mean, replicas)
-            blocked = event in halves and not self.scene.is_possible(halves[event])
-            eligible[event] = replicas // 2 if blocked else replicas
-            if blocked:
+            eligible[event] = replicas // 2 if confined.get(event) else replicas
+            if confined.get(event):
                 # The starts in a component alternate for one wall, and come in pairs for the other.
                 turn = np.arange(replicas) // (1 if event == "right_wall" else 2)
                 counts[event][turn % 2 == 1] = 0

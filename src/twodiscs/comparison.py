@@ -11,7 +11,6 @@ from twodiscs import statistics
 from twodiscs.scene import EVENTS
 from twodiscs.theory import shell_expectation
 
-SHELLS = tuple(event for event in EVENTS if event != "any_wall")
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
 
@@ -115,21 +114,22 @@ def volume_rows(exact, points):
 def area_rows(scene, exact, points, watched=EVENTS):
     """Return the rows of areas.csv from Monte Carlo ``points``, for the ``watched`` events.
 
-    ``scene`` is a ``Scene`` of any radius. The whole wall area follows from the right and the top
-    wall, which a point therefore has when only the whole is watched.
+    ``scene`` is a ``Scene`` of any radius. With effects the whole wall area has counts of its own.
+    Without, it follows from the right and the top wall, which a point therefore has when only the
+    whole is watched.
     """
     rows = []
     for point in ordered(points):
         radius, found = point["radius"], {}
         here = scene.with_radius(radius)
-        for event in SHELLS:
+        for event in EVENTS:
             quantity = f"{event}_area"
             part = point["quantities"].get(quantity)
             if part:
                 value = _exact(exact, radius, quantity)
                 expectation = shell_expectation(here, event, part["epsilon"])
                 found[event] = _sampled_row(point, quantity, value, expectation)
-        if {"right_wall", "top_wall"} <= set(found):
+        if {"right_wall", "top_wall"} <= set(found) and not scene.has_effects:
             value = _exact(exact, radius, "any_wall_area")
             found["any_wall"] = _any_wall_row(
                 radius, point, value, found["right_wall"], found["top_wall"]
@@ -312,7 +312,7 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
     """Return one comparison for every estimate at a radius, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, for the sum rule wherever its three events were counted.
+    points, for the sum rule of plain scenes wherever its three events were counted.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
@@ -328,7 +328,7 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
         )
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in ordered(dynamics):
-        if set(SUM_RULE) <= set(point["counts"]):
+        if set(SUM_RULE) <= set(point["counts"]) and not scene.has_effects:
             rows.append(_sum_rule(scene.with_radius(point["radius"]), point))
     return sorted(rows, key=lambda row: row["radius"])
 

@@ -64,13 +64,14 @@ def _sampled(unit, quantity):
         Column("estimate", unit, "measure × hits/samples; empty without a hit"),
         Column("stderr", unit, "binomial standard error; empty below 100 hits or misses"),
         Z,
-        Column("samples", "", "configurations drawn from the prism A²B², or proposed", int),
+        Column("samples", "", "configurations drawn from the prism, or proposed", int),
         Column("hits", "", "configurations that count", int),
         Column(
             "epsilon",
             "length",
-            "thickness of the shell in configuration space (to either side, for a hop); empty for "
-            "the volume, and for any_wall_area = 4 (right + top), which joins two shells",
+            "thickness of the shell in configuration space (to either side, for a hop), × √mass "
+            "where masses differ; empty for the volume and, without effects, for any_wall_area = "
+            "4 (right + top), which joins two shells",
         ),
         Column("expectation", unit, "exact expectation of the estimate; z is against it"),
         Column("bias", unit, "expectation − exact: what the thickness of the shell adds"),
@@ -168,12 +169,14 @@ TABLES = {
         ),
     ),
     "volume": Table(
-        "One row a radius: the volume of configuration space, exact and by Monte Carlo.",
+        "One row a radius: the volume of configuration space, exact and by Monte Carlo. In a field "
+        "it is weighted with the invariant density; for balls it is in length⁶.",
         _sampled("length⁴", "volume"),
     ),
     "areas": Table(
         "One row a radius and event: the area of the event's surface, exact and by Monte Carlo. A "
-        "shell of finite thickness is not a surface, so its exact expectation has a column.",
+        "shell of finite thickness is not a surface, so its exact expectation has a column. In a "
+        "field areas are weighted as the flux is; for balls they are in length⁵.",
         _sampled("length³", "<event>_area"),
     ),
     "mean_times": Table(
