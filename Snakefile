@@ -50,6 +50,7 @@ if MAIN:  # these are about a scene without effects
 
 
 include: "workflow/rules/report.smk"
+include: "workflow/rules/verify.smk"
 include: "workflow/rules/benchmark.smk"
 
 
@@ -57,3 +58,4 @@ rule all:
     input:
         rules.report.input.results,
         rules.report.output if "report" in CONFIGURATION.shared else [],
+        rules.manifest.output,

@@ -34,13 +34,15 @@ def test_one_more_radius_is_one_more_job_of_each_kind(built):
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "grid", "theory", "table", "check_table", "check"),
-        *("errata", "figure", "paper", "report"),
+        *("errata", "figure", "paper", "report", "manifest"),
     }
 
 
 def test_edit_of_a_figure_redraws_that_figure(built):
     built.edit("src/twodiscs/figures/volume.py", "# a remark\n")
-    assert built.jobs() == expected(("figure", SIX, "figure=volume"), ("paper",), ("report",))
+    assert built.jobs() == expected(
+        ("figure", SIX, "figure=volume"), ("paper",), ("report",), ("manifest",)
+    )
 
 
 def test_comment_in_the_engine_reruns_dynamics_and_what_follows(built):

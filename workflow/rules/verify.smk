@@ -21,7 +21,9 @@ rule manifest:
         " > {log:q} 2>&1"
 
 
-rule verify:
+rule:
+    name:
+        "verify"
     log:
         f"{RESULTS}/logs/verify.log",
     params:

@@ -1,0 +1,67 @@
+"""Verification as a target: one job, always, that builds nothing and says what differs."""
+
+import json
+import os
+import subprocess
+import sys
+
+
+def test_verification_is_one_job_whatever_there_is(unbuilt):
+    assert unbuilt.jobs("verify") == [("verify", ())]
+
+
+def test_results_out_of_date_are_verified_as_they_are(built):
+    built.edit("src/twodiscs/dynamics.py", "# a remark\n")
+    (built.path / "results" / "six" / "theory.csv").unlink()
+    assert built.jobs("verify") == [("verify", ())]
+
+
+def test_without_results_one_sentence_says_so(unbuilt):
+    run = unbuilt.snakemake("--cores", "1", "verify", passes=False)
+    assert run.returncode == 1
+    said = (unbuilt.path / "results" / "logs" / "verify.log").read_text()
+    assert said == "error: results holds no results to verify: they are built by make\n"
+
+
+def test_the_manifest_tells_what_is_there(complete):
+    results = complete.path / "results"
+    names = [line.split()[1] for line in (results / "manifest.sha256").read_text().splitlines()]
+    assert {"errata.csv", "six/areas.csv", "walls/check.csv", "six/figures/volume.pdf"} <= set(
+        names
+    )
+    assert not {"six/cost.csv", "accuracy_cost.csv", "figures/accuracy_cost.pdf"} & set(names)
+    assert sorted(names) == names
+
+
+def test_what_differs_is_said_and_nothing_is_built(built):
+    written = subprocess.run(
+        [sys.executable, "-m", "twodiscs.cli.verify", "--write"],
+        cwd=built.path,
+        env=os.environ | {"PYTHONPATH": str(built.path / "src")},
+        check=False,
+    )
+    assert written.returncode == 0
+    assert "no differences" in built.snakemake("--cores", "1", "verify").stdout
+
+    path = built.path / "results" / "six" / "points" / "dynamics" / "0.2.json"
+    point = json.loads(path.read_text())
+    point["counts"]["vertical_hop"] += 1
+    path.write_text(json.dumps(point))
+    before = built.results()
+    run = built.snakemake("--cores", "1", "verify", passes=False)
+    assert run.returncode == 1
+    found = point["counts"]["vertical_hop"]
+    said = (
+        "six/points/dynamics, radius 0.2: counts vertical_hop is "
+        f"{found}, expected {found - 1}\ndifferences: 1\n"
+    )
+    assert said in run.stdout + run.stderr
+    log = "logs/verify.log"
+    after = built.results()
+    assert after.pop(log).decode() == said
+    before.pop(log)
+    assert after == before
+
+    run = built.snakemake("--cores", "1", "--config", "seed=8", "--", "verify", passes=False)
+    assert run.returncode == 1
+    assert "seed is 8, not 7" in (built.path / "results" / log).read_text()
