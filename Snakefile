@@ -46,6 +46,8 @@ if MAIN:  # these are about a scene without effects
     include: "workflow/rules/errata.smk"
     include: "workflow/rules/stability.smk"
     include: "workflow/rules/tails.smk"
+    include: "workflow/rules/distributions.smk"
+    include: "workflow/rules/thresholds.smk"
     include: "workflow/rules/manuscript.smk"
 
 

@@ -40,8 +40,8 @@ LAST_FRACTION = 0.9
 LEAST_SHARE = 1e-4
 
 #: What is built once and is about the first scene without effects, and what the manuscript reads.
-ABOUT_PLAIN = ("errata", "stability", "tails", "paper")
-READ_BY_PAPER = ("errata", "accuracy_cost", "stability", "tails")
+ABOUT_PLAIN = ("errata", "stability", "tails", "distributions", "thresholds", "paper")
+READ_BY_PAPER = ("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds")
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 

@@ -50,7 +50,15 @@ MODULES = {"monte_carlo": "montecarlo"}
 TRIALS = 2
 
 #: Seconds of what is made once, if the configuration asks for it; round figures.
-ONCE = {"errata": 3.0, "stability": 30.0, "tails": 15.0, "paper": 1.5, "report": 1.5}
+ONCE = {
+    "errata": 3.0,
+    "stability": 30.0,
+    "tails": 15.0,
+    "distributions": 20.0,
+    "thresholds": 4.0,
+    "paper": 1.5,
+    "report": 1.5,
+}
 
 #: Seconds in which the kernels are compiled.
 COMPILATION = 12.0

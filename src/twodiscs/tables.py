@@ -36,6 +36,11 @@ class Table:
         return [column.name for column in self.columns]
 
 
+BOX = (
+    Column("scene", "", "the scene", str),
+    Column("width", "length", "side of the box along x"),
+    Column("height", "length", "side of the box along y"),
+)
 RADIUS = Column("radius", "length", "radius of the discs")
 COMPONENTS = Column("ergodic_components", "", "disjoint parts of configuration space", int)
 Z = Column("z", "", "standard normal deviate of the comparison, positive when the estimate is high")
@@ -452,6 +457,83 @@ TABLES = {
                 "C/t³ with the exact C, empty where it is 0; for a rate 1/mean, which it would be "
                 "if intervals were exponential",
             ),
+        ),
+    ),
+    "distributions": Table(
+        "One row a scene, radius and quantity: how the times to the next hop are distributed, from "
+        "a hop (intervals T) and from a random moment (first passages F). Every T and every F has "
+        "a start of its own.",
+        (
+            *BOX,
+            RADIUS,
+            Column("event", "", "the hop", str),
+            Column("exact_mean", "time", "exact mean interval τ"),
+            Column(
+                "quantity",
+                "",
+                "mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ "
+                "where last is c; density_at_zero: p(0) of p(0) − at² in the first two bins of T; "
+                "rate: exponential fitted to T by maximum likelihood from four mean times on; "
+                "hazard: rate of hops when there was none since the last one, ln[P(T > "
+                "first)/P(T > last)]/(last − first)",
+                str,
+            ),
+            Column("first", "time", "where the bins or the fit begin"),
+            Column("last", "time", "where they end; for first_passage the cut c"),
+            Column("count", "", "intervals or first passages; those within the fit or bin", int),
+            Column("estimate", "see quantity", "estimate, a time, 1/time or number"),
+            Column("stderr", "as estimate", "its standard error"),
+            Column(
+                "reference",
+                "as estimate",
+                "mean: τ; squared_cv: 1, that of an exponential law; first_passage: ⟨T²⟩/(2τ) = "
+                "τ(1 + CV²)/2, or ⟨T² − (T − c)₊²⟩/(2τ) where cut, as measured; density_at_zero: "
+                "exact; rate: 1/τ, which it would be if intervals were exponential",
+            ),
+            Column("reference_stderr", "as estimate", "its standard error where it is measured"),
+            Column(
+                "z",
+                "",
+                "(estimate − reference)/error; of a rate, how far intervals are from exponential "
+                "at all times; empty where a cubic tail leaves F and T² without a variance: see "
+                "the row with the cut",
+            ),
+            Column("chi2", "", "Pearson's χ² of the exponential law within its window"),
+            Column("degrees", "", "its degrees of freedom", int),
+            Column("p", "", "probability of a larger χ² if the law is exponential there"),
+        ),
+    ),
+    "thresholds": Table(
+        "One row a fitted power law: mean times near a limiting radius r_c, τ = C δ^p with δ = r_c "
+        "− r, weighted least squares in ln τ against ln δ.",
+        (
+            *BOX,
+            Column("event", "", "the event", str),
+            Column("quantity", "", "mean_time, or first_passage: ⟨F⟩ of distributions.csv", str),
+            Column(
+                "form",
+                "",
+                "plain: times as measured; reduced: over the regular factor τ_exact/(C δ^p), which "
+                "tends to 1 at r_c",
+                str,
+            ),
+            Column("limit_radius", "length", "r_c: w/4 or h/4 of hops, or the largest radius"),
+            Column("points", "", "radii fitted: all within 0.2 r_c and beyond other limits", int),
+            Column("nearest", "length", "smallest δ of the fit"),
+            Column("farthest", "length", "largest δ of the fit"),
+            Column("parameter", "", "exponent p, or coefficient C at the exact exponent", str),
+            Column("estimate", "of C: time/length^p", "fitted value"),
+            Column("stderr", "as estimate", "its standard error"),
+            Column(
+                "curve",
+                "as estimate",
+                "the same fit to the exact times at the same radii; empty for first_passage",
+            ),
+            Column("law", "as estimate", "exact value at the limit"),
+            Column("z", "", "(estimate − curve)/stderr"),
+            Column("chi2", "", "sum of squared residuals in standard errors"),
+            Column("degrees", "", "its degrees of freedom", int),
+            Column("p", "", "probability of a larger χ² if the power law holds over the window"),
         ),
     ),
     "trajectory": Table(

@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from twodiscs import theory
-from twodiscs.checks import a_scene, one_of, whole
+from twodiscs.checks import one_of, whole
 from twodiscs.dynamics import across, draw_starts, nearest_power_of_two, state_in
 from twodiscs.events import DISC, after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.invariant import draw_configuration, draw_constants, draw_in_disc
@@ -139,7 +139,7 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
 def _prepared(scene, event, times):
     """Return (times as an array, the scene on its side for horizontal hops, is it a hop)."""
     one_of("event", event, TAILED)
-    if not a_scene(scene).is_possible(event):
+    if theory.tail_constant(scene, event) is None:
         raise ValueError(
             f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
         )

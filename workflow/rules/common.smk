@@ -155,10 +155,35 @@ def stability_parameters(ordinary, hard):
 
 def tails_parameters():
     """Return what is measured of the tails: the box, and numbers of starts and replicas."""
+    budget = MAIN.event_budget
     return {
         "height": MAIN.height,
-        "replicas": 400_000,
-        "samples": 200,
+        "replicas": min(400_000, max(4_000, budget // 5_000)),
+        "samples": min(200, max(2, budget // 10**7)),
         "seed": CONFIGURATION.seed,
         "width": MAIN.width,
     }
+
+
+def distributions_parameters():
+    """Return what is measured of the times to the next hop: scenes, events a radius, root seed."""
+    return {
+        "events": min(2**23, max(2**16, MAIN.event_budget // 200)),
+        "scenes": [
+            {
+                "event": scene.histogram_event,
+                "height": scene.height,
+                "name": scene.name,
+                "radii": list(scene.watch.hop_histogram),
+                "width": scene.width,
+            }
+            for scene in PLAIN
+        ],
+        "seed": CONFIGURATION.seed,
+    }
+
+
+def mean_time_tables():
+    """Return {name: path} of the mean_times.csv of every scene without effects that has one."""
+    files = {scene.name: table_files(scene) for scene in PLAIN}
+    return {name: f["mean_times"] for name, f in files.items() if "mean_times" in f}

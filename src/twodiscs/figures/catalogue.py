@@ -298,6 +298,33 @@ SHARED = {
         ("tails",),
         frozenset({"tails"}),
     ),
+    "distributions": Entry(
+        "Rate of hops since the last one",
+        DYNAMICS,
+        "(a) How often a hop comes after a time t without one, in units of the exact mean time τ; "
+        "an exponential law would be the dashed line. It starts from the exact density at 0 (thick "
+        "dashes), of a hop undone after one bounce, and jumps where both discs may have bounced, "
+        "from t = √2 (h − 2r) on for vertical hops. Bars are rates of exponentials fitted from "
+        "four mean times on, dotted where intervals are not exponential there (p < 1e-3). Those of "
+        "small discs fall on, towards the rate of a cubic tail, 3τ/t (grey). (b) Mean time from a "
+        "random moment to the next hop (open symbols) and what intervals make of it, τ(1 + CV²)/2 "
+        "(dots), with CV their coefficient of variation. Error bars are one standard error.",
+        ("distributions",),
+        frozenset({"distributions"}),
+    ),
+    "thresholds": Entry(
+        "Power laws where events die out",
+        DYNAMICS,
+        "Mean times near the radius at which their event ends, r = r_c − δ with r_c = w/4 for "
+        "vertical hops, h/4 for horizontal ones and the largest radius for all else: event-driven "
+        "molecular dynamics (symbols) and exact (lines). (a) Times between hops against their "
+        "leading laws Cδ⁻² (dashed), and mean first passages from a random moment (crosses); "
+        "slopes are those of inertial and of diffusive motion. (b) Times over their leading laws "
+        "Cδ^p, with p = −2 for hops that become blocked and p = 1 for what vanishes: how near the "
+        "limit is reached. Error bars are one standard error.",
+        ("distributions", "thresholds"),
+        frozenset({"thresholds"}),
+    ),
 }
 
 

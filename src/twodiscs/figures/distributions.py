@@ -1,0 +1,99 @@
+"""How the rate of hops depends on the time since the last one, and first passages."""
+
+import numpy as np
+
+from twodiscs import theory
+from twodiscs.figures import panels
+from twodiscs.figures.style import BLACK, GREY, SERIES, SIZES, new_figure
+from twodiscs.scene import HOPS, Scene
+
+#: Inches: the panel of the rates, that of the first passages, the gap, the room above.
+RATES, PASSAGES, GAP, TOP = 2.0, 1.25, 0.42, 0.22
+
+#: The longest time shown, in mean times, and the largest relative error of a rate.
+LONGEST, LARGEST_ERROR = 12, 0.15
+
+#: Ends of the dashes that mark exact densities at 0, in mean times.
+DASH = -0.25, 0.05
+
+#: Fits with a smaller p than this are no exponentials.
+SMALLEST_P = 1e-3
+
+
+def draw(scene, tables):
+    """Draw the rows of distributions.csv on its first scene; ``scene`` is not used."""
+    rows = tables["distributions"]
+    rows = [row for row in rows if row["scene"] == rows[0]["scene"]]
+    figure = new_figure(panels.BOTTOM + PASSAGES + GAP + RATES + TOP)
+    rates = panels.add_panel(figure, panels.BOTTOM + PASSAGES + GAP, RATES)
+    passages = panels.add_panel(figure, panels.BOTTOM, PASSAGES)
+    _rates(rates, rows)
+    _passages(passages, rows)
+    panels.letter(rates, "a")
+    panels.letter(passages, "b")
+    hop = rows[0]["event"].replace("_", " ")
+    panels.name_box(rates, rows[0], f",  (a) {hop}s")
+    return figure
+
+
+def _rates(axes, rows):
+    """Draw the hazard rates of the first radii, with the fitted rates and the limiting laws."""
+    cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
+    for case, (colour, marker) in zip(cases, SERIES, strict=False):
+        own = [row for row in rows if (row["event"], row["radius"]) == case]
+        mean = own[0]["exact_mean"]
+        shown = [
+            (row["first"] / mean, row["last"] / mean, row["estimate"] * mean, row["stderr"] * mean)
+            for row in own
+            if row["quantity"] == "hazard" and row["stderr"] < LARGEST_ERROR * row["estimate"]
+        ]
+        if not shown:
+            continue
+        first, last, value, error = np.array(shown).T
+        middle = (first + last) / 2
+        style = panels.open_symbol(colour, marker) | {"markersize": 0.8 * SIZES[marker]}
+        axes.errorbar(
+            middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={case[1]:g}$", **style
+        )
+        for row in own:
+            if row["quantity"] == "rate":
+                ends = row["first"] / mean, row["last"] / mean
+                fit = {"ls": "-" if row["p"] > SMALLEST_P else (0, (1, 1)), "zorder": 2}
+                axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
+        here = Scene(own[0]["width"], own[0]["height"], case[1])
+        zero = mean * theory.density_at_zero(here, case[0])
+        axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    late = np.linspace(6, LONGEST, 40)
+    axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (1, 1.5)), label=r"$3\tau/t$")
+    axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
+    axes.set_ylabel(r"rate of hops $\times\,\tau$")
+    axes.legend(loc="upper right")
+
+
+def _passages(axes, rows):
+    """Draw mean first passages, over the mean interval, and what intervals make of them."""
+    for (colour, marker), hop in zip(SERIES, HOPS, strict=False):
+        own = [
+            row
+            for row in rows
+            if (row["quantity"], row["event"]) == ("first_passage", hop) and row["last"] is None
+        ]
+        if not own:
+            continue
+        radius, mean, value, error, other, spread = np.array(
+            [
+                [row[c] for c in ("radius", "exact_mean", "estimate", "stderr")]
+                + [row["reference"], row["reference_stderr"]]
+                for row in sorted(own, key=lambda row: row["radius"])
+            ]
+        ).T
+        style = panels.open_symbol(colour, marker)
+        name = hop.replace("_", " ") + "s"
+        axes.errorbar(radius, value / mean, error / mean, ls="", label=name, zorder=3, **style)
+        style |= {"markerfacecolor": colour, "markersize": 0.4 * SIZES[marker]}
+        axes.errorbar(radius, other / mean, spread / mean, ls="", elinewidth=0.5, zorder=4, **style)
+    axes.plot([], [], ls="", marker=".", color=BLACK, label=r"$(1+\mathrm{CV}^2)/2$")
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    axes.set(xlabel="radius $r$", ylabel=r"first passage $\langle F\rangle/\tau$")
+    axes.legend(loc="upper left")
