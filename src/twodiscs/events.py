@@ -58,10 +58,20 @@ class Law(NamedTuple):
     rough: tuple | None = None  # κ/(1 + κ), 1/(1 + κ) with κ = I/(m r²)
 
 
+def divided(whole, first, second):
+    """Return ``whole`` divided as ``first`` to ``second``, in two parts with exactly this sum.
+
+    Where two bodies share a change of velocity the sum of their parts decides about the energy: a
+    rounding there would be the same in every event, and add up.
+    """
+    larger = whole * (max(first, second) / (first + second))
+    return (larger, whole - larger) if first > second else (whole - larger, larger)
+
+
 def law_of(scene):
     """Return the ``Law`` of a ``Scene``."""
-    total = sum(scene.masses)
-    shares = scene.masses[1] / total, scene.masses[0] / total
+    m1, m2 = scene.masses
+    shares = divided(1.0, m2, m1)
     halves = [
         {axis: (scene.side(axis) - 2 * radius) / 2 for axis in scene.walled}
         for radius in scene.radii
@@ -81,8 +91,8 @@ def law_of(scene):
         sigma=scene.contact_distance,
         depth=None if scene.depth is None else True,
         gravity=scene.field or None,
-        weights=None if scene.mass_ratio == 1 else (2 * shares[0], 2 * shares[1]),
-        rough=None if inertia is None else (inertia / (1 + inertia), 1 / (1 + inertia)),
+        weights=None if m1 == m2 else divided(2.0, m2, m1),
+        rough=None if inertia is None else divided(1.0, inertia, 1.0),
         **walls,
         **wraps,
     )
