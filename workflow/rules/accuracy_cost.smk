@@ -43,6 +43,7 @@ rule accuracy_cost_figure:
             f"{RESULTS}/figures/{{figure}}.png",
             caption="../report/shared_figure.rst",
             category=lambda w: SHARED[w.figure].category,
+            subcategory="all scenes",
             labels=lambda w: SHARED[w.figure].labels,
         ),
     log:

@@ -38,6 +38,7 @@ rule distributions_figure:
             f"{RESULTS}/figures/distributions.png",
             caption="../report/shared_figure.rst",
             category=SHARED["distributions"].category,
+            subcategory="all scenes",
             labels=SHARED["distributions"].labels,
         ),
     log:

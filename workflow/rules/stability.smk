@@ -40,6 +40,7 @@ rule stability_figure:
             f"{RESULTS}/figures/stability.png",
             caption="../report/shared_figure.rst",
             category=SHARED["stability"].category,
+            subcategory="all scenes",
             labels=SHARED["stability"].labels,
         ),
     log:

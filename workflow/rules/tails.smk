@@ -33,6 +33,7 @@ rule tails_figure:
             f"{RESULTS}/figures/tails.png",
             caption="../report/shared_figure.rst",
             category=SHARED["tails"].category,
+            subcategory="all scenes",
             labels=SHARED["tails"].labels,
         ),
     log:

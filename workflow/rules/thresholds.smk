@@ -43,6 +43,7 @@ rule thresholds_figure:
             f"{RESULTS}/figures/thresholds.png",
             caption="../report/shared_figure.rst",
             category=SHARED["thresholds"].category,
+            subcategory="all scenes",
             labels=SHARED["thresholds"].labels,
         ),
     log:
