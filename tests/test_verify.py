@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from twodiscs import config, tables, verify
+from twodiscs.cli import verify as command
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -211,6 +212,27 @@ def test_a_file_that_is_no_point_is_a_mistake(results, expected):
     (results / "small" / "points" / "monte_carlo" / "0.24.json").write_text("{")
     with pytest.raises(ValueError, match="must hold points alone"):
         verify.verify(results, expected)
+
+
+def test_the_command_writes_compares_and_says_what_differs(results, tmp_path, monkeypatch, capsys):
+    expected, text = tmp_path / "expected", json.dumps(CONFIGURATION)
+    argv = ["verify", "--results", results, "--expected", expected, "--configuration", text]
+    monkeypatch.setattr("sys.argv", list(map(str, argv)))
+    with pytest.raises(ValueError, match="no results to compare with"):
+        command.main()
+    monkeypatch.setattr("sys.argv", list(map(str, [*argv, "--write"])))
+    assert command.main() == 0
+    monkeypatch.setattr("sys.argv", list(map(str, argv)))
+    assert command.main() == 0
+    assert "compared 3 points and 1 tables: 11 integers" in capsys.readouterr().out
+    edit_point(results, lambda p: p.update(samples=7))
+    assert command.main() == 1
+    assert capsys.readouterr().err == (
+        "small/points/monte_carlo, radius 0.24: samples is 7, expected 1048576\ndifferences: 1\n"
+    )
+    shutil.rmtree(results)
+    with pytest.raises(ValueError, match="holds no results to verify"):
+        command.main()
 
 
 @pytest.mark.parametrize(
