@@ -375,6 +375,10 @@ def test_parameters_say_the_effects_and_nothing_else():
     assert repr(field) == repr(jobs(one(**BASE | {"watch": watch})))
     rough = jobs(one(effects={"moment_of_inertia": 0.4}, radii=[0.1]))
     assert all(map(is_plain_and_sorted, rough.values()))
+    kernels = one(effects={"periodic": ["y"]}, radii=[0.1]).kernels_parameters()
+    assert is_plain_and_sorted(kernels)
+    assert kernels["intervals"] == ["horizontal_hop", 0.025]
+    assert "right_wall" in kernels["mean_times"]
     assert rough["dynamics", "0.1"]["effects"] == {"moment_of_inertia": 0.4}
     torus = one(effects={"periodic": ["x", "y"]}, radii=[0.1])
     assert torus.dynamics_parameters("0.1")["effects"] == {"periodic": "xy"}

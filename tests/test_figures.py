@@ -122,8 +122,9 @@ def trajectory(rng, events=400):
         hop = i > 0 and side[i] != side[i - 1]
         if hop:
             for event in ("horizontal_hop", "vertical_hop"):
-                rows.append({"time": i - 0.5, "event": event, "x1": 0, "y1": 0, "x2": 0, "y2": 0})
-        place = {"x1": -x, "y1": -x, "x2": x, "y2": x}
+                place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
+                rows.append({"time": i - 0.5, "event": event, **place, "z1": None, "z2": None})
+        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, "z1": None, "z2": None}
         rows.append({"time": float(i), "event": "wall_x1", **place})
     return rows
 
@@ -299,7 +300,7 @@ def test_limits_follow_from_the_box_or_from_the_scene():
     [
         ({"periodic": "x"}, {"v": 0.375}),
         ({"periodic": "y"}, {"h": 0.25}),
-        ({"periodic": "xy"}, {}),
+        ({"periodic": "xy"}, {"h/2": 0.25, "w/2": 0.375}),
         # Two discs one above the other need 2 g r < 1/2; one reaches the top if g (h − 2r) < 1/2.
         ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),
         # The larger disc 1 passes behind disc 2 as long as h < (√r1 + √r2)².
@@ -312,7 +313,9 @@ def test_limits_of_scenes_with_effects(effects, expected):
     *found, (largest, name) = limits_module.scene_limits(scene)
     assert name == r"r_{\mathrm{max}}"
     assert largest == pytest.approx(Scene(1.5, 1.0, 0.1, **effects).largest_radius, rel=1e-14)
-    named = {index: radius for radius, text in found for index in re.findall(r"\{(\w)\}", text)}
+    named = {
+        index: radius for radius, text in found for index in re.findall(r"(?:\{|=)([\w/]+)", text)
+    }
     assert named == pytest.approx(expected, rel=1e-15)
 
 

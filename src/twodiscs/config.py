@@ -183,6 +183,22 @@ class SceneRequest:
             seed=grid.stream_seed(self.seed, self.name, "trajectory", grid.key(radius)),
         )
 
+    def kernels_parameters(self):
+        """Return what the kernels of a scene are compiled for, at its first radius.
+
+        They are height, intervals (the hop and a radius, or None), mean_times, radius, sampled (the
+        quantities of Monte Carlo), trajectory (whether there is one) and width.
+        """
+        watch = self.watch
+        histogram = [self.histogram_event, *watch.hop_histogram[:1]]
+        return self._sorted(
+            intervals=histogram if watch.hop_histogram else None,
+            mean_times=list(watch.mean_times),
+            radius=self.radii[0],
+            sampled=["volume"] * watch.volume + [f"{event}_area" for event in watch.areas],
+            trajectory=watch.trajectory is not None,
+        )
+
     def _sorted(self, **more):
         box = {"height": self.height, "width": self.width}
         return dict(sorted((box | parameters.described(self.effects) | more).items()))

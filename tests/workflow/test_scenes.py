@@ -10,6 +10,9 @@ from twodiscs.figures.catalogue import FIGURES
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: config.read(path) for path in FILES}
 
+#: Rules whose jobs run kernels that are worth compiling beforehand.
+KERNELS = {"monte_carlo", "dynamics", "intervals"}
+
 #: Rules for all scenes together, whatever else is built once.
 ALWAYS = {"check", "compile", "manifest"}
 
@@ -76,6 +79,7 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
             rules -= {"animate"}
+            rules |= {"compile_effects"} if rules & KERNELS else set()
         else:
             figures |= DRAWINGS
         if tables:
@@ -94,16 +98,18 @@ def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
     scenes = [block["scenes"][0] for block in BLOCKS.values()]
     assert [scene["name"] for scene in scenes] == list(BLOCKS) == sorted(CALLED)
     found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
-    assert {rule for rule, wildcards in found if "scene" not in repr(wildcards)} == ALWAYS
+    shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
+    assert shared == ALWAYS - {"compile"}  # nothing without effects is compiled
     for request in config.load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
         assert figures == CALLED[request.name]
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
         assert rules - {"intervals", "trajectory"} == {
-            *("grid", "theory", "monte_carlo", "dynamics", "table", "check_table", "figure"),
+            *("grid", "theory", "compile_effects", "monte_carlo", "dynamics"),
+            *("table", "check_table", "figure"),
         }
-        for rule in ("monte_carlo", "dynamics", "intervals"):
+        for rule in KERNELS:
             keys = [w for r, w in found if r == rule and f"scene={request.name}" in w]
             expected = getattr(request, f"{rule}_keys")
             assert {(f"scene={request.name}", f"key={key}") for key in expected} == set(keys)

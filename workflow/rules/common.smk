@@ -36,6 +36,14 @@ def point_files(scene, *methods):
     ]
 
 
+def compiled(scene, kernels):
+    """Return the stamp that says that the kernels of a scene are compiled."""
+    folder = (
+        f"{RESULTS}/.compiled/{scene.name}" if scene.effects else f"{RESULTS}/.compiled"
+    )
+    return f"{folder}/{kernels}"
+
+
 def cost_files(scene):
     """Return what the jobs of a scene took, a file for each method and radius."""
     return [

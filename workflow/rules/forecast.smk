@@ -9,9 +9,11 @@ rule:
         "forecast"
     input:
         code=code("cli.forecast"),
-        compiled=expand(
-            f"{RESULTS}/.compiled/{{kernels}}", kernels=["montecarlo", "dynamics"]
-        ),
+        compiled=[
+            compiled(scene, kernels)
+            for scene in SCENES.values()
+            for kernels in ("montecarlo", "dynamics")
+        ],
     log:
         f"{RESULTS}/logs/forecast.log",
     threads: 64  # all that there are

@@ -14,8 +14,9 @@ CLOSEST = 1e-9
 #: Radii in each regime: evenly spaced, and in geometric progression towards either end.
 EVEN, GEOMETRIC = 60, 25
 
-#: The same for scenes with effects, whose theory takes longer.
-FEWER_EVEN, FEWER_GEOMETRIC = 24, 8
+#: The same for scenes with effects, whose theory takes longer; the even ones are those of all
+#: regimes.
+ALL_EVEN, FEWER_GEOMETRIC, FARTHER = 60, 8, 1e-5
 
 
 def branches(scene):
@@ -23,12 +24,15 @@ def branches(scene):
 
     The first one starts at 1e-4 of its length, where the law for small radii has long set in.
     """
-    plain = "effects" not in scene
-    even, geometric = (EVEN, GEOMETRIC) if plain else (FEWER_EVEN, FEWER_GEOMETRIC)
-    near = np.geomspace(CLOSEST, 1 / even, geometric)
-    inner = np.linspace(0, 1, even + 1)[1:-1]
+    ends = [0, *(radius for radius, _ in scene_limits(scene))]
     found = []
-    for low, high in pairwise([0, *(radius for radius, _ in scene_limits(scene))]):
+    for low, high in pairwise(ends):
+        even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
+        if "effects" in scene:
+            even = max(6, round(ALL_EVEN * (high - low) / ends[-1]))
+            geometric, closest = FEWER_GEOMETRIC, FARTHER
+        near = np.geomspace(closest, 1 / even, geometric)
+        inner = np.linspace(0, 1, even + 1)[1:-1]
         start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)

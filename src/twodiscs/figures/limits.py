@@ -6,14 +6,18 @@ from twodiscs import grid, parameters
 from twodiscs.grid import thresholds
 from twodiscs.scene import HOPS, largest_radius
 
-#: What changes at some radius of a scene with effects, by the index of that radius: hops become
-#: blocked, in a field the top wall comes within reach, disc 1 can no longer change sides.
+#: The radii of a scene with effects at which something changes: hops become blocked, in a field the
+#: top wall comes within reach, disc 1 can no longer change sides, a periodic axis becomes so short
+#: that discs meet around it. Where two are the same, hops give the name, or what comes first.
+VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
 CHANGES = {
-    "v": lambda scene: scene.vertical_hops,
-    "h": lambda scene: scene.horizontal_hops,
-    "t": lambda scene: scene.is_possible("top_wall"),
-    "x": lambda scene: scene.confined[0],
-    "y": lambda scene: scene.confined[1],
+    VERTICAL: lambda scene: scene.vertical_hops,
+    HORIZONTAL: lambda scene: scene.horizontal_hops,
+    r"r_{\mathrm{t}}": lambda scene: scene.is_possible("top_wall"),
+    r"r_{\mathrm{x}}": lambda scene: scene.confined[0],
+    r"r_{\mathrm{y}}": lambda scene: scene.confined[1],
+    r"\sigma=h/2": lambda scene: _goes_around(scene, "y"),
+    r"\sigma=w/2": lambda scene: _goes_around(scene, "x"),
 }
 
 
@@ -34,28 +38,33 @@ def scene_limits(scene):
 
     Then they are r_v and r_h, where vertical and horizontal hops become blocked; r_t, from which on
     discs rise to the top wall in a field; r_x and r_y, where disc 1 loses its way to the other side
-    of disc 2, if that is not where the hop becomes blocked; and the largest radius, which a field
-    may lower.
+    of disc 2, if that is not where the hop becomes blocked; the radii at which σ = r1 + r2 is half
+    of a periodic side; and the largest radius, which a field may lower.
     """
     if "effects" not in scene:
         return limits(scene["width"], scene["height"])
     scene_at = partial(parameters.scene, scene)
     widest = min(scene["width"], scene["height"]) / 2
     largest = grid.end(scene_at, widest)
-    names = {}
-    for index, state in CHANGES.items():
+    found = {}
+    for name, state in CHANGES.items():
         first = state(scene_at(1e-6 * largest))
         radius = grid.end(scene_at, widest, lambda here, s=state, f=first: s(here) == f)
-        if radius < largest and not (index in "xy" and radius in names):
-            names.setdefault(radius, []).append(rf"r_{{\mathrm{{{index}}}}}")
-    found = sorted((radius, "=".join(same)) for radius, same in names.items())
-    return [*found, (largest, r"r_{\mathrm{max}}")]
+        if radius in found and name == HORIZONTAL:
+            found[radius] += f"={name}"
+        elif radius < largest:
+            found.setdefault(radius, name)
+    return [*sorted(found.items()), (largest, r"r_{\mathrm{max}}")]
+
+
+def _goes_around(scene, axis):
+    return axis in scene.periodic and scene.reach(axis) <= sum(scene.exact_radii)
 
 
 def hop_ends(scene):
     """Return {hop: (radius at which it ends, its name)} of a figure's ``scene``."""
     found = scene_limits(scene)
-    names = ("w/4", "h/4") if "effects" not in scene else (rf"r_{{\mathrm{{{i}}}}}" for i in "vh")
+    names = ("w/4", "h/4") if "effects" not in scene else (VERTICAL, HORIZONTAL)
     return {
         hop: next((limit for limit in found if name in limit[1].split("=")), found[-1])
         for hop, name in zip(HOPS, names, strict=True)

@@ -35,7 +35,7 @@ SYMBOLS = {
     "field": "$g={:g}$",
     "mass_ratio": "$m_2/m_1={:g}$",
     "moment_of_inertia": "$I/mr^2={:g}$",
-    "periodic": "{} periodic",
+    "periodic": "${}$ periodic",
     "radius_ratio": "$r_2/r_1={:g}$",
 }
 
@@ -104,8 +104,9 @@ def name_box(axes, scene, more="", up=0):
 
 def _effects(scene):
     """Return the effects of a figure's ``scene`` in symbols, "" if it has none."""
-    named = scene.get("effects", {})
-    return "".join(f",  {SYMBOLS[name].format(value)}" for name, value in named.items())
+    named = scene.get("effects", {}).items()
+    texts = ((name, "$, $".join(value) if name == "periodic" else value) for name, value in named)
+    return "".join(f",  {SYMBOLS[name].format(value)}" for name, value in texts)
 
 
 def name_limits(axes, found):
