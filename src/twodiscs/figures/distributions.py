@@ -13,6 +13,9 @@ RATES, PASSAGES, GAP, TOP = 2.0, 1.25, 0.42, 0.22
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST, LARGEST_ERROR = 12, 0.15
 
+#: Rates are shown for radii below so much of that at which the hop becomes blocked.
+FARTHEST = 0.83
+
 #: Ends of the dashes that mark exact densities at 0, in mean times.
 DASH = -0.25, 0.05
 
@@ -38,9 +41,12 @@ def draw(scene, tables):
 
 def _rates(axes, rows):
     """Draw the hazard rates of the first radii, with the fitted rates and the limiting laws."""
-    cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
-    for case, (colour, marker) in zip(cases, SERIES, strict=False):
-        own = [row for row in rows if (row["event"], row["radius"]) == case]
+    event = rows[0]["event"]
+    limit = (rows[0]["width"] if event == "vertical_hop" else rows[0]["height"]) / 4
+    radii = list(dict.fromkeys(row["radius"] for row in rows if row["event"] == event))
+    radii = [radius for radius in radii if radius < FARTHEST * limit]
+    for radius, (colour, marker) in zip(radii, SERIES, strict=False):
+        own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
         mean = own[0]["exact_mean"]
         shown = [
             (row["first"] / mean, row["last"] / mean, row["estimate"] * mean, row["stderr"] * mean)
@@ -53,15 +59,15 @@ def _rates(axes, rows):
         middle = (first + last) / 2
         style = panels.open_symbol(colour, marker) | {"markersize": 0.8 * SIZES[marker]}
         axes.errorbar(
-            middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={case[1]:g}$", **style
+            middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
         )
         for row in own:
             if row["quantity"] == "rate":
                 ends = row["first"] / mean, row["last"] / mean
                 fit = {"ls": "-" if row["p"] > SMALLEST_P else (0, (1, 1)), "zorder": 2}
                 axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
-        here = Scene(own[0]["width"], own[0]["height"], case[1])
-        zero = mean * theory.density_at_zero(here, case[0])
+        here = Scene(own[0]["width"], own[0]["height"], radius)
+        zero = mean * theory.density_at_zero(here, event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     late = np.linspace(6, LONGEST, 40)
