@@ -375,7 +375,7 @@ def count_events(scene, target, budget, seed, report=None):
         excess = relative_errors(sums, products, eligible)[index] / goals
         worst = float(np.max(excess))
         # In units of the work done so far: what the error asks for, and what the budget allows.
-        missing, affordable = 1.05 * worst**2 - 1.0, budget / simulated - 1.0
+        missing, affordable = 1.05 * worst * worst - 1.0, budget / simulated - 1.0
         if report is not None:
             needed = max(0.0, min(missing, affordable)) * simulated
             report({"events": simulated, "error": worst, "needed": needed})

@@ -10,7 +10,7 @@ from itertools import pairwise
 from twodiscs.scene import largest_radius, length
 
 #: The stochastic stages, each with random streams of its own.
-METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory")
+METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory", "unmet")
 
 #: No grid has more points.
 MOST = 1000
@@ -73,7 +73,8 @@ def radii(width, height, smallest, count):
             fractions = [math.sin(math.pi / 2 * j / n) for j in range(n)]
         else:
             fractions = [math.sin(math.pi / 2 * (j + 0.5) / n) ** 2 for j in range(n)]
-        places += [low + fraction * (high - low) for fraction in fractions]
+        # Twelve digits of the sines, for the last one depends on the math library.
+        places += [low + round(fraction, 12) * (high - low) for fraction in fractions]
 
     result = [smallest]
     for i in range(1, len(places)):

@@ -59,26 +59,27 @@ def draw_constants(scene):
     if beyond_y > 0:
         span = stop
     elif beyond_x > 0:
-        span = range_y**2 / (sigma + start)
+        span = range_y * range_y / (sigma + start)
     else:
         room = (w - 2 * r) ** 2 + (h - 2 * r) ** 2 - (2 * r) ** 2
         span = float(room) / (range_x + start)
 
-    # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s).
+    # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s). Products, not powers,
+    # whose last digit depends on the math library, nor ``sum``, whose depends on Python's version.
     if beyond_y > 0:
-        powers = {0: beyond_y**2, 2: 2 * beyond_y / sigma, 4: 1 / sigma**2}
+        powers = {0: beyond_y * beyond_y, 2: 2 * beyond_y / sigma, 4: 1 / (sigma * sigma)}
     else:
-        scale = 1 / (range_y + least_k) ** 2
-        powers = {2: 4 * start**2 * scale, 3: 4 * start * scale, 4: scale}
-    parts = [beyond_x**2 / 2 * range_y**2]
+        scale = 1 / ((range_y + least_k) * (range_y + least_k))
+        powers = {2: 4 * start * start * scale, 3: 4 * start * scale, 4: scale}
+    parts = [beyond_x * beyond_x / 2 * range_y * range_y]
     for j, c in powers.items():
-        parts.append(c * beyond_x * span ** (j + 1) / (j + 1))
-        parts.append(c * span ** (j + 2) / ((j + 1) * (j + 2)))
-    total = sum(parts)
-    cumulative = tuple(float(sum(parts[: i + 1]) / total) for i in range(len(parts)))
+        parts.append(c * beyond_x * math.prod([span] * (j + 1)) / (j + 1))
+        parts.append(c * math.prod([span] * (j + 2)) / ((j + 1) * (j + 2)))
+    total = math.fsum(parts)
+    cumulative = tuple(math.fsum(parts[: i + 1]) / total for i in range(len(parts)))
     return Draw(
         range_x / 2, range_y / 2, range_y, sigma, start, stop, span, beyond_x, beyond_y, least_k,
-        cumulative, float(total),
+        cumulative, total,
     )  # fmt: skip
 
 
