@@ -189,6 +189,35 @@ SHARED_TABLES = {
         hard("times", "contact_time", value=0.75),
         hard("coverage", "any_wall", value=0.94),
     ),
+    "distributions": rows(
+        "distributions",
+        *(
+            {"scene": "scene0", "radius": 0.24, "event": "vertical_hop", "exact_mean": 1.1}
+            | {"quantity": quantity, "estimate": 0.8, "stderr": 0.004, "z": z, "p": p}
+            for quantity, z, p in (
+                ("mean", 0.5, None),
+                ("squared_cv", None, None),
+                ("first_passage", 1.5, None),
+                ("density_at_zero", -0.75, None),
+                ("rate", -30.0, 0.5),
+            )
+        ),
+    ),
+    "thresholds": rows(
+        "thresholds",
+        *(
+            {"scene": "scene0", "event": event, "quantity": "mean_time", "points": 9, "law": law}
+            | {"form": form, "parameter": parameter, "z": 0.3, "curve": law}
+            | {"estimate": 0.99 * law, "stderr": 0.01}
+            for event in ("vertical_hop", "horizontal_hop")
+            for form, parameter, law in (
+                ("plain", "exponent", -2.0),
+                ("plain", "coefficient", 0.5),
+                ("reduced", "exponent", -2.0),
+                ("reduced", "coefficient", 0.5),
+            )
+        ),
+    ),
     "tails": rows(
         "tails",
         *(
@@ -215,14 +244,17 @@ def page(tmp_path_factory):
 def paper(tmp_path, page):
     """Return a function that typesets the manuscript from fabricated results: its bytes.
 
-    Keywords leave out figures or tables, and ``change`` sets (table, row, column) to a value.
+    ``figures`` are those of a scene and ``common`` the others, ``empty`` tables have no rows, and
+    ``change`` sets (table, row, column) to a value; ``text`` is another template.
     """
 
-    def make(figures=tuple(FIGURES), common=tuple(SHARED), scenes=1, change=None, text=None):
+    def make(
+        figures=tuple(FIGURES), common=tuple(SHARED), scenes=1, empty=(), change=None, text=None
+    ):
         folder = tmp_path / "results"
         shutil.rmtree(folder, ignore_errors=True)
         named = {
-            name: [dict(row) for row in found]
+            name: [] if name in empty else [dict(row) for row in found]
             for name, found in (SCENE_TABLES | SHARED_TABLES).items()
         }
         for (table, row, column), value in (change or {}).items():
@@ -276,8 +308,9 @@ def test_a_missing_figure_leaves_no_dangling_reference(paper, missing):
     )
 
 
-def test_it_compiles_without_figures_and_with_many_scenes(paper):
+def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
     paper(figures=())
+    paper(empty=("distributions", "thresholds", "tails"))
     paper(scenes=3)
 
 
@@ -294,6 +327,11 @@ def test_it_compiles_without_figures_and_with_many_scenes(paper):
         (("accuracy_cost", 6, "seconds"), 0.5),
         (("accuracy_cost", 10, "error"), 1e-2),
         (("stability", 2, "value"), 5e-13),
+        (("distributions", 2, "z"), 2.5),
+        (("distributions", 3, "estimate"), 0.7),
+        (("distributions", 4, "p"), 1e-5),
+        (("thresholds", 0, "estimate"), -1.5),
+        (("thresholds", 7, "z"), 3.5),
         (("tails", 0, "estimate"), 1.3e-5),
         (("tails", 2, "estimate"), 1.1),
     ],
