@@ -478,17 +478,18 @@ def record_returns(
             for i in range(lanes):
                 times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
             for i in range(lanes):
-                before, waited = state_at(rows, i, law), age[i]
-                after = after_event(before, times[i], codes[i], law)
+                before, time, waited = state_at(rows, i, law), times[i], age[i]
+                after = after_event(before, time, codes[i], law)
                 put_state(rows, i, after, law)
                 apart, rising = across(before, horizontal)
                 hop = crosses(apart, across(after, horizontal)[0])
-                until = crossing_time(apart, rising)
-                recorded = hop & (left[i] > 0.0) & (left[i] <= wanted)
-                intervals[i] = waited + until if recorded else -1.0
-                elapsed[i] += waited + until if recorded else 0.0
-                age[i] = times[i] - until if hop else waited + times[i]
-                left[i] -= 1.0 if hop else 0.0
+                until, to_come = crossing_time(apart, rising), left[i]
+                recorded = hop & (to_come > 0.0) & (to_come <= wanted)
+                interval = waited + until
+                intervals[i] = interval if recorded else -1.0
+                elapsed[i] += interval if recorded else 0.0
+                age[i] = time - until if hop else waited + time
+                left[i] = to_come - 1.0 if hop else to_come
             n = 0
             for i in range(lanes):
                 found[n] = intervals[i]
