@@ -6,6 +6,7 @@ follows; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make
 
 import argparse
 import csv
+import json
 import math
 import re
 import shlex
@@ -28,6 +29,9 @@ NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
 
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 INDENTED = re.compile(r"(?:(?<=\n\n) {4}.+\n(?:(?: {4}.+)?\n)*)")
+
+
+PICTURE = re.compile(r'<img src="([^"]+)"')
 
 
 @cache
@@ -85,6 +89,7 @@ def with_examples(path):
 
 
 DEFAULT = REPOSITORY / "config" / "config.yaml"
+EXPECTED = REPOSITORY / "paper" / "expected"
 
 
 def same(shown, found):
@@ -116,9 +121,18 @@ def test_every_block_is_of_a_kind_that_is_tried(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_links_lead_somewhere(name):
     folder = (REPOSITORY / name).parent
-    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", FENCED.sub("", page(name))):
+    text = FENCED.sub("", page(name))
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text) + PICTURE.findall(text):
         if not target.startswith("https://"):
             assert (folder / target).exists(), target
+
+
+def test_pictures_are_small_and_shown():
+    shown = {place.removeprefix("docs/") for name in NAMES for place in PICTURE.findall(page(name))}
+    pictures = [p for p in (REPOSITORY / "docs").iterdir() if p.suffix in (".png", ".gif")]
+    assert {path.name for path in pictures} == shown
+    for path in pictures:
+        assert path.stat().st_size < {".png": 300_000, ".gif": 600_000}[path.suffix], path
 
 
 def test_citation_agrees_with_the_package():
@@ -203,6 +217,29 @@ def test_snakemake_knows_every_target(dry):
     assert set(dry) == {(), ("--configfile", "config/draft.yaml")}
     assert {"volume", "check", "all"} <= targets()[()]
     assert all("Job stats:" in said for said in dry.values())
+
+
+# Results ------------------------------------------------------------------------------------------
+
+
+def agreement(folder, scene):
+    """Return the row of the table of agreement for a ``Scene`` of a configuration, as text."""
+    rows = tables.read(folder / scene.name / "check.csv", "check")
+    compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
+    points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
+    events = sum(point["events"] for point in points.values())
+    counts = f"{len(points)} | {len(compared)} | {max(compared):.1f} | {events:.1e}"
+    return f"| {scene.width:g} × {scene.height:g} | {counts.replace('e+', 'e')} |"
+
+
+def test_table_of_agreement_is_that_of_the_expected_results():
+    if not (EXPECTED / "configuration.json").exists():
+        pytest.skip("paper/expected holds no results")
+    found = [agreement(EXPECTED, scene) for scene in config.load(config.read(DEFAULT)).scenes]
+    (shown,) = re.findall(r"^\| box \|.*\n\|[-|]+\n((?:\|.*\n)+)", page("README.md"), re.MULTILINE)
+    assert shown.splitlines() == found
+    events = found[0].split("|")[-2].strip()
+    assert f"| `paper` | 3e-4 | {events} |" in page("docs/running.md")
 
 
 # Configurations -----------------------------------------------------------------------------------
