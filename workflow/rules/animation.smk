@@ -2,22 +2,6 @@
 # a GIF for any program, and a PNG because the report shows no other animated image.
 
 
-def animation_files(scene):
-    """Return the files of the animation of a scene, none if the scene has no trajectory."""
-    called = ANIMATION.is_called(scene.watch.quantities, scene.effects)
-    path = f"{RESULTS}/{scene.name}/figures/animation"
-    return multiext(path, ".gif", ".png") if called else []
-
-
-def animation_parameters(scene):
-    """Return what the animation of a scene needs beside the trajectory."""
-    return {
-        "height": scene.height,
-        "radius": scene.watch.trajectory,
-        "width": scene.width,
-    }
-
-
 rule animate:
     input:
         table=f"{RESULTS}/{{scene}}/trajectory.csv",

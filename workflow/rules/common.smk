@@ -108,6 +108,28 @@ def figure_files(scene):
     }
 
 
+def animation_files(scene):
+    """Return the files of the animation of a scene, none if the scene has no trajectory."""
+    called = ANIMATION.is_called(scene.watch.quantities, scene.effects)
+    path = f"{RESULTS}/{scene.name}/figures/animation"
+    return multiext(path, ".gif", ".png") if called else []
+
+
+def animation_parameters(scene):
+    """Return what the animation of a scene needs beside the trajectory."""
+    return {
+        "height": scene.height,
+        "radius": scene.watch.trajectory,
+        "width": scene.width,
+    }
+
+
+def shared_results():
+    """Return what is built once, as far as the configuration asks for it."""
+    made = [getattr(rules, name) for name in CONFIGURATION.shared if name != "report"]
+    return [path for rule in made for path in rule.output or rule.input]
+
+
 def shared_tables():
     """Return the names of the tables that belong to no scene, those behind figures and errata."""
     return list(

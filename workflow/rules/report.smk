@@ -8,12 +8,6 @@ from glob import glob
 report: "../report/workflow.rst"
 
 
-def shared_results():
-    """Return what is built once, as far as the configuration asks for it."""
-    made = [getattr(rules, name) for name in CONFIGURATION.shared if name != "report"]
-    return [path for rule in made for path in rule.output or rule.input]
-
-
 rule report:
     input:
         results=[
