@@ -341,7 +341,7 @@ def test_default_radii_keep_to_what_there_is():
     # With g = 2 two discs one above the other have the energy up to r = 1/(4g).
     strong = one(effects={"field": 2}, watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert strong.watch.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
-    assert one(effects={"field": 2}).watch.trajectory == 0.12
+    assert one(effects={"field": 2}).watch.trajectory == 0.0625
     # The larger disc has a hundredth of the side.
     assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
     assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
@@ -367,7 +367,7 @@ def test_effects_that_are_absent_leave_no_trace(effects):
 
 def test_parameters_say_the_effects_and_nothing_else():
     plain = edited()
-    watch = BASE["watch"] | {"hop_histogram": [0.1]}
+    watch = BASE["watch"] | {"hop_histogram": [0.1], "trajectory": 0.1}
     field = jobs(one(**BASE | {"watch": watch}, effects={"field": 1, "mass_ratio": 2}))
     named = {"field": 1.0, "mass_ratio": 2.0}
     assert all(parameters.pop("effects") == named for parameters in field.values())

@@ -29,8 +29,9 @@ HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
 #: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
 TRAJECTORY_FRACTION = 0.24
 
-#: The same for a scene with effects, over the radius at which the first hop becomes blocked.
-BELOW_THRESHOLD = 0.96
+#: The same for a scene with effects, over the radius at which the first hop becomes blocked: in a
+#: field it is rare long before.
+BELOW_THRESHOLD = 0.5
 
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9

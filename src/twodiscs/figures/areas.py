@@ -31,5 +31,5 @@ def hop(scene, tables, event, label):
     radii, found = series(scene, tables, {event: label})
     figure, main, lower = panels.panels(scene, label)
     panels.draw_series(main, lower, radii, found, single=True)
-    panels.legend(main, found, "lower left", single="Monte Carlo")
+    panels.legend(main, scene, found, "lower left", single="Monte Carlo")
     return figure

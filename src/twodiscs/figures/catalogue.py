@@ -61,7 +61,8 @@ LIMITS = (
 EFFECTS = (
     "With the effects of this scene vertical hops become blocked at r_v and horizontal ones at "
     "r_h; from r_t on discs reach the top wall, and from r_x or r_y on disc 1 keeps to its side. "
-    "Limiting laws of the plain box are not drawn."
+    "In a field volumes and areas are weighted with the invariant density. Limiting laws of the "
+    "plain box are not drawn."
 )
 
 SAMPLED = f"{SYMBOLS} {LIMITS}."

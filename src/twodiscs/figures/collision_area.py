@@ -9,5 +9,5 @@ def draw(scene, tables):
     figure, main, lower = panels.panels(scene, r"collision area $A_{\mathrm{coll}}$")
     panels.draw_series(main, lower, radii, found, single=True)
     panels.logarithmic(main, radii, found)
-    panels.legend(main, found, "lower left", single="Monte Carlo")
+    panels.legend(main, scene, found, "lower left", single="Monte Carlo")
     return figure

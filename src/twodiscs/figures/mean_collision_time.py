@@ -14,5 +14,5 @@ def draw(scene, tables):
     times.small_law(main, scene, "disc_collision")
     times.last_law(main, scene, "disc_collision")
     panels.logarithmic(main, radii, series)
-    panels.legend(main, series, "beside", single="MD")
+    panels.legend(main, scene, series, "beside", single="MD")
     return figure

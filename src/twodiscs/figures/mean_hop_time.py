@@ -26,7 +26,7 @@ def draw(scene, tables):
     for event in found:
         times.small_law(main, scene, event)
     panels.logarithmic(main, radii, series)
-    panels.legend(main, series, "upper left")
+    panels.legend(main, scene, series, "upper left")
     panels.letter(main, "a")
     _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), scene, found)
     return figure

@@ -19,5 +19,5 @@ def draw(scene, tables):
         times.small_law(main, scene, event)
         times.last_law(main, scene, event)
     panels.logarithmic(main, radii, series)
-    panels.legend(main, series, "lower left")
+    panels.legend(main, scene, series, "lower left")
     return figure

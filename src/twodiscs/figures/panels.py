@@ -62,21 +62,24 @@ def panels(scene, label, beneath=0):
     main.set_ylabel(label)
     main.tick_params(labelbottom=False)
     lower.set(xlabel="radius $r$", ylabel="residual $z$")
+    mark(main, lower, scene_limits(scene))
+    name_box(main, scene, up=ABOVE if line else 0)
+    return figure, main, lower
+
+
+def mark(main, lower, found):
+    """Mark the limits ``found`` in both panels, where the abscissa ends, and sizes of residuals."""
     lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
     lower.set_yticks([-5, -2, 0, 2, 5])
     lower.axhline(0, color=GREY, lw=0.5, zorder=0)
     for size, dashes in GUIDES.items():
         for z in (-size, size):
             lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
-    found = scene_limits(scene)
-    largest = found[-1][0]
     for axes in (main, lower):
-        axes.set_xlim(0, 1.02 * largest)
+        axes.set_xlim(0, 1.02 * found[-1][0])
         for radius, _ in found:
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
     name_limits(main, found)
-    name_box(main, scene, up=ABOVE if line else 0)
-    return figure, main, lower
 
 
 def add_panel(figure, bottom, height):
@@ -97,16 +100,17 @@ def name_box(axes, scene, more="", up=0):
 
     ``up`` are points by which that is higher than usual.
     """
-    text = rf"$w\times h={scene['width']:g}\times{scene['height']:g}${more}{_effects(scene)}"
+    box = rf"$w\times h={scene['width']:g}\times{scene['height']:g}$"
+    text = ",  ".join([f"{box}{more}", *effects(scene)])
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
     drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
 
 
-def _effects(scene):
-    """Return the effects of a figure's ``scene`` in symbols, "" if it has none."""
+def effects(scene):
+    """Return the effects of a figure's ``scene`` in symbols, a list of texts."""
     named = scene.get("effects", {}).items()
     texts = ((name, "$, $".join(value) if name == "periodic" else value) for name, value in named)
-    return "".join(f",  {SYMBOLS[name].format(value)}" for name, value in texts)
+    return [SYMBOLS[name].format(value) for name, value in texts]
 
 
 def name_limits(axes, found):
@@ -174,7 +178,7 @@ def draw_series(main, lower, radii, series, single=False):
     for (colour, marker), one in zip(SERIES, series, strict=False):
         main.plot(radii, one.exact, color=BLACK if single else colour, zorder=5)
         estimates(main, one.rows, colour, marker)
-        _residuals(lower, one.rows, colour, marker)
+        residuals(lower, one.rows, colour, marker)
 
 
 def asymptote(axes, x, y):
@@ -204,7 +208,8 @@ def open_symbol(colour, marker):
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 
-def _residuals(axes, rows, colour, marker):
+def residuals(axes, rows, colour, marker):
+    """Draw the residuals of ``rows`` over their radii, but for those that are certain."""
     rows = [row for row in rows if row["z"] is not None and row["test"] != "certain"]
     for shown, symbol, clip in (
         ([r for r in rows if abs(r["z"]) <= LARGEST_RESIDUAL], marker, 1),
@@ -217,12 +222,14 @@ def _residuals(axes, rows, colour, marker):
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
 
 
-def legend(axes, series, place, single=None):
+def legend(axes, scene, series, place, single=None):
     """Explain the symbols at a ``place``; ``single`` names the method of the only series.
 
     ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
-    regimes end, which may lie as low as half of the largest.
+    regimes end, which may lie as low as half of the largest. In a ``scene`` with effects it is
+    wherever the curves leave room.
     """
+    place = "best" if "effects" in scene else place
     handles, names = [], []
     for (colour, marker), one in zip(SERIES, series, strict=False):
         style = open_symbol(colour, marker)

@@ -10,5 +10,5 @@ def draw(scene, tables):
     figure, main, lower = panels.panels(scene, "volume $V$")
     panels.draw_series(main, lower, radii, series, single=True)
     panels.logarithmic(main, radii, series)
-    panels.legend(main, series, "lower left", single="Monte Carlo")
+    panels.legend(main, scene, series, "lower left", single="Monte Carlo")
     return figure

@@ -15,5 +15,5 @@ def draw(scene, tables):
     figure, main, lower = panels.panels(scene, r"wall area $A$")
     panels.draw_series(main, lower, radii, found)
     panels.logarithmic(main, radii, found)
-    panels.legend(main, found, "lower left")
+    panels.legend(main, scene, found, "lower left")
     return figure
