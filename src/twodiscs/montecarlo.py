@@ -135,7 +135,7 @@ def shell_thickness(scene, event, fraction):
     Raises ``ValueError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
-    one_of("event", event, a_scene(scene).events if scene.has_effects else SHELLS)
+    one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
     fraction = proportion("fraction", fraction)
     if scene.has_effects:
         return fraction * _weighted_thickness(scene, event)
