@@ -1,5 +1,6 @@
 """Compiled code is kept, and never used for other sources than its own."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -93,3 +94,50 @@ def test_a_users_choice_of_processor_wins(package):
         text=True, capture_output=True, check=True,
     )  # fmt: skip
     assert done.stdout.strip() == "+sse2"
+
+
+# What is absent is not compiled -----------------------------------------------------------------
+
+#: Print how often each machine instruction stands in the kernel that counts all events of a scene.
+INSTRUCTIONS = """
+import collections, json, re, sys
+from twodiscs import dynamics
+from twodiscs.scene import EVENTS, Scene
+scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
+dynamics.run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
+(assembly,) = dynamics.count_blocks.inspect_asm().values()
+names = re.findall(r"^\\t([a-z]\\w+)", assembly, re.MULTILINE)
+json.dump(collections.Counter(names), sys.stdout)
+"""
+
+
+def instructions(environment, **effects):
+    done = subprocess.run(
+        [sys.executable, "-c", INSTRUCTIONS, json.dumps(effects)],
+        env=environment, text=True, capture_output=True, check=True, timeout=300,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def test_absent_effects_leave_no_instruction(package):
+    """The kernel of the plain scene is the same where the package knows no effect at all.
+
+    In the copy every optional function is what stands in for it, but for the one that puts discs on
+    walls; the compiler never sees the code of the effects.
+    """
+    sources, environment = package
+    present = instructions(environment)
+    assert instructions(environment, moment_of_inertia=0.5) != present
+
+    jit = sources / "jit.py"
+    text = jit.read_text(encoding="utf-8")
+    head, mark, _ = text.partition("    def decorate(present):")
+    assert mark
+    without = "return lambda present: inlined(present if present.__name__ == 'on_wall' else absent)"
+    jit.write_text(f"{head}    {without}\n", encoding="utf-8")
+    assert instructions(environment) == present
+    failed = subprocess.run(
+        [sys.executable, "-c", INSTRUCTIONS, '{"moment_of_inertia": 0.5}'],
+        env=environment, capture_output=True, check=False,
+    )  # fmt: skip
+    assert failed.returncode != 0
