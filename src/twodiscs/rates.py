@@ -211,10 +211,11 @@ def _periodic(side, farthest=None):
 # All axes -----------------------------------------------------------------------------------------
 
 
-def _outside(branches, square, room, surface):
+def _outside(branches, square, room, surface, less=None):
     """Return ∫ Π f over Σ t² ≥ ``square``, or −∂/∂√square of it for a ``surface``.
 
     ``room`` is Σ reach² − square; both are arrays of one shape, and so is what is returned.
+    ``less`` returns square − c of an exact c, where that is known better than from ``square``.
     """
     first, *rest = branches
     square = np.maximum(square, 1e-300)
@@ -224,46 +225,46 @@ def _outside(branches, square, room, surface):
             return first.beyond(square, room)
         return first.density(np.maximum(room, 0.0) / (reach + rho))
 
-    # From (t, k) on the arc t² + k² = ρ², where k is left to the other axes, downwards.
+    # From (t0, k0) on the arc t² + k² = ρ², where k is left to the other axes, downwards.
     others = float(sum(branch.reach**2 for branch in rest))
-    excess = np.where(room < reach**2, room - others, reach**2 - square)
+    if less:
+        excess = -less(first.reach**2)
+    else:
+        excess = np.where(room < reach**2, room - others, reach**2 - square)
     z0 = np.maximum(excess, 0.0) / (reach + rho)
-    t0, k0_square = np.minimum(reach, rho), np.maximum(-excess, 0.0)
-    k0, room0 = np.sqrt(k0_square), np.minimum(room, others)
+    t0, k0_square = np.minimum(reach, rho)[..., None], np.maximum(-excess, 0.0)[..., None]
+    k0, room0 = np.sqrt(k0_square), np.minimum(room, others)[..., None]
 
-    # Where k² is a sum of squares of marks of the other axes, the last of them that of the reaches:
-    # with y = t0 − t, k² − k0² = y (2 t0 − y).
+    # The integrand is not analytic where t is a mark of its own axis or k² is a sum of squares of
+    # marks of the others, of which the last is that of their reaches. With y = t0 − t, neither y
+    # nor t is found as a difference where it is small, for k² − k0² = y (t0 + t).
     sums = _sums(rest)
     k_square = np.array([float(c) for c in sums])
     missing = np.array([float(sums[-1] - c) for c in sums])
-    rise = np.where(
-        k_square < room0[..., None],
-        k_square - k0_square[..., None],
-        room0[..., None] - missing,
-    )
-    rise = np.clip(rise, 0.0, t0[..., None] ** 2)
-    touches = rise / (t0[..., None] + np.sqrt(np.maximum(t0[..., None] ** 2 - rise, 0.0)))
-    separations = np.array([float(t) for t in (first.reach, *first.kinks, first.start)])
-    kinks = np.where(
-        separations < reach / 2, t0[..., None] - separations, first.slacks - z0[..., None]
-    )
-    last = np.maximum(np.minimum(touches[..., -1], kinks[..., -1]), 0.0)[..., None]
-    cuts = np.sort(np.clip(np.concatenate((touches, kinks), axis=-1), 0.0, last), axis=-1)
+    t_square = np.stack([less(c) if less else square - float(c) for c in sums], axis=-1)
+    rise = np.where(k_square < room0, k_square - k0_square, room0 - missing)
+    touches = np.sqrt(np.clip(t_square, 0.0, t0**2))
+    falls = np.clip(rise, 0.0, t0**2) / (t0 + touches)
+    marks = np.array([float(t) for t in (first.reach, *first.kinks, first.start)])
+    below = np.where(marks < reach / 2, t0 - marks, first.slacks - z0[..., None])
+    end = np.minimum(falls[..., -1:], below[..., -1:]), np.maximum(touches[..., -1:], marks[-1:])
+    t = np.concatenate((touches, np.broadcast_to(marks, below.shape)), axis=-1)
+    t = -np.sort(-np.clip(t, np.minimum(end[1], t0), t0), axis=-1)
+    y = np.concatenate((falls, below), axis=-1)
+    y = np.sort(np.clip(y, 0.0, np.maximum(end[0], 0.0)), axis=-1)
 
     # The same as angles from where the arc begins.
-    t0, k0, k0_square = t0[..., None], k0[..., None], k0_square[..., None]
-    rho = rho[..., None]
-    rise, t = cuts * (2 * t0 - cuts), t0 - cuts
-    k = np.sqrt(k0_square + rise)
-    angles = np.arctan2(rise / np.maximum(t0 * k + t * k0, 1e-300), (t0 * t + k0 * k) / rho**2)
-    rule = SINGULAR if first.curved or len(rest) > 1 else SMOOTH
-    angle, weights = _nodes(angles, rule)
-    t0, rho, begin = t0[..., None], rho[..., None], np.arctan2(k0, t0)[..., None]
+    k = np.sqrt(k0_square + y * (t0 + t))
+    sine = y * (t0 + t) / np.maximum(t0 * k + t * k0, 1e-300)
+    angles = np.arctan2(sine, (t0 * t + k0 * k) / square[..., None])
+    angles = angles if square.ndim else np.unique(angles)
+    angle, weights = _nodes(angles, SINGULAR if first.curved or len(rest) > 1 else SMOOTH)
+    t0, k0, rho, room0 = (part[..., None] for part in (t0, k0, rho[..., None], room0))
+    begin = np.arctan2(k0, t0)
     y = 2 * rho * np.sin(angle / 2) * np.sin(begin + angle / 2)
     k = rho * np.sin(begin + angle)
-    left = np.maximum(room0[..., None, None] - y * (2 * t0 - y), 0.0)
+    inner = _outside(rest, k * k, room0 - y * (2 * t0 - y), surface)
     density = first.density(z0[..., None, None] + y)
-    inner = _outside(rest, k * k, left, surface)
     total = np.sum(weights * (rho if surface else k) * density * inner, axis=(-2, -1))
     if not surface and np.any(excess > 0):
         free = math.prod(b.beyond(np.array(0.0), np.array(float(b.reach**2))) for b in rest)
@@ -276,35 +277,37 @@ def _sums(branches):
     return sorted({sum(t * t for t in marks) for marks in product(*(b.marks for b in branches))})
 
 
+def _at_distance(branches, sigma, surface, further=0.0):
+    """Return ``_outside`` of the square of an exact ``sigma``, or of σ ``further`` away."""
+    rise = further * (2 * float(sigma) + further)
+
+    def less(c):
+        """Return the square less an exact ``c``."""
+        return np.array(float(sigma**2 - c) + rise)
+
+    room = -less(sum(branch.reach**2 for branch in branches))
+    return float(_outside(branches, less(0), room, surface, less)) if room > 0 else 0.0
+
+
 @lru_cache(maxsize=1024)
 def _beyond_contact(branches, sigma):
     """Return ∫ Π f over Σ t² ≥ σ², for a tuple of ``Branch``es and an exact σ."""
-    room = sum(branch.reach**2 for branch in branches) - sigma**2
-    if room <= 0:
-        return 0.0
-    return float(_outside(branches, np.array(float(sigma**2)), np.array(float(room)), False))
+    return _at_distance(branches, sigma, False)
 
 
 @lru_cache(maxsize=1024)
 def _near_contact(branches, sigma, thickness):
     """Return ∫ Π f over σ² ≤ Σ t² ≤ (σ + thickness)², over the thickness; at 0 thickness, too."""
-    sums = _sums(branches)
-    room, sigma_ = sums[-1] - sigma**2, float(sigma)
-    if room <= 0:
-        return 0.0
     if not thickness:
-        return float(_outside(branches, np.array(sigma_**2), np.array(float(room)), True))
+        return _at_distance(branches, sigma, True)
     inner, outer = (_beyond_contact(branches, d) for d in (sigma, sigma + thickness))
     if inner - outer > 1e-3 * inner:
         return (inner - outer) / float(thickness)
     # The difference would cancel. Cuts are where the growing sphere touches an edge or a corner.
-    touches = [float(c - sigma**2) / (sigma_ + math.sqrt(c)) for c in sums]
-    cuts = np.sort(np.clip([0.0, *touches, float(thickness)], 0.0, min(touches[-1], thickness)))
-    total = 0.0
-    for x, weight in zip(*(part.ravel() for part in _nodes(cuts, SINGULAR)), strict=True):
-        rise = x * (2 * sigma_ + x)
-        square, left = np.array(sigma_**2 + rise), np.array(float(room) - rise)
-        total += weight * float(_outside(branches, square, left, True))
+    touches = [float(c - sigma**2) / (float(sigma) + math.sqrt(c)) for c in _sums(branches)]
+    cuts = np.unique(np.clip([0.0, *touches, float(thickness)], 0.0, min(touches[-1], thickness)))
+    nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR)), strict=True)
+    total = math.fsum(weight * _at_distance(branches, sigma, True, x) for x, weight in nodes)
     return total / float(thickness)
 
 
@@ -448,7 +451,7 @@ def rate(scene, event):
     """
     area = areas(scene)[one_of("event", event, EVENTS)]
     sides = 2 if event in HOPS else 1
-    return sides * constant(scene.velocity_components) / 2 * area / volume(scene)
+    return sides / 2 * constant(scene.velocity_components) * area / volume(scene) if area else 0.0
 
 
 # Shells -------------------------------------------------------------------------------------------

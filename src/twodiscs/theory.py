@@ -225,8 +225,8 @@ def mean_times(scene):
     share = dict(zip(("right_wall", "top_wall"), a_scene(scene).confined, strict=True))
     share = {event: 0.5 if confined else 1 for event, confined in share.items()}
     return {
-        event: share.get(event, 1) / rate(scene, event) if scene.is_possible(event) else None
-        for event in EVENTS
+        event: share.get(event, 1) / rate(scene, event) if area else None
+        for event, area in areas(scene).items()
     }
 
 
