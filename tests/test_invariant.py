@@ -376,8 +376,7 @@ def scaled_components(scene, found, spins, normal=None):
         rows += [math.sqrt(scene.moment_of_inertia * m2) * spins[1]]
     assert len(rows) == scene.velocity_components
     square, left = np.sum(np.square(rows), axis=0), energy_left(scene, *found["y"][:2])
-    # An odd number of components lacks one of those drawn: digits go where that was nearly all.
-    assert np.max(np.abs(square - left)) < 2.0**-38
+    assert np.max(np.abs(square - left)) < 16 * 2.0**-52
     return np.array(rows) / np.sqrt(square)
 
 

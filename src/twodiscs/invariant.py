@@ -360,7 +360,10 @@ def draw_direction(state, n, direction):
         scale = math.sqrt(square / s)
         direction[2 * pair], direction[2 * pair + 1] = p * scale, q * scale
     if n % 2 == 1:
-        scale = 1.0 / math.sqrt(1.0 - direction[n] * direction[n])
+        square = 0.0
+        for i in range(n):
+            square += direction[i] * direction[i]
+        scale = 1.0 / math.sqrt(square)
         for i in range(n):
             direction[i] *= scale
 
