@@ -39,6 +39,7 @@ include: "workflow/rules/check.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/animation.smk"
 include: "workflow/rules/accuracy_cost.smk"
+include: "workflow/rules/effects.smk"
 
 
 if MAIN:  # these are about a scene without effects

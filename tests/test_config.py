@@ -422,7 +422,8 @@ def test_what_is_built_once():
     # The manuscript brings along what it reads.
     paper = config.load(PLAIN | {"shared": ["paper"]}).shared
     assert paper == (
-        "errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds", "paper"
+        *("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds"),
+        *("effects", "paper"),
     )  # fmt: skip
     assert {*config.ABOUT_PLAIN, *config.READ_BY_PAPER} < set(known)
 

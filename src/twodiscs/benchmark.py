@@ -1,4 +1,6 @@
-"""How fast the engines are, measured side by side: ``python -m twodiscs.benchmark``.
+"""How fast the engines are, measured side by side.
+
+    python -m twodiscs.benchmark --scenes config/scenes/*.yaml --output results/benchmark.csv
 
 Every variant of a benchmark runs in turn, again and again, and the medians are compared, so that a
 machine that slows down slows them all. All numbers are for one core, processor time, but the
@@ -8,13 +10,14 @@ speed-up of two processes, which is of wall-clock time. The scene is the paper's
 import math
 import multiprocessing
 import time
-from functools import cache
+from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 from statistics import median
 
 import numpy as np
 
-from twodiscs import dynamics, montecarlo, scalar
+from twodiscs import config, dynamics, montecarlo, scalar
 from twodiscs.cli.arguments import Parser, run
 from twodiscs.invariant import draw_constants
 from twodiscs.scene import EVENTS, Scene
@@ -26,6 +29,11 @@ REPETITIONS = 7
 
 #: Blocks of one timed run of the lock-step ensemble and of the scalar engine.
 BLOCKS = 200
+
+#: The same, and the repetitions, where it must be quick.
+QUICK = {"blocks": 40, "repetitions": 5}
+
+WALLS = ("right_wall", "top_wall", "any_wall")
 
 
 def timed(work):
@@ -52,10 +60,10 @@ def wall_and_disc_events(sums):
     return int(sums[EVENTS.index("any_wall")] + sums[EVENTS.index("disc_collision")])
 
 
-def lockstep(blocks=BLOCKS):
-    """Count all events and both hops, fixed end time, statistics by replica."""
-    duration = dynamics.replica_duration(SCENE)
-    counted, seconds = timed(lambda: dynamics.run_blocks(SCENE, EVENTS, 1, 0, blocks, duration))
+def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
+    """Count ``events``, all of them if not told, fixed end time, statistics by replica."""
+    duration = dynamics.replica_duration(scene)
+    counted, seconds = timed(lambda: dynamics.run_blocks(scene, events, 1, 0, blocks, duration))
     return wall_and_disc_events(counted[0]), seconds
 
 
@@ -90,6 +98,25 @@ def plain_python(replicas=200):
     end = dynamics.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in states])
     return sum(map(wall_and_disc_events, counts)), seconds
+
+
+def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
+    """Return {variant: events per second} of scenes with ``effects``, {name: {effect: value}}.
+
+    All that has a place in a scene is watched. Variants without effects are ``plain`` and
+    ``plain_walls``, in which no hop is detected.
+    """
+    scenes = {"plain": SCENE} | {name: replace(SCENE, **some) for name, some in effects.items()}
+    variants = {
+        name: partial(lockstep, blocks, scene, scene.events) for name, scene in scenes.items()
+    }
+    variants["plain_walls"] = partial(lockstep, blocks, SCENE, WALLS)
+    return interleaved(variants, repetitions)
+
+
+def effects_rows(effects, **amount):
+    """Return the rows of effects_cost.csv; the arguments are those of ``with_effects``."""
+    return compared("effects", with_effects(effects, **amount), "1/s", "plain")
 
 
 QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
@@ -192,22 +219,27 @@ def two_process_speedup(repetitions=5, blocks=600):
     return median(ratios)
 
 
-def benchmarks():
-    """Run everything and return the rows of benchmark.csv."""
-    rows = []
+def compared(name, values, unit, baseline, larger_is_better=True):
+    """Return the rows of a benchmark from {variant: value}, with ratios to the ``baseline``."""
+    ratios = {variant: value / values[baseline] for variant, value in values.items()}
+    return [
+        {
+            "benchmark": name,
+            "variant": variant,
+            "value": value,
+            "unit": unit,
+            "ratio": ratios[variant] if larger_is_better else 1 / ratios[variant],
+        }
+        for variant, value in values.items()
+    ]
 
-    def add(name, values, unit, baseline, larger_is_better=True):
-        for variant, value in values.items():
-            ratio = value / values[baseline] if larger_is_better else values[baseline] / value
-            rows.append(
-                {
-                    "benchmark": name,
-                    "variant": variant,
-                    "value": value,
-                    "unit": unit,
-                    "ratio": ratio,
-                }
-            )
+
+def benchmarks(effects):
+    """Run everything and return the rows of benchmark.csv; ``effects`` as in ``with_effects``."""
+    rows = effects_rows(effects)
+
+    def add(*arguments, **options):
+        rows.extend(compared(*arguments, **options))
 
     speeds = interleaved(
         {
@@ -249,11 +281,16 @@ def benchmarks():
 def main():
     """Run the benchmarks and write the table."""
     parser = Parser(description=__doc__)
+    parser.add_argument("--scenes", nargs="*", default=[], help="files of scenes with effects")
+    parser.add_argument("--table", choices=("benchmark", "effects_cost"), default="benchmark")
     parser.add_argument("--output", default="results/benchmark.csv")
     given = parser.parse_args()
-    rows = benchmarks()
+    requests = (one for path in given.scenes for one in config.load(config.read(path)).scenes)
+    effects = {request.name: request.effects for request in requests}
+    quick = given.table == "effects_cost"
+    rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)
-    write(given.output, "benchmark", rows)
+    write(given.output, given.table, rows)
     for row in rows:
         print(
             f"{row['benchmark']:<34}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"

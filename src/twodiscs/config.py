@@ -42,7 +42,10 @@ LEAST_SHARE = 1e-4
 
 #: What is built once and is about the first scene without effects, and what the manuscript reads.
 ABOUT_PLAIN = ("errata", "stability", "tails", "distributions", "thresholds", "paper")
-READ_BY_PAPER = ("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds")
+READ_BY_PAPER = (
+    *("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds"),
+    "effects",
+)
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 

@@ -56,6 +56,7 @@ ONCE = {
     "tails": 15.0,
     "distributions": 20.0,
     "thresholds": 4.0,
+    "effects": 80.0,
     "paper": 1.5,
     "report": 1.5,
 }

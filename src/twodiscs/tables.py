@@ -151,6 +151,21 @@ STABILITY = (
 )
 
 
+BENCHMARK = (
+    Column("benchmark", "", "what is measured", str),
+    Column(
+        "variant",
+        "",
+        "which engine or method; in effects, which scene of config/scenes, and plain: the scene "
+        "without effects, or plain_walls: with no hops detected",
+        str,
+    ),
+    Column("value", "see unit", "median over the repetitions"),
+    Column("unit", "", "unit of the value", str),
+    Column("ratio", "", "how many times better than the baseline of the same run"),
+)
+
+
 TABLES = {
     "grid": Table(
         "One row a radius: what the scene computes.",
@@ -379,13 +394,55 @@ TABLES = {
     ),
     "benchmark": Table(
         "One row a benchmark and variant, all variants of a benchmark measured in one run.",
+        BENCHMARK,
+    ),
+    "effects": Table(
+        "One row a scene with effects, radius and quantity, beside discs without effects.",
         (
-            Column("benchmark", "", "what is measured", str),
-            Column("variant", "", "which engine or method", str),
-            Column("value", "see unit", "median over the repetitions"),
-            Column("unit", "", "unit of the value", str),
-            Column("ratio", "", "how many times better than the baseline of the same run"),
+            Column("scene", "", "its name; that of its file in config/scenes", str),
+            Column("width", "length", "side of the box along x"),
+            Column("height", "length", "side of the box along y"),
+            Column(
+                "effects",
+                "",
+                "all that makes it another scene than the plain one in this box, as a Python dict; "
+                "never_met_share has rows of smooth discs, too",
+                str,
+            ),
+            Column("radius", "length", "radius of disc 1"),
+            Column(
+                "quantity",
+                "",
+                "<event>_time; never_met_share: of starts whose discs have not met within duration",
+                str,
+            ),
+            Column("exact", "time", "exact mean time; empty where the event is impossible"),
+            Column(
+                "plain",
+                "as exact",
+                "exact mean time of plain discs of this radius, empty where it does not exist; "
+                "for never_met_share 2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), to which that of plain "
+                "discs tends",
+            ),
+            Column("estimate", "as exact", "T · replicas/count, or count/replicas for the share"),
+            Column("stderr", "as exact", "its standard error; empty when too few to be honest"),
+            Z,
+            Column("count", "", "events counted, or starts that have not met", int),
+            Column("replicas", "", "independent trajectories that can see the event", int),
+            Column("duration", "time", "length T of a replica"),
+            Column(
+                "status",
+                "",
+                "reached, budget, too-few, none-seen, impossible: as in mean_times.csv; sampled: a "
+                "share with its error",
+                str,
+            ),
+            TEST,
         ),
+    ),
+    "effects_cost": Table(
+        "As benchmark.csv, the rows on effects alone, from a short run.",
+        BENCHMARK,
     ),
     "stability": Table(
         "One row a number that says how a method behaves where arithmetic has it hard, for the box "

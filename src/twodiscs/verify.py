@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twodiscs import config, tables
+from twodiscs.figures.catalogue import SHARED
 
 #: How far floats may differ, relative to their size.
 RELATIVE = 1e-12
@@ -25,7 +26,7 @@ RELATIVE = 1e-12
 SCORE = RELATIVE / 1e-4
 
 #: The tables that hold seconds, and the documents that show them.
-TIMED = ("cost", "accuracy_cost", "benchmark", "forecast", "paper", "report")
+TIMED = ("cost", "accuracy_cost", "effects_cost", "benchmark", "forecast", "paper", "report")
 
 #: The stages whose points are compared.
 METHODS = ("monte_carlo", "dynamics", "intervals")
@@ -53,7 +54,8 @@ class Cell(NamedTuple):
 def is_reproducible(path):
     """Say whether a result is the same bytes on every run: a table or figure without seconds."""
     path = Path(path)
-    timed = path.stem in TIMED or path.stem.startswith("accuracy_cost")
+    drawn = SHARED.get(path.stem) if path.suffix != ".csv" else None
+    timed = any(name in TIMED for name in (drawn.tables if drawn else [path.stem]))
     return path.suffix in (".csv", ".pdf", ".png", ".gif") and not timed
 
 

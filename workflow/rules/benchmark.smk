@@ -5,6 +5,7 @@ rule:
     name:
         "benchmark"
     input:
+        scenes=rules.effects_cost.input.scenes,
         code=code("benchmark"),
     output:
         table=ensure(f"{RESULTS}/benchmark.csv", non_empty=True),
@@ -14,4 +15,4 @@ rule:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     threads: 64  # all that there are
     shell:
-        "python -m twodiscs.benchmark --output {output.table:q} > {log:q} 2>&1"
+        "python -m twodiscs.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

@@ -19,12 +19,14 @@ EVEN, GEOMETRIC = 60, 25
 ALL_EVEN, FEWER_GEOMETRIC, FARTHER = 60, 8, 1e-5
 
 
-def branches(scene):
+def branches(scene, others=()):
     """Return one ascending array of radii for each regime of a ``scene``, none on its limits.
 
     The first one starts at 1e-4 of its length, where the law for small radii has long set in.
+    ``others`` are more limits, such as those of a scene that this one is compared with.
     """
-    ends = [0, *(radius for radius, _ in scene_limits(scene))]
+    found = [radius for radius, _ in scene_limits(scene)]
+    ends = sorted({0, *found, *(radius for radius in others if radius < found[-1])})
     found = []
     for low, high in pairwise(ends):
         even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
@@ -40,15 +42,15 @@ def branches(scene):
     return found
 
 
-def exact(scene):
+def exact(scene, others=()):
     """Return (radii, {quantity: values}) for the ``scene`` of a figure, a dict.
 
     Quantities are named as in theory.csv. Between two regimes stands a NaN, so that a line drawn
     through the values is never joined across a limit, where some of them jump; NaN also means that
-    an event is impossible.
+    an event is impossible. ``others`` are more limits, as in ``branches``.
     """
     radii, rows = [], []
-    for branch in branches(scene):
+    for branch in branches(scene, others):
         for radius in branch:
             here = parameters.scene(scene, float(radius))
             values = {"volume": theory.volume(here)}

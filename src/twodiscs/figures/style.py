@@ -26,7 +26,7 @@ GREY = "#6E6E6E"
 SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
 
 #: Sizes of the markers, in points: where two series coincide, both show.
-SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3}
+SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
 
 SETTINGS = {
     # Computer Modern, as the manuscript is set in; it has no minus sign but in formulas.
