@@ -114,7 +114,9 @@ def same_word(shown, found):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_block_is_of_a_kind_that_is_tried(name):
-    assert {kind for kind, _ in blocks(name)} <= {"yaml", "console", "shell", "math", "text"}
+    assert {kind for kind, _ in blocks(name)} <= {
+        "yaml", "console", "shell", "python", "math", "text",
+    }  # fmt: skip
     assert {words[0] for words, _ in examples(name)} <= {"twodiscs", "snakemake", "make"}
 
 
@@ -142,6 +144,18 @@ def test_citation_agrees_with_the_package():
     assert f'license = "{citation["license"]}"' in package
     assert f"{citation['license']} License" in (REPOSITORY / "LICENSE").read_text(encoding="utf-8")
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_python_runs(name, tmp_path):
+    """The blocks of a page are one program, whose assertions hold."""
+    program = "".join(body for kind, body in blocks(name) if kind == "python")
+    if program:
+        (tmp_path / "page.py").write_text(program, encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, tmp_path / "page.py"], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
 
 
 # Commands ---------------------------------------------------------------------------------------
