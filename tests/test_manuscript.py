@@ -119,8 +119,7 @@ def test_there_is_one_place_for_every_figure():
     source = (PAPER / "paper.typ").read_text()
     calls = re.findall(r"#(?:drawn|abreast|beside)\((.*)\)", source)
     named = [name for call in calls for name in re.findall(r'"(\w+)"', call)]
-    assert len(set(named)) == len(named)
-    assert {*FIGURES, *SHARED} <= set(named)
+    assert sorted(named) == sorted([*FIGURES, *SHARED])
 
 
 # Fabricated results -------------------------------------------------------------------------------
@@ -218,6 +217,17 @@ SHARED_TABLES = {
             )
         ),
     ),
+    "effects": rows(
+        "effects",
+        {"scene": "rough", "effects": "{'moment_of_inertia': 0.5}", "radius": 0.2, "z": 1.5}
+        | {"quantity": "any_wall_time"},
+        *(
+            {"scene": "rough", "effects": effects, "radius": 0.2, "quantity": "never_met_share"}
+            | {"estimate": share, "duration": 1e4}
+            for effects, share in (("{}", 1e-7), ("{'moment_of_inertia': 0.5}", 2e-3))
+        ),
+    ),
+    "effects_cost": rows("effects_cost", {"benchmark": "effects", "variant": "rough"}),
     "tails": rows(
         "tails",
         *(
@@ -317,7 +327,7 @@ def test_figures_are_only_spoken_of_where_they_are():
 
 def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
     paper(figures=())
-    paper(empty=("distributions", "thresholds", "tails"))
+    paper(empty=("distributions", "thresholds", "tails", "effects"))
     paper(scenes=3)
 
 
@@ -339,6 +349,8 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
         (("distributions", 4, "p"), 1e-5),
         (("thresholds", 0, "estimate"), -1.5),
         (("thresholds", 7, "z"), 3.5),
+        (("effects", 0, "z"), 4.5),
+        (("effects", 2, "estimate"), 4e-3),
         (("tails", 0, "estimate"), 1.3e-5),
         (("tails", 2, "estimate"), 1.1),
     ],
