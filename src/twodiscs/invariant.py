@@ -310,14 +310,26 @@ def propose_in_prism(state, prism):
 
 
 @compiled
+def share_if_accepted(state, prism, y1, dx, dy, dz, power):
+    """Return the kinetic share of the energy if a proposal is accepted, and −1 if it is not.
+
+    Discs that do not overlap are accepted with the probability share^(``power``/2).
+    """
+    if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
+        return -1.0
+    share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
+    if prism.weights is None or power_chance(state, share, power):
+        return share
+    return -1.0
+
+
+@compiled
 def draw_in_prism(state, prism):
     """Return (x1, y1, z1, dx, dy, dz, kinetic share) from the invariant measure."""
     while True:
         x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
-        if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
-            continue
-        share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-        if prism.weights is None or power_chance(state, share, prism.components - 2):
+        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
+        if share >= 0.0:
             return x1, y1, z1, dx, dy, dz, share
 
 
@@ -334,10 +346,8 @@ def draw_on_surface(state, prism, axis):
             x1, dx = low * signed_uniform(state), 0.0
         else:
             y1, dy = low * signed_uniform(state), 0.0
-        if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
-            continue
-        share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-        if prism.weights is None or power_chance(state, share, prism.components - 1):
+        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 1)
+        if share >= 0.0:
             return x1, y1, z1, dx, dy, dz, share
 
 
