@@ -298,8 +298,8 @@ def test_limits_follow_from_the_box_or_from_the_scene():
 @pytest.mark.parametrize(
     ("effects", "expected"),
     [
-        ({"periodic": "x"}, {"v": 0.375}),
-        ({"periodic": "y"}, {"h": 0.25}),
+        ({"periodic": "x"}, {"h/2": 0.25, "v": 0.375}),
+        ({"periodic": "y"}, {"h": 0.25, "w/2": 0.375}),
         ({"periodic": "xy"}, {"h/2": 0.25, "w/2": 0.375}),
         # Two discs one above the other need 2 g r < 1/2; one reaches the top if g (h − 2r) < 1/2.
         ({"field": 2.0}, {"h": 0.125, "v": 0.375, "t": 0.375}),

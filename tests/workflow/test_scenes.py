@@ -147,6 +147,9 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
         "accuracy_cost": {"accuracy_cost_table", "accuracy_cost_figure"},
         "stability": {"stability_table", "stability_figure"},
         "tails": {"tails_table", "tails_figure"},
+        "distributions": {"distributions_table", "distributions_figure"},
+        "thresholds": {"thresholds_table", "thresholds_figure"},
+        "effects": {"effects_point", "effects_table", "effects_cost", "effects_figure"},
     }
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path = tmp_path / "shared.yaml"

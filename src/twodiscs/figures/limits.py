@@ -7,8 +7,8 @@ from twodiscs.grid import thresholds
 from twodiscs.scene import HOPS, largest_radius
 
 #: The radii of a scene with effects at which something changes: hops become blocked, in a field the
-#: top wall comes within reach, disc 1 can no longer change sides, a periodic axis becomes so short
-#: that discs meet around it. Where two are the same, hops give the name, or what comes first.
+#: top wall comes within reach, disc 1 can no longer change sides; where an axis is periodic, discs
+#: can no longer pass each other. Where two are the same, hops give the name, or what comes first.
 VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
 CHANGES = {
     VERTICAL: lambda scene: scene.vertical_hops,
@@ -16,8 +16,8 @@ CHANGES = {
     r"r_{\mathrm{t}}": lambda scene: scene.is_possible("top_wall"),
     r"r_{\mathrm{x}}": lambda scene: scene.confined[0],
     r"r_{\mathrm{y}}": lambda scene: scene.confined[1],
-    r"\sigma=h/2": lambda scene: _goes_around(scene, "y"),
-    r"\sigma=w/2": lambda scene: _goes_around(scene, "x"),
+    r"\sigma=h/2": lambda scene: _fills(scene, "y"),
+    r"\sigma=w/2": lambda scene: _fills(scene, "x"),
 }
 
 
@@ -38,8 +38,8 @@ def scene_limits(scene):
 
     Then they are r_v and r_h, where vertical and horizontal hops become blocked; r_t, from which on
     discs rise to the top wall in a field; r_x and r_y, where disc 1 loses its way to the other side
-    of disc 2, if that is not where the hop becomes blocked; the radii at which σ = r1 + r2 is half
-    of a periodic side; and the largest radius, which a field may lower.
+    of disc 2, if that is not where the hop becomes blocked; with a periodic axis, the radii at
+    which σ = r1 + r2 is half of a side; and the largest radius, which a field may lower.
     """
     if "effects" not in scene:
         return limits(scene["width"], scene["height"])
@@ -57,8 +57,8 @@ def scene_limits(scene):
     return [*sorted(found.items()), (largest, r"r_{\mathrm{max}}")]
 
 
-def _goes_around(scene, axis):
-    return axis in scene.periodic and scene.reach(axis) <= sum(scene.exact_radii)
+def _fills(scene, axis):
+    return bool(scene.periodic) and scene.reach(axis) <= sum(scene.exact_radii)
 
 
 def hop_ends(scene):
