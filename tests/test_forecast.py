@@ -134,3 +134,40 @@ def test_a_sample_job_runs():
     start = forecast._run_sample("tables")
     assert start.loading == 0
     assert start.startup > 0
+
+
+def test_what_is_built_once_is_forecast_if_asked_for(monkeypatch):
+    starts = {kind: forecast.Start(0.5, 0.25) for kind in (*forecast.STAGES, "tables", "figures")}
+    monkeypatch.setattr(forecast, "run_samples", lambda kinds, cores: starts)
+    monkeypatch.setattr(
+        forecast, "run_pilots", lambda jobs, cores: [forecast.Pilot(5, 2e5) for _ in jobs]
+    )
+    for names in ([], ["report", "errata"], ["accuracy_cost"]):
+        asked = config.load(CONFIGURATION | {"shared": names})
+        found = [row["stage"] for row in of(forecast.rows(asked, 1), scene="all")]
+        assert found == ["compile", *asked.shared, "total"]
+    known = config.schema()["properties"]["shared"]["items"]["enum"]
+    assert {*forecast.ONCE, "accuracy_cost"} == {*known}
+
+
+def test_a_scene_with_effects_is_forecast():
+    """Events as in the job; tables and figures are those that have a place on a torus."""
+    torus = {**BOX, "radius": 0.2, "effects": {"periodic": "xy"}, "seed": 1}
+    asked = torus | {"accuracy": {"disc_collision": 2e-3}, "event_budget": 10**8}
+    scene = Scene(1.5, 1.0, 0.2, periodic="xy")
+    spent = dynamics.count_events(scene, asked["accuracy"], 10**8, 1)["events"]
+    assert 1 / 1.5 < spent / forecast.pilot_dynamics(asked).events < 1.5
+    sampled = {"areas": ["disc_collision"], "volume": True, "shell": 0.02, "samples": 3 << 20}
+    assert forecast.pilot_monte_carlo(torus | sampled).events == 3 << 20
+    (request,) = config.load(
+        {"scenes": [{"name": "a", "box": BOX, "effects": {"periodic": ["x", "y"]}}]}
+    ).scenes
+    rows = forecast.scene_rows(
+        request,
+        [forecast.Pilot(1, 1.0) for _ in forecast.jobs_of(request)],
+        {kind: forecast.Start(0.0, 0.0) for kind in (*forecast.STAGES, "tables", "figures")},
+        1,
+    )
+    # Grid, theory, volume, areas, mean times, check and cost; and a figure of each of three.
+    assert [row["jobs"] for row in rows if row["stage"] == "tables"] == [7]
+    assert [row["jobs"] for row in rows if row["stage"] == "figures"] == [3]
