@@ -129,7 +129,8 @@ def _costs(figure, rows, looks):
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
     names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in shown]
     axes.set_yticks(range(len(shown)), names)
-    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, None), xlabel="relative to plain")
+    longest = max(1 / row["ratio"] for row in rows)
+    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, 1.12 * longest), xlabel="relative to plain")
     axes.tick_params(axis="y", length=0)
     _title(axes, "d", "time per event")
 

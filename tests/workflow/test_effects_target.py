@@ -1,0 +1,39 @@
+"""Effects as a target: a job for each file of config/scenes, and what is made of them."""
+
+import pytest
+from checkout import REPOSITORY
+
+FILES = sorted(path.stem for path in (REPOSITORY / "config" / "scenes").glob("*.yaml"))
+POINTS = [("effects_point", (f"file={name}",)) for name in FILES]
+MADE = [(rule, ()) for rule in ("effects_cost", "effects_figure", "effects_table")]
+
+
+def effects(jobs):
+    """Return the jobs about effects."""
+    return [job for job in jobs if job[0].startswith("effects_")]
+
+
+def test_the_target_is_a_job_for_each_scene_and_what_is_made_of_them(unbuilt):
+    jobs = unbuilt.jobs("effects")
+    assert jobs == sorted([*POINTS, *MADE, ("effects", ()), ("compile", ("kernels=dynamics",))])
+
+
+def test_it_is_part_of_all(unbuilt):
+    assert effects(unbuilt.jobs()) == sorted([*POINTS, *MADE])
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_scene_alone_does_without(unbuilt, name):
+    assert effects(unbuilt.jobs("--configfile", f"config/scenes/{name}.yaml")) == []
+
+
+def test_edit_of_a_scene_counts_that_one_again(built):
+    built.edit("config/scenes/torus.yaml", "# a remark\n")
+    jobs = built.jobs()
+    assert [job for job in jobs if job[0] == "effects_point"] == [
+        ("effects_point", ("file=torus",))
+    ]
+    assert {rule for rule, _ in jobs} == {
+        *("effects_point", "effects_table", "effects_cost", "effects_figure"),
+        *("paper", "report", "manifest"),
+    }
