@@ -17,7 +17,7 @@ LONGEST, LARGEST_ERROR = 12, 0.15
 FARTHEST = 0.83
 
 #: Ends of the dashes that mark exact densities at 0, in mean times.
-DASH = -0.25, 0.05
+DASH = 0.0, 0.3
 
 #: Fits with a smaller p than this are no exponentials.
 SMALLEST_P = 1e-3
