@@ -375,14 +375,22 @@ def test_parameters_say_the_effects_and_nothing_else():
     assert repr(field) == repr(jobs(one(**BASE | {"watch": watch})))
     rough = jobs(one(effects={"moment_of_inertia": 0.4}, radii=[0.1]))
     assert all(map(is_plain_and_sorted, rough.values()))
-    kernels = one(effects={"periodic": ["y"]}, radii=[0.1]).kernels_parameters()
-    assert is_plain_and_sorted(kernels)
-    assert kernels["intervals"] == ["horizontal_hop", 0.025]
-    assert "right_wall" in kernels["mean_times"]
     assert rough["dynamics", "0.1"]["effects"] == {"moment_of_inertia": 0.4}
     torus = one(effects={"periodic": ["x", "y"]}, radii=[0.1])
     assert torus.dynamics_parameters("0.1")["effects"] == {"periodic": "xy"}
     assert torus.box_parameters() == {"effects": {"periodic": "xy"}, "height": 1.0, "width": 1.5}
+
+
+def test_kernels_depend_on_nothing_that_their_jobs_do_not_depend_on():
+    request = one(effects={"periodic": ["y"]}, radii=[0.1])
+    for method in grid.METHODS[:3]:
+        kernels = request.kernels_parameters(method)
+        (key, *_) = getattr(request, f"{method}_keys")
+        job = getattr(request, f"{method}_parameters")(key)
+        assert is_plain_and_sorted(kernels)
+        if method == "dynamics":
+            assert set(kernels.pop("mean_times")) == set(job["accuracy"])
+        assert all(job[name] == value for name, value in kernels.items())
 
 
 def test_parameters_of_plain_scenes_are_as_they_ever_were():

@@ -187,21 +187,18 @@ class SceneRequest:
             seed=grid.stream_seed(self.seed, self.name, "trajectory", grid.key(radius)),
         )
 
-    def kernels_parameters(self):
-        """Return what the kernels of a scene are compiled for, at its first radius.
+    def kernels_parameters(self, method):
+        """Return what the kernels of a ``method`` depend on, as all of its jobs do too.
 
-        They are height, intervals (the hop and a radius, or None), mean_times, radius, sampled (the
-        quantities of Monte Carlo), trajectory (whether there is one) and width.
+        That is height, width and for monte_carlo areas and volume, for dynamics mean_times, for
+        intervals event.
         """
-        watch = self.watch
-        histogram = [self.histogram_event, *watch.hop_histogram[:1]]
-        return self._sorted(
-            intervals=histogram if watch.hop_histogram else None,
-            mean_times=list(watch.mean_times),
-            radius=self.radii[0],
-            sampled=["volume"] * watch.volume + [f"{event}_area" for event in watch.areas],
-            trajectory=watch.trajectory is not None,
-        )
+        watched = {
+            "monte_carlo": {"areas": list(self.watch.areas), "volume": self.watch.volume},
+            "dynamics": {"mean_times": list(self.watch.mean_times)},
+            "intervals": {"event": self.histogram_event},
+        }
+        return self._sorted(**watched[method])
 
     def _sorted(self, **more):
         box = {"height": self.height, "width": self.width}

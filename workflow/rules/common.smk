@@ -4,6 +4,7 @@ from hashlib import blake2b
 RESULTS = CONFIGURATION.results
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 METHODS = ("monte_carlo", "dynamics", "intervals")
+KERNELS = {"monte_carlo": "montecarlo", "dynamics": "dynamics", "intervals": "dynamics"}
 SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
 PLAIN = [scene for scene in CONFIGURATION.scenes if not scene.effects]
 
@@ -36,12 +37,10 @@ def point_files(scene, *methods):
     ]
 
 
-def compiled(scene, kernels):
-    """Return the stamp that says that the kernels of a scene are compiled."""
-    folder = (
-        f"{RESULTS}/.compiled/{scene.name}" if scene.effects else f"{RESULTS}/.compiled"
-    )
-    return f"{folder}/{kernels}"
+def compiled(scene, method):
+    """Return the stamp that says that the kernels of a method are compiled for a scene."""
+    kernels = f"{scene.name}/{method}" if scene.effects else KERNELS[method]
+    return f"{RESULTS}/.compiled/{kernels}"
 
 
 def cost_files(scene):

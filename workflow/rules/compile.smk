@@ -1,6 +1,7 @@
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
-# effects for every choice of what is watched, those of a scene with effects for what it watches. The
-# stamps depend on the very code that those jobs depend on; no job runs because a stamp is new.
+# effects for every choice of what is watched, those of a scene with effects for what it watches. A stamp
+# depends on nothing that those jobs do not depend on, so it makes none of them run that would not run
+# anyway.
 
 
 rule compile:
@@ -21,17 +22,17 @@ rule compile:
 
 rule compile_effects:
     input:
-        code=lambda w: code(w.kernels),
+        code=lambda w: code(KERNELS[w.method]),
     output:
-        stamp=f"{RESULTS}/.compiled/{{scene}}/{{kernels}}",
+        stamp=f"{RESULTS}/.compiled/{{scene}}/{{method}}",
     log:
-        f"{RESULTS}/logs/{{scene}}/compile-{{kernels}}.log",
+        f"{RESULTS}/logs/{{scene}}/compile-{{method}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/compile-{{kernels}}.tsv"
+        f"{RESULTS}/benchmarks/{{scene}}/compile-{{method}}.tsv"
     wildcard_constraints:
-        kernels="montecarlo|dynamics",
+        method="|".join(METHODS),
     params:
-        scene=lambda w: SCENES[w.scene].kernels_parameters(),
+        scene=lambda w: SCENES[w.scene].kernels_parameters(w.method),
     shell:
-        "python -m twodiscs.cli.compile {wildcards.kernels} --parameters {params.scene:q}"
+        "python -m twodiscs.cli.compile {wildcards.method} --parameters {params.scene:q}"
         " --output {output.stamp:q} > {log:q} 2>&1"

@@ -5,7 +5,7 @@
 rule dynamics:
     input:
         code=code("cli.dynamics"),
-        compiled=ancient(lambda w: compiled(SCENES[w.scene], "dynamics")),
+        compiled=lambda w: compiled(SCENES[w.scene], "dynamics"),
     output:
         point=f"{RESULTS}/{{scene}}/points/dynamics/{{key}}.json",
         cost=f"{RESULTS}/{{scene}}/points/cost/dynamics-{{key}}.json",
@@ -23,7 +23,7 @@ rule dynamics:
 rule intervals:
     input:
         code=code("cli.intervals"),
-        compiled=ancient(lambda w: compiled(SCENES[w.scene], "dynamics")),
+        compiled=lambda w: compiled(SCENES[w.scene], "intervals"),
     output:
         point=f"{RESULTS}/{{scene}}/points/intervals/{{key}}.json",
         cost=f"{RESULTS}/{{scene}}/points/cost/intervals-{{key}}.json",

@@ -9,11 +9,14 @@ rule:
         "forecast"
     input:
         code=code("cli.forecast"),
-        compiled=[
-            compiled(scene, kernels)
-            for scene in SCENES.values()
-            for kernels in ("montecarlo", "dynamics")
-        ],
+        compiled=sorted(
+            {
+                compiled(scene, method)
+                for scene in SCENES.values()
+                for method in METHODS
+                if point_files(scene, method)
+            }
+        ),
     log:
         f"{RESULTS}/logs/forecast.log",
     threads: 64  # all that there are

@@ -4,7 +4,7 @@
 rule monte_carlo:
     input:
         code=code("cli.montecarlo"),
-        compiled=ancient(lambda w: compiled(SCENES[w.scene], "montecarlo")),
+        compiled=lambda w: compiled(SCENES[w.scene], "monte_carlo"),
     output:
         point=f"{RESULTS}/{{scene}}/points/monte_carlo/{{key}}.json",
         cost=f"{RESULTS}/{{scene}}/points/cost/monte_carlo-{{key}}.json",

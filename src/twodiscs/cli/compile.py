@@ -3,58 +3,85 @@
 from pathlib import Path
 
 from twodiscs import parameters
-from twodiscs.cli.arguments import Parser, run
-from twodiscs.cli.arguments import parameters as read
-from twodiscs.scene import EVENTS
+from twodiscs.cli import arguments
+from twodiscs.scene import EVENTS, Scene
 
-#: A plain scene, with every choice of what is watched.
-PLAIN = {"height": 1.0, "radius": 0.2, "width": 1.5}
-PLAIN |= {"intervals": ("vertical_hop", 0.2), "trajectory": True}
-CHOICES = (EVENTS, ("vertical_hop",), ("right_wall",), ("any_wall",))
-QUANTITIES = (("volume",), ("volume", "top_wall_area"))
+PLAIN = Scene(1.5, 1.0, 0.2)
+
+#: The larger disc of a scene with effects, over the shortest side: every scene has room for it.
+SMALL = 0.01
 
 
-def dynamics(given):
-    """Compile the kernels of molecular dynamics."""
+def dynamics():
+    """Compile the kernels of molecular dynamics, for every choice of what is watched."""
     from twodiscs import dynamics
 
-    scene = parameters.scene(given, given["radius"])
-    for events in [given["mean_times"]] if "mean_times" in given else CHOICES:
-        if events:
-            dynamics.run_blocks(scene, events, 0, 0, 1, 1.0, replicas=1)
-    if given["intervals"]:
-        event, radius = given["intervals"]
-        dynamics.hop_intervals(scene.with_radius(radius), event, 1, 0)
-    if given["trajectory"]:
-        dynamics.trajectory(scene, 0)
+    for events in (EVENTS, ("vertical_hop",), ("right_wall",), ("any_wall",)):
+        dynamics.run_blocks(PLAIN, events, 0, 0, 1, 1.0, replicas=1)
+    dynamics.hop_intervals(PLAIN, "vertical_hop", 1, 0)
+    dynamics.trajectory(PLAIN, 0)
 
 
-def montecarlo(given):
-    """Compile the kernels of rejection sampling."""
+def montecarlo():
+    """Compile the kernels of rejection sampling, with and without shells."""
     from twodiscs import montecarlo
 
-    scene = parameters.scene(given, given["radius"])
-    for quantities in [given["sampled"]] if "sampled" in given else QUANTITIES:
-        montecarlo.better_point(scene, quantities, 1, 0.1, 0)
-    if not scene.has_effects:
-        montecarlo.conditioned_point(scene, ["volume"], 1, 0.1, 0)
+    for quantities in (["volume"], ["volume", "top_wall_area"]):
+        montecarlo.sample_point(PLAIN, quantities, 1, 0.1, 0)
+    montecarlo.conditioned_point(PLAIN, ["volume"], 1, 0.1, 0)
 
 
-KERNELS = {"dynamics": dynamics, "montecarlo": montecarlo}
+def scene_of(given):
+    """Return a scene with the box and the effects of the parameters ``given``."""
+    effects = given.get("effects", {})
+    side = min(given["width"], given["height"], effects.get("depth", given["height"]))
+    return parameters.scene(given, SMALL * side / max(1.0, effects.get("radius_ratio", 1.0)))
+
+
+def scene_counts(given):
+    """Compile the kernel that counts the events ``mean_times`` in the scene of ``given``."""
+    from twodiscs import dynamics
+
+    dynamics.run_blocks(scene_of(given), given["mean_times"], 0, 0, 1, 1.0, replicas=1)
+
+
+def scene_intervals(given):
+    """Compile the kernel that records intervals of the hop ``event`` in the scene of ``given``."""
+    from twodiscs import dynamics
+
+    dynamics.hop_intervals(scene_of(given), given["event"], 1, 0)
+
+
+def scene_samples(given):
+    """Compile the kernel that samples ``volume`` and ``areas`` in the scene of ``given``."""
+    from twodiscs import montecarlo
+
+    quantities = ["volume"] * given["volume"] + [f"{event}_area" for event in given["areas"]]
+    montecarlo.better_point(scene_of(given), quantities, 1, 0.1, 0)
+
+
+#: The kernels of plain scenes by module; those of one scene by the jobs that run them.
+PLAIN_KERNELS = {"dynamics": dynamics, "montecarlo": montecarlo}
+SCENE_KERNELS = {
+    "dynamics": scene_counts,
+    "intervals": scene_intervals,
+    "monte_carlo": scene_samples,
+}
 
 
 def main():
     """Run the kernels on almost nothing, so that their compiled code is in the cache."""
-    parser = Parser(description=__doc__)
-    parser.add_argument("kernels", choices=sorted(KERNELS), help="whose kernels to compile")
-    parser.add_argument("--parameters", help="of a scene, and what it watches; absent: plain")
+    parser = arguments.Parser(description=__doc__)
+    parser.add_argument("kernels", choices=sorted({*PLAIN_KERNELS, *SCENE_KERNELS}))
+    parser.add_argument("--parameters", help="of a scene and what it watches; absent: plain")
     parser.add_argument("--output", required=True, help="an empty file that says it was done")
     options = parser.parse_args()
-    names = ("effects", "height", "intervals", "mean_times", "radius", "sampled", "trajectory")
-    given = read(options.parameters, *names, "width") if options.parameters else PLAIN
-    KERNELS[options.kernels](given)
+    if options.parameters is None:
+        PLAIN_KERNELS[options.kernels]()
+    else:
+        SCENE_KERNELS[options.kernels](arguments.parameters(options.parameters))
     Path(options.output).touch()
 
 
 if __name__ == "__main__":
-    run(main)
+    arguments.run(main)
