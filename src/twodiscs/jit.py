@@ -9,12 +9,14 @@ Import this module, not numba, wherever something is compiled: the settings must
 
 import os
 import shutil
+import time
 from pathlib import Path
 
 from twodiscs.sources import package_hash
 
 #: How many versions of compiled code stay on disk; older ones belong to sources that were edited.
-KEPT_CACHES = 4
+#: What was used within so many seconds stays as well: another process may be about to read it.
+KEPT_CACHES, IN_USE = 4, 3600
 
 
 def _use_wide_vectors():
@@ -44,7 +46,8 @@ def _use_keyed_cache():
         os.utime(root)
         stale = sorted(root.parent.glob("sources-*"), key=lambda path: -path.stat().st_mtime)
         for folder in stale[KEPT_CACHES:]:
-            shutil.rmtree(folder, ignore_errors=True)
+            if folder.stat().st_mtime < time.time() - IN_USE:
+                shutil.rmtree(folder, ignore_errors=True)
     except OSError:
         return
     os.environ["NUMBA_CACHE_DIR"] = str(root)
