@@ -467,11 +467,11 @@ def density_at_zero(scene, hop):
         p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
 
     No other way back is as short: a collision of the discs only drives them further to the sides to
-    which they hopped. Raises ``ValueError`` for anything that is not a ``Scene`` or one of
-    ``scene.HOPS``.
+    which they hopped. Raises ``ValueError`` for anything that is not a plain ``Scene`` or
+    one of ``scene.HOPS``.
     """
     one_of("hop", hop, HOPS)
-    if not a_scene(scene).is_possible(hop):
+    if not _plain(scene).is_possible(hop):
         return None
     side = scene.range_y if hop == "vertical_hop" else scene.range_x
     return 3 * math.sqrt(2) / (16 * side)
