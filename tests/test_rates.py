@@ -201,7 +201,8 @@ def test_density_of_the_reference():
     for s in (mpf(k) / 100 for k in (-4, 0, 5, 8, 20, 26)):
         low, high = max(axis.low[0], axis.low[1] + s), min(axis.high[0], axis.high[1] + s)
         empty = low + axis.energy(low, low - s) / sum(axis.slope)
-        found = mp.quad(lambda q, s=s: axis.energy(q, q - s) ** 1.5, [low, min(high, empty)])
+        line = [low, min(high, empty)]
+        found = mp.quad(lambda q, s=s: max(axis.energy(q, q - s), 0) ** 1.5, line)
         assert relative_error(axis.density(s), found) < 1e-20
 
 
