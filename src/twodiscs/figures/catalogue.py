@@ -60,7 +60,8 @@ LIMITS = (
 #: What captions add where there are effects.
 EFFECTS = (
     "With the effects of this scene vertical hops become blocked at r_v and horizontal ones at "
-    "r_h; from r_t on discs reach the top wall, and from r_x or r_y on disc 1 keeps to its side. "
+    "r_h; from r_t on discs reach the top wall, and from r_x or r_y on disc 1 keeps to its side; "
+    "discs with σ = r1 + r2 of half a side do not pass each other in a channel or on a torus. "
     "In a field volumes and areas are weighted with the invariant density. Limiting laws of the "
     "plain box are not drawn."
 )
@@ -320,9 +321,9 @@ SHARED = {
         "vertical hops, h/4 for horizontal ones and the largest radius for all else: event-driven "
         "molecular dynamics (symbols) and exact (lines). (a) Times between hops against their "
         "leading laws Cδ⁻² (dashed), and mean first passages from a random moment (crosses); "
-        "slopes are those of inertial and of diffusive motion. (b) Times over their leading laws "
-        "Cδ^p, with p = −2 for hops that become blocked and p = 1 for what vanishes: how near the "
-        "limit is reached. Error bars are one standard error.",
+        "slopes are those of inertial and of diffusive motion. (b) Times over their leading laws, "
+        "∝ δ⁻² for hops that become blocked and ∝ δ for what vanishes: how near the limit these "
+        "are reached. Error bars are one standard error.",
         ("distributions", "thresholds"),
         frozenset({"thresholds"}),
     ),
