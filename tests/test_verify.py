@@ -138,6 +138,17 @@ def test_differences_are_as_exact_as_what_they_are_made_of(results, expected, ch
     assert len(verify.verify(results, expected)[0]) == found
 
 
+@pytest.mark.parametrize(("chi2", "near"), [(0.01, 1e-8), (100.0, 1e-6)])
+def test_a_sum_of_squares_of_scores_is_as_exact_as_they_are(chi2, near):
+    row = dict.fromkeys(tables.TABLES["thresholds"].names) | {"chi2": chi2}
+    sheet, close, far = (
+        verify.table_cells("thresholds", [row | {"chi2": chi2 + off * near}])
+        for off in (0.0, 0.9, 1.1)
+    )
+    assert verify.compare("thresholds.csv", close, sheet) == []
+    assert len(verify.compare("thresholds.csv", far, sheet)) == 1
+
+
 def test_of_rounding_errors_only_the_verdict_counts():
     row = dict.fromkeys(tables.TABLES["stability"].names)
     row |= {"part": "theory", "quantity": "volume", "value": 1e-16, "passed": True}

@@ -22,7 +22,8 @@ from twodiscs.figures.catalogue import SHARED
 RELATIVE = 1e-12
 
 #: How far scores may differ. A score is a difference of two numbers in units of its standard error,
-#: which is 1e-4 of them at best: there this is as strict.
+#: which is 1e-4 of them at best: there this is as strict. For χ², a sum of their squares, it is
+#: relative from 1 on.
 SCORE = RELATIVE / 1e-4
 
 #: The tables that hold seconds, and the documents that show them.
@@ -109,6 +110,8 @@ def _tolerance(column, row):
         return math.inf
     if column in ("z", "p") or (column == "estimate" and row.get("comparison") in OF_SCORES):
         return SCORE
+    if column == "chi2":
+        return SCORE * max(1.0, row[column])
     if column == "bias" and "expectation" in row:  # what that is above the exact value
         return RELATIVE * abs(row["expectation"])
     return RELATIVE * abs(row[column])
