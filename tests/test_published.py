@@ -44,7 +44,7 @@ WRONG = {
     "lower triangle of the wall",
     "limit of thin shells",
 }
-RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero"}
+RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero", "exponential tails"}
 
 #: The labels of all equations in the source.
 LABELS = {

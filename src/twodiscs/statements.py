@@ -127,6 +127,14 @@ def collision_time_is_smooth(q):
     )
 
 
+def hop_tails_are_exponential(q):
+    """Whether no motion avoids vertical hops for long, so that their times may have such a tail.
+
+    Below h/4 discs that move along x pass clear of each other (``theory.tail_constant``).
+    """
+    return q.b <= q.r
+
+
 # Statements ---------------------------------------------------------------------------------------
 
 
@@ -366,6 +374,14 @@ STATEMENTS = (
         "right_wall_time",
     ),
     Statement("wall time, jump at h/4", "V C", ("h/4",), _half_of_before, "right_wall_time"),
+    Statement(
+        "exponential tails",
+        "VI",
+        HOPS,
+        hop_tails_are_exponential,
+        correction="those of vertical hops fall as t⁻³ for r < h/4, where drifts along x avoid "
+        "them; beyond, they look exponential as far as is seen",
+    ),
     Statement(
         "VolumenGeneral",
         "A 1",
