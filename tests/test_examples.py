@@ -228,7 +228,8 @@ def dry(checkout):
 
 
 def test_snakemake_knows_every_target(dry):
-    assert set(dry) == {(), ("--configfile", "config/draft.yaml")}
+    files = ("config/draft.yaml", "config/scenes/field.yaml")
+    assert set(dry) == {(), *(("--configfile", file) for file in files)}
     assert {"volume", "check", "all"} <= targets()[()]
     assert all("Job stats:" in said for said in dry.values())
 
