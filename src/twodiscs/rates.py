@@ -24,7 +24,6 @@ So the sums are accurate up to the largest radius.
 
 import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -380,7 +379,7 @@ class _Space:
         return self.beyond(**{axis: _walled(*both, self.power)})
 
 
-def _walls(scene, event) -> Sequence[tuple]:
+def _walls(scene, event):
     """Return the (axis, disc, whether the far wall) that count for the wall ``event``."""
     if event == "any_wall":
         return list(product(scene.walled, (0, 1), (False, True)))

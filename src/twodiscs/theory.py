@@ -191,9 +191,9 @@ def areas(scene):
     """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
 
     Keys are ``scene.EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
-    or has no place; that of all walls is 4 (right + top) for equal discs without a field. It is in
-    length⁵ for balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``rates``).
-    Accuracy and errors as for ``volume``.
+    or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
+    balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``rates``). Accuracy and
+    errors as for ``volume``.
     """
     return dict(_exact(a_scene(scene))[1])
 
