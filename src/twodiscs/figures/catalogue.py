@@ -322,8 +322,8 @@ SHARED = {
         "molecular dynamics (symbols) and exact (lines). (a) Times between hops against their "
         "leading laws Cδ⁻² (dashed), and mean first passages from a random moment (crosses); "
         "slopes are those of inertial and of diffusive motion. (b) Times over their leading laws, "
-        "∝ δ⁻² for hops that become blocked and ∝ δ for what vanishes: how near the limit these "
-        "are reached. Error bars are one standard error.",
+        "with p = −2 for hops that become blocked and p = 1 for what vanishes: how near the limit "
+        "these are reached. Error bars are one standard error.",
         ("distributions", "thresholds"),
         frozenset({"thresholds"}),
     ),
