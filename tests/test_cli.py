@@ -107,6 +107,11 @@ def test_effects_are_options(monkeypatch, capsys):
     assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in EFFECTS.items())
     _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--depth", "1.2")
     assert out.startswith("Two balls of radius 0.1 in a box of 1.5 × 1.0 × 1.2\n")
+    assert "\nvelocity components 6\n" in out
+    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--periodic", "yx")
+    assert "\nvelocity components 2\ntotal momentum      0 along x, y\n" in out
+    _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1")
+    assert "velocity components" not in out
 
 
 def test_the_installed_command():

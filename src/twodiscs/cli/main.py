@@ -50,6 +50,10 @@ def _main():
 def _table(scene, numbers):
     times = {e: "impossible" if t is None else repr(t) for e, t in numbers["mean_times"].items()}
     effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.effects.items()]
+    if effects:
+        effects.append(f"{'velocity components':<20}{scene.velocity_components}")
+    if scene.conserved:
+        effects.append(f"{'total momentum':<20}0 along {', '.join(scene.conserved)}")
     what = "discs" if scene.depth is None else "balls"
     box = " × ".join(repr(scene.side(axis)) for axis in scene.axes)
     return "\n".join(
