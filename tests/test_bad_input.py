@@ -204,7 +204,8 @@ EFFECTS = [
     "1", "None", "['field']", "{'gravity': 1}", "{'field': -1.0}", "{'field': '1'}",
     "{'periodic': 'xx'}", "{'periodic': 'z'}", "{'periodic': 1}", "{'mass_ratio': 0}",
     "{'radius_ratio': 1e9}", "{'radius_ratio': 4.0}", "{'moment_of_inertia': 2.0}",
-    "{'field': 1.0, 'periodic': 'y'}", "{'depth': 1.0, 'moment_of_inertia': 0.4}",
+    "{'field': 1.0, 'periodic': 'y'}", "{'periodic': 'xy', 'moment_of_inertia': 0.4}",
+    "{'field': False}", "{'depth': 1e50}", "{'depth': 1.0, 'moment_of_inertia': 0.4}",
 ]  # fmt: skip
 CASES = [
     (job, name, text)

@@ -655,7 +655,7 @@ EFFECTS = {
         ".radii: field 100.0 is too strong at radius 0.38: …"
     ),
     ("effects: {field: 1, mass_ratio: 2}", "radii: [0.378]"): (
-        ".radii: unequal discs in a field need room to pass each other …"
+        ".radii: unequal discs in a field need room and energy to pass each other …"
     ),
     ("effects: {field: 1}", "radii: [0.1, 0.378]"): (
         ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places, and a scene with "

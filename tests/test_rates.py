@@ -551,7 +551,6 @@ FLUXES = [
     Scene(1.5, 1.0, 0.2, periodic="xy", mass_ratio=0.4),
     Scene(1.5, 1.0, 0.2, periodic="x", field=0.8, radius_ratio=1.3, mass_ratio=0.3),
     Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=2.0, periodic="x"),
-    Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, periodic="xy"),
     Scene(1.5, 1.0, 0.2, depth=1.2, radius_ratio=0.7, mass_ratio=2.0, field=0.5, periodic="z"),
     Scene(1.5, 1.0, 0.3, depth=0.9),
 ]

@@ -124,6 +124,9 @@ class Scene:
     def __post_init__(self):
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
+        for name in EFFECTS:
+            if isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} must not be a truth value, {getattr(self, name)!r}")
         if self.has_effects:
             self._check_effects()
         if not self._fits():
@@ -139,14 +142,16 @@ class Scene:
             object.__setattr__(self, name, value)
 
         if self.depth is not None:
-            settle("depth", length("depth", self.depth))
+            # Six lengths are multiplied.
+            for name in ("depth", "width", "height", "radius"):
+                settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
         for name in ("radius_ratio", "mass_ratio"):
             settle(name, number(name, getattr(self, name), LEAST_RATIO, LARGEST_RATIO, "ratio"))
         if self.moment_of_inertia is not None:
             inertia = number("moment_of_inertia", self.moment_of_inertia, 1e-3, 1.0)
             settle("moment_of_inertia", inertia)
         field = self.field
-        if field != 0 or isinstance(field, bool | str):
+        if field != 0:
             settle("field", number("field", field, SHORTEST, LONGEST))
         else:
             settle("field", 0.0)
@@ -165,11 +170,19 @@ class Scene:
                 "field must be 0 where y is periodic, for nothing would hold the discs, not "
                 f"{self.field!r}"
             )
-        if self.depth is not None and self.moment_of_inertia is not None:
-            raise ValueError(
-                "moment_of_inertia must be left out in a box with a depth (rough discs are for the "
-                f"plane), not {self.moment_of_inertia!r}"
-            )
+        if self.moment_of_inertia is not None:
+            self._check_roughness()
+
+    def _check_roughness(self):
+        if self.depth is not None:
+            where = "in a box with a depth (rough discs are for the plane)"
+        elif not self.walled:
+            where = "in a box without walls (the spins would keep I1 ω1/r1 − I2 ω2/r2 for ever)"
+        else:
+            return
+        raise ValueError(
+            f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
+        )
 
     def _check_energy(self):
         if self._lowest_potential(self._spread("y")) >= ENERGY:
@@ -180,9 +193,9 @@ class Scene:
             )
         if (self.radius_ratio, self.mass_ratio) != (1.0, 1.0) and not self.vertical_hops:
             raise ValueError(
-                "unequal discs in a field need room to pass each other on y1 = y2, or the parts "
-                "of configuration space differ from each other; in this box radius "
-                f"{self.radius!r} leaves none"
+                "unequal discs in a field need room and energy to pass each other on y1 = y2, or "
+                f"the parts of configuration space are unequal, too; at radius {self.radius!r} "
+                "they lack it"
             )
 
     @property
@@ -225,10 +238,9 @@ class Scene:
     def conserved(self):
         """The axes along which the total momentum is conserved; the ensemble has it at 0.
 
-        Those are the periodic ones, unless rough walls push the discs along themselves.
+        Those are the periodic ones, unless there are rough walls, which push discs along them.
         """
-        rough_walls = self.moment_of_inertia is not None and self.walled
-        return () if rough_walls else tuple(self.periodic)
+        return tuple(self.periodic) if self.moment_of_inertia is None else ()
 
     @cached_property
     def velocity_components(self):
@@ -252,12 +264,12 @@ class Scene:
 
     @cached_property
     def range_x(self):
-        """A = w − σ: the largest separation x1 − x2 between walls; for equal discs, the range."""
+        """A = w − σ: the largest separation x1 − x2 between walls, and an equal disc's range."""
         return self.width - self.contact_distance
 
     @cached_property
     def range_y(self):
-        """B = h − σ: the same along y."""
+        """B = h − σ: the same along y; neither means anything on a periodic axis."""
         return self.height - self.contact_distance
 
     @cached_property
