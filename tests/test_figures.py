@@ -173,6 +173,17 @@ def test_entry_is_complete(name):
     assert all(isinstance(text, str) for pair in entry.labels.items() for text in pair)
 
 
+def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
+    called = [entry for entry in FIGURES.values() if entry.needs and not entry.of_plain]
+    for plain in catalogue.WITH_EFFECTS:
+        assert any(plain in entry.caption for entry in called)
+    for entry in called:
+        assert entry.caption_with({}) == entry.caption
+        caption = entry.caption_with({"field": 1.5})
+        assert not re.search(r"[wh]/4|square box|Dashed|four times|  ", caption)
+        assert ("r_v" in caption) == (catalogue.LINES in entry.caption)
+
+
 def test_caption_of_an_unknown_figure():
     with pytest.raises(ValueError, match=r"name must be one of model, .* not 'portrait'"):
         catalogue.caption("portrait")

@@ -35,7 +35,10 @@ class Entry:
 
     def caption_with(self, effects):
         """Return the caption in a scene with ``effects``, or without any."""
-        return f"{self.caption} {EFFECTS}" if effects else self.caption
+        caption = self.caption
+        for plain, instead in WITH_EFFECTS.items() if effects else ():
+            caption = caption.replace(f" {plain}", f" {instead}" if instead else "")
+        return caption
 
     @property
     def labels(self):
@@ -51,20 +54,43 @@ SYMBOLS = (
     "estimates from too few events to give one."
 )
 
-LIMITS = (
-    "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius. "
-    "Residuals "
-    "z beneath are in standard errors, with guide lines at ±2 and ±5"
+#: What captions say of scenes without effects only.
+LINES = "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius."
+WHOLE = "The whole is four times the sum of the first two."
+HOP_LAWS = (
+    "Dashed lines in (a) are the laws for small discs, to first order in r, and in (b) the leading "
+    "laws: where a hop becomes blocked before the discs jam its time diverges as (r_c − r)⁻². In a "
+    "square box both hops have the same mean time."
+)
+COLLISION_LAWS = (
+    "Dashed lines are the first two orders of the law for small discs, which starts as "
+    "3wh/(8√2 r), and the leading law below the largest radius."
+)
+WALL_LAWS = (
+    "The first halves at r = h/4 and the second at w/4, where configuration space falls apart and "
+    "disc 1 keeps to one side. Dashed lines are the laws for small discs and below the largest "
+    "radius."
+)
+DASHES = (
+    "Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is undone "
+    "after one bounce: 3√2/16 over h − 2r for vertical hops, over w − 2r for horizontal ones."
 )
 
-#: What captions add where there are effects.
-EFFECTS = (
-    "With the effects of this scene vertical hops become blocked at r_v and horizontal ones at "
-    "r_h; from r_t on discs reach the top wall, and from r_x or r_y on disc 1 keeps to its side; "
-    "discs with σ = r1 + r2 of half a side do not pass each other in a channel or on a torus. "
-    "In a field volumes and areas are weighted with the invariant density. Limiting laws of the "
-    "plain box are not drawn."
-)
+#: What stands in their place where there are effects.
+WITH_EFFECTS = {
+    LINES: "Vertical lines mark the largest radius of disc 1 and where the scene changes before: "
+    "vertical hops end at r_v and horizontal ones at r_h; from r_t on discs reach the top wall, "
+    "and from r_x or r_y on disc 1 keeps to its side; discs with σ = r1 + r2 of half a side do not "
+    "pass each other in a channel or on a torus. In a field volumes and areas are weighted with "
+    "the invariant density.",
+    WHOLE: "",
+    HOP_LAWS: "",
+    COLLISION_LAWS: "",
+    WALL_LAWS: "The mean time halves where disc 1 begins to keep to one side.",
+    DASHES: "",
+}
+
+LIMITS = f"{LINES} Residuals z beneath are in standard errors, with guide lines at ±2 and ±5"
 
 SAMPLED = f"{SYMBOLS} {LIMITS}."
 
@@ -95,10 +121,10 @@ FIGURES = {
     "hopping_trajectory": Entry(
         "Hopping dynamics",
         DYNAMICS,
-        "One trajectory: the separation of the discs along the longer side of the box against time "
-        "(along x in a square). Dots mark the hops, at which it changes sign. (b) The shaded "
-        "stretch of time enlarged: a hop is often undone soon, before collisions have scrambled "
-        "the motion.",
+        "One trajectory: the separation of the discs along the longer side of the box that ends "
+        "at walls (x in a square) against time. Dots mark the hops, at which it changes sign. (b) "
+        "The shaded stretch of time enlarged: a hop is often undone soon, before collisions have "
+        "scrambled the motion.",
         ("trajectory",),
         frozenset({"trajectory"}),
     ),
@@ -124,15 +150,15 @@ FIGURES = {
         "Area of vertical hops",
         "vertical_hop",
         "Area of the surface y1 = y2, which is crossed when the discs exchange their vertical "
-        "order: exact (line) and from a thin shell around it (symbols). The area vanishes at r "
-        "= w/4, and beyond, symbols at zero say that no sample fell into the shell.",
+        "order: exact (line) and from a thin shell around it (symbols). Where "
+        "the hop is blocked, symbols at zero say that no sample fell into the shell.",
     ),
     "horizontal_hop_area": _area(
         "Area of horizontal hops",
         "horizontal_hop",
         "Area of the surface x1 = x2, which is crossed when the discs exchange their horizontal "
-        "order: exact (line) and from a thin shell around it (symbols). The area vanishes at r "
-        "= h/4, and beyond, symbols at zero say that no sample fell into the shell.",
+        "order: exact (line) and from a thin shell around it (symbols). Where "
+        "the hop is blocked, symbols at zero say that no sample fell into the shell.",
     ),
     "collision_area": _area(
         "Area of disc collisions",
@@ -144,8 +170,8 @@ FIGURES = {
         "Areas of wall hits",
         SPACE,
         "Areas of the surfaces on which disc 1 touches the right or the top wall, and of all "
-        "eight such surfaces together: exact (lines) and from thin shells (symbols). The whole "
-        f"is four times the sum of the first two. {SHELLS}",
+        "such surfaces of both discs together: exact (lines) and from thin shells (symbols). "
+        f"{WHOLE} {SHELLS}",
         ("areas",),
         _walls("area"),
     ),
@@ -153,10 +179,8 @@ FIGURES = {
         "Mean times between hops",
         DYNAMICS,
         "Mean times between successive hops: exact (lines) and by event-driven molecular "
-        "dynamics (symbols). Dashed lines in (a) are the laws for small discs, to first order "
-        "in r. In (b) the same times approach the radius r_c at which the hop ends, with their "
-        "leading laws dashed: where a hop becomes blocked before the discs jam its time "
-        f"diverges as (r_c − r)⁻². In a square box both hops have the same mean time. {SIMULATED}",
+        "dynamics (symbols). In (b) the same times approach the radius r_c at which the hop "
+        f"ends. {HOP_LAWS} {SIMULATED}",
         ("mean_times",),
         frozenset({"vertical_hop_time", "horizontal_hop_time"}),
     ),
@@ -164,8 +188,7 @@ FIGURES = {
         "Mean time between disc collisions",
         DYNAMICS,
         "Mean time between collisions of the discs: exact (line) and by event-driven molecular "
-        "dynamics (symbols). Dashed lines are the first two orders of the law for small discs, "
-        f"which starts as 3wh/(8√2 r), and the leading law below the largest radius. {SIMULATED}",
+        f"dynamics (symbols). {COLLISION_LAWS} {SIMULATED}",
         ("mean_times",),
         frozenset({"disc_collision_time"}),
     ),
@@ -174,10 +197,7 @@ FIGURES = {
         DYNAMICS,
         "Mean times between hits of disc 1 on the right wall and on the top wall, over "
         "trajectories that can reach it, and between hits of any disc on any wall: exact "
-        "(lines) and by event-driven molecular dynamics (symbols). The first halves at r = h/4 "
-        "and the second at w/4, where configuration space falls apart and disc 1 keeps to one "
-        "side. Dashed lines are the laws for small discs and below the largest radius. "
-        f"{SIMULATED}",
+        f"(lines) and by event-driven molecular dynamics (symbols). {WALL_LAWS} {SIMULATED}",
         ("mean_times",),
         _walls("time"),
     ),
@@ -186,10 +206,8 @@ FIGURES = {
         DYNAMICS,
         "Density of the time t between successive hops for several radii, both in units of the "
         "exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen "
-        "with t, and (b) enlarges short times in equal bins; thick dashes on its axis are the "
-        "exact densities at t = 0, of a hop that is undone after one bounce: 3√2/16 over h − 2r "
-        "for vertical hops, over w − 2r for horizontal ones. Symbols tell the radii apart; "
-        "error bars are one standard error.",
+        f"with t, and (b) enlarges short times in equal bins. {DASHES} Symbols tell the radii "
+        "apart; error bars are one standard error.",
         ("hop_histogram",),
         frozenset({"hop_histogram"}),
     ),
