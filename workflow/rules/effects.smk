@@ -86,6 +86,7 @@ rule effects_figure:
             f"{RESULTS}/figures/effects.png",
             caption="../report/shared_figure.rst",
             category=SHARED["effects"].category,
+            subcategory="all scenes",
             labels=SHARED["effects"].labels,
         ),
     log:
