@@ -23,7 +23,10 @@ test: .venv/ready
 	$(IN_VENV) ruff check src tests
 	$(IN_VENV) ruff format --check src tests
 	$(IN_VENV) snakefmt --check Snakefile workflow
-	$(IN_VENV) pytest
+	@# Those of the workflow take a core of their own; what they say follows when both are done.
+	$(IN_VENV) sh -c 'pytest tests/workflow > .workflow-tests.log 2>&1 & other=$$!; \
+	  pytest --ignore=tests/workflow; status=$$?; \
+	  wait $$other || status=1; cat .workflow-tests.log; exit $$status'
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes.
 .venv/ready: requirements.lock pyproject.toml
