@@ -105,7 +105,7 @@ def test_a_floor_has_no_say_in_the_slope():
 
 def test_the_price_of_a_poisson_process():
     scene = PAPER
-    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    rate = theory.event_rate(scene)
     time = theory.mean_times(scene)["vertical_hop"]
     assert accuracy_cost.predicted_events(scene, "vertical_hop", 1e-2) == pytest.approx(
         1e4 * time * rate

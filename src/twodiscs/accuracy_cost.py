@@ -489,17 +489,12 @@ def lasting_error(one, quantity, results, i):
 # Radius by radius -----------------------------------------------------------------------------
 
 
-def total_rate(scene):
-    """Return wall and disc events per unit of time."""
-    return theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
-
-
 def predicted_events(scene, event, error=TARGET):
     """Return how many wall and disc events a relative ``error`` of one mean time takes.
 
     If ``event`` came as by a Poisson process, error⁻² of them would be needed; all else is exact.
     """
-    return total_rate(scene) / theory.rate(scene, event) / error**2
+    return theory.event_rate(scene) / theory.rate(scene, event) / error**2
 
 
 def by_radius(scale=1.0):
@@ -601,7 +596,7 @@ def where_single_fails(scale=1.0):
         rows.append(
             row(
                 "precision", "energy", SCENE.radius, "single_precision",
-                setting=duration * total_rate(SCENE), work=events_in(counts), error=error,
+                setting=duration * theory.event_rate(SCENE), work=events_in(counts), error=error,
                 bias=mean,
             )
         )  # fmt: skip

@@ -198,7 +198,7 @@ def measured(scene, hop, seed, events=EVENTS):
         raise ValueError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
     seed, events = whole("seed", seed, 0), whole("events", events)
     mean = theory.mean_times(scene)[hop]
-    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    rate = theory.event_rate(scene)
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
     passages = min(block, MOST_PASSAGES // BLOCKS)

@@ -277,7 +277,7 @@ def replica_duration(scene):
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts of wall hits
     have two states: then more and shorter replicas know the mean better for the same work.
     """
-    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    rate = theory.event_rate(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
     times = theory.mean_times(scene)
     if any(scene.is_possible(hop) and HOPS_PER_REPLICA * times[hop] > duration for hop in HOPS):
@@ -357,7 +357,7 @@ def count_events(scene, target, budget, seed, report=None):
         np.zeros((6, 6), np.int64),
         np.zeros(6, np.int64),
     )
-    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    rate = theory.event_rate(scene)
     affordable = int(budget / (REPLICAS * rate * duration))
     blocks = max(1, min(FIRST_ROUND, affordable))
     done, rounds = 0, 0
@@ -605,7 +605,7 @@ def trajectory(scene, seed):
     draw_any_starts(stream, draw, (0, 0), start, prism)
     components = 8 + 4 * (scene.depth is not None) + 2 * (scene.moment_of_inertia is not None)
     start = tuple(map(float, start[:components, 0]))
-    rate = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    rate = theory.event_rate(scene)
     hops = [theory.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
     duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
     return list(follow(scene, start, nearest_power_of_two(duration)))

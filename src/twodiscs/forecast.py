@@ -151,7 +151,7 @@ def events_of_job(scene, job, counted, done):
     from twodiscs.scene import EVENTS
 
     errors = dynamics.relative_errors(*counted)
-    total = theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
+    total = theory.event_rate(scene)
     needed = 0.0
     for event, error in job["accuracy"].items():
         if not scene.is_possible(event):

@@ -444,11 +444,6 @@ def box_units(scene):
     return tuple(2.0 ** (math.frexp(side)[1] - 1) for side in (scene.width, scene.height))
 
 
-def event_rate(scene):
-    """Return wall and disc events per unit of time."""
-    return theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision")
-
-
 def invariant_starts(scene, seed, block, number):
     """Return ``number`` states of the invariant measure, (8, number) doubles."""
     starts = np.zeros((8, number))
@@ -469,7 +464,7 @@ def run(scene, number, seed):
     law = law_of(scene)
     nearest, energy, far_x, far_y, lost = audit(
         invariant_starts(scene, seed, 0, LANES), windows, window, law,
-        STUCK * window / event_rate(scene),
+        STUCK * window / theory.event_rate(scene),
     )  # fmt: skip
     unit_x, unit_y = box_units(scene)
     excess = max(

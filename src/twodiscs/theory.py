@@ -215,6 +215,14 @@ def rate(scene, event):
     return sides * areas[event] / (1.5 * math.pi * volume)
 
 
+def event_rate(scene):
+    """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
+
+    Raises ``ValueError`` for anything that is not a ``Scene``.
+    """
+    return rate(scene, "any_wall") + rate(scene, "disc_collision")
+
+
 def mean_times(scene):
     """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
 

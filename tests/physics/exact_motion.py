@@ -58,7 +58,7 @@ def compare(scene, state, number):
     the comparison ends where the clocks are a hundredth of the mean time between events apart.
     Events within 1e-10 of it from one another may come in either order.
     """
-    unit = 1 / (theory.rate(scene, "any_wall") + theory.rate(scene, "disc_collision"))
+    unit = 1 / theory.event_rate(scene)
     with mpmath.workdps(50):
         exact = list(islice(exact_path(scene, state), number))
         found = [(row[0], row[5]) for row in islice(follow(scene, state, math.inf), number + 1)][1:]

@@ -5,12 +5,13 @@ from checkout import REPOSITORY
 
 FILES = sorted(path.stem for path in (REPOSITORY / "config" / "scenes").glob("*.yaml"))
 POINTS = [("effects_point", (f"file={name}",)) for name in FILES]
-MADE = [(rule, ()) for rule in ("effects_cost", "effects_figure", "effects_table")]
+FIGURE = ("shared_figure", ("figure=effects",))
+MADE = [("effects_cost", ()), ("effects_table", ()), FIGURE]
 
 
 def effects(jobs):
     """Return the jobs about effects."""
-    return [job for job in jobs if job[0].startswith("effects_")]
+    return [job for job in jobs if job[0].startswith("effects_") or job == FIGURE]
 
 
 def test_the_target_is_a_job_for_each_scene_and_what_is_made_of_them(unbuilt):
@@ -33,7 +34,8 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     assert [job for job in jobs if job[0] == "effects_point"] == [
         ("effects_point", ("file=torus",))
     ]
+    assert FIGURE in jobs
     assert {rule for rule, _ in jobs} == {
-        *("effects_point", "effects_table", "effects_cost", "effects_figure"),
+        *("effects_point", "effects_table", "effects_cost", "shared_figure"),
         *("paper", "report", "manifest"),
     }

@@ -35,7 +35,7 @@ def test_one_more_radius_is_one_more_job_of_each_kind(built):
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "grid", "theory", "table", "check_table", "check"),
         *("errata", "figure", "paper", "report", "manifest"),
-        *("thresholds_table", "thresholds_figure"),
+        *("thresholds_table", "shared_figure"),
     }
 
 

@@ -144,12 +144,12 @@ def test_a_file_builds_its_scene_alone(unbuilt):
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
     made = {
         "errata": {"errata"},
-        "accuracy_cost": {"accuracy_cost_table", "accuracy_cost_figure"},
-        "stability": {"stability_table", "stability_figure"},
-        "tails": {"tails_table", "tails_figure"},
-        "distributions": {"distributions_table", "distributions_figure"},
-        "thresholds": {"thresholds_table", "thresholds_figure"},
-        "effects": {"effects_point", "effects_table", "effects_cost", "effects_figure"},
+        "accuracy_cost": {"accuracy_cost_table", "shared_figure"},
+        "stability": {"stability_table", "shared_figure"},
+        "tails": {"tails_table", "shared_figure"},
+        "distributions": {"distributions_table", "shared_figure"},
+        "thresholds": {"thresholds_table", "shared_figure"},
+        "effects": {"effects_point", "effects_table", "effects_cost", "shared_figure"},
     }
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path = tmp_path / "shared.yaml"

@@ -2,8 +2,6 @@
 # seconds for a result, so its table and its figures differ from run to run, and nothing else reads
 # them but the manuscript and the report.
 
-COST_FIGURES = ("accuracy_cost", "accuracy_cost_by_radius")
-
 
 rule accuracy_cost_table:
     input:
@@ -33,40 +31,10 @@ rule accuracy_cost_table:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
-rule accuracy_cost_figure:
-    input:
-        table=f"{RESULTS}/accuracy_cost.csv",
-        code=lambda w: code("cli.figure", f"figures.{w.figure}"),
-    output:
-        pdf=f"{RESULTS}/figures/{{figure}}.pdf",
-        png=report(
-            f"{RESULTS}/figures/{{figure}}.png",
-            caption="../report/shared_figure.rst",
-            category=lambda w: SHARED[w.figure].category,
-            subcategory="all scenes",
-            labels=lambda w: SHARED[w.figure].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-{{figure}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-{{figure}}.tsv"
-    wildcard_constraints:
-        figure="|".join(COST_FIGURES),
-    params:
-        caption=lambda w: SHARED[w.figure].caption,
-    shell:
-        "python -m twodiscs.cli.figure {wildcards.figure} --scene '{{}}'"
-        " --table accuracy_cost={input.table:q} --output {output.pdf:q} {output.png:q}"
-        " > {log:q} 2>&1"
-
-
 rule:
     name:
         "accuracy_cost"
     input:
         f"{RESULTS}/accuracy_cost.csv",
-        expand(
-            f"{RESULTS}/figures/{{figure}}.{{kind}}",
-            figure=COST_FIGURES,
-            kind=["pdf", "png"],
-        ),
+        shared_figure_files("accuracy_cost"),
+        shared_figure_files("accuracy_cost_by_radius"),

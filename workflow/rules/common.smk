@@ -146,6 +146,19 @@ def shared_files():
     ]
 
 
+def shared_figure_files(name):
+    """Return the files of a figure that belongs to no scene."""
+    return multiext(f"{RESULTS}/figures/{name}", ".pdf", ".png")
+
+
+def shared_figure_tables(name):
+    """Return the tables that a figure of no scene reads: for thresholds, those of a scene, too."""
+    read = [f"{RESULTS}/{table}.csv" for table in SHARED[name].tables]
+    if name == "thresholds" and MAIN.name in mean_time_tables():
+        read.append(mean_time_tables()[MAIN.name])
+    return read
+
+
 def manuscript_parameters():
     """Return what the manuscript needs beside the tables and figures that it reads.
 

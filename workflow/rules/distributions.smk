@@ -28,32 +28,7 @@ rule distributions_table:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
-rule distributions_figure:
-    input:
-        table=f"{RESULTS}/distributions.csv",
-        code=code("cli.figure", "figures.distributions"),
-    output:
-        pdf=f"{RESULTS}/figures/distributions.pdf",
-        png=report(
-            f"{RESULTS}/figures/distributions.png",
-            caption="../report/shared_figure.rst",
-            category=SHARED["distributions"].category,
-            subcategory="all scenes",
-            labels=SHARED["distributions"].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-distributions.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-distributions.tsv"
-    params:
-        caption=SHARED["distributions"].caption,
-    shell:
-        "python -m twodiscs.cli.figure distributions --scene '{{}}'"
-        " --table distributions={input.table:q} --output {output.pdf:q} {output.png:q}"
-        " > {log:q} 2>&1"
-
-
 rule distributions:
     input:
         rules.distributions_table.output,
-        rules.distributions_figure.output,
+        shared_figure_files("distributions"),

@@ -76,35 +76,8 @@ rule effects_cost:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
-rule effects_figure:
-    input:
-        tables=[f"{RESULTS}/{name}.csv" for name in SHARED["effects"].tables],
-        code=code("cli.figure", "figures.effects"),
-    output:
-        pdf=f"{RESULTS}/figures/effects.pdf",
-        png=report(
-            f"{RESULTS}/figures/effects.png",
-            caption="../report/shared_figure.rst",
-            category=SHARED["effects"].category,
-            subcategory="all scenes",
-            labels=SHARED["effects"].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-effects.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-effects.tsv"
-    params:
-        tables=lambda w, input: " ".join(
-            f"--table {Path(t).stem}={t}" for t in input.tables
-        ),
-        caption=SHARED["effects"].caption,
-    shell:
-        "python -m twodiscs.cli.figure effects --scene '{{}}' {params.tables}"
-        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
-
-
 rule effects:
     input:
         rules.effects_table.output,
         rules.effects_cost.output,
-        rules.effects_figure.output,
+        shared_figure_files("effects"),

@@ -33,6 +33,39 @@ rule figure:
         " {params.tables} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
 
 
+# Those that are made once, whatever the scenes.
+
+
+rule shared_figure:
+    input:
+        tables=lambda w: shared_figure_tables(w.figure),
+        code=lambda w: code("cli.figure", f"figures.{w.figure}"),
+    output:
+        pdf=f"{RESULTS}/figures/{{figure}}.pdf",
+        png=report(
+            f"{RESULTS}/figures/{{figure}}.png",
+            caption="../report/shared_figure.rst",
+            category=lambda w: SHARED[w.figure].category,
+            subcategory="all scenes",
+            labels=lambda w: SHARED[w.figure].labels,
+        ),
+    log:
+        f"{RESULTS}/logs/figure-{{figure}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/figure-{{figure}}.tsv"
+    wildcard_constraints:
+        figure="|".join(SHARED),
+    params:
+        scene={"height": MAIN.height, "width": MAIN.width} if MAIN else {},
+        tables=lambda w, input: " ".join(
+            f"--table {Path(t).stem}={t}" for t in input.tables
+        ),
+        caption=lambda w: SHARED[w.figure].caption,
+    shell:
+        "python -m twodiscs.cli.figure {wildcards.figure} --scene {params.scene:q}"
+        " {params.tables} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+
+
 # A figure's name is a target: that figure, for every scene that calls for it.
 for figure in FIGURES:
 

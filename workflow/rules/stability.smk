@@ -30,35 +30,10 @@ rule stability_table:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
-rule stability_figure:
-    input:
-        table=f"{RESULTS}/stability.csv",
-        code=code("cli.figure", "figures.stability"),
-    output:
-        pdf=f"{RESULTS}/figures/stability.pdf",
-        png=report(
-            f"{RESULTS}/figures/stability.png",
-            caption="../report/shared_figure.rst",
-            category=SHARED["stability"].category,
-            subcategory="all scenes",
-            labels=SHARED["stability"].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-stability.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-stability.tsv"
-    params:
-        caption=SHARED["stability"].caption,
-    shell:
-        "python -m twodiscs.cli.figure stability --scene '{{}}'"
-        " --table stability={input.table:q} --output {output.pdf:q} {output.png:q}"
-        " > {log:q} 2>&1"
-
-
 rule stability:
     input:
         rules.stability_table.output,
-        rules.stability_figure.output,
+        shared_figure_files("stability"),
 
 
 rule long_runs:

@@ -23,32 +23,7 @@ rule tails_table:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
-rule tails_figure:
-    input:
-        table=f"{RESULTS}/tails.csv",
-        code=code("cli.figure", "figures.tails"),
-    output:
-        pdf=f"{RESULTS}/figures/tails.pdf",
-        png=report(
-            f"{RESULTS}/figures/tails.png",
-            caption="../report/shared_figure.rst",
-            category=SHARED["tails"].category,
-            subcategory="all scenes",
-            labels=SHARED["tails"].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-tails.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-tails.tsv"
-    params:
-        caption=SHARED["tails"].caption,
-    shell:
-        "python -m twodiscs.cli.figure tails --scene '{{}}'"
-        " --table tails={input.table:q} --output {output.pdf:q} {output.png:q}"
-        " > {log:q} 2>&1"
-
-
 rule tails:
     input:
         rules.tails_table.output,
-        rules.tails_figure.output,
+        shared_figure_files("tails"),

@@ -29,39 +29,7 @@ rule thresholds_table:
         " --distributions {input.distributions:q} --output {output.table:q} > {log:q} 2>&1"
 
 
-rule thresholds_figure:
-    input:
-        tables=[
-            rules.thresholds_table.output.table,
-            f"{RESULTS}/distributions.csv",
-            *[mean_time_tables()[n] for n in [MAIN.name] if n in mean_time_tables()],
-        ],
-        code=code("cli.figure", "figures.thresholds"),
-    output:
-        pdf=f"{RESULTS}/figures/thresholds.pdf",
-        png=report(
-            f"{RESULTS}/figures/thresholds.png",
-            caption="../report/shared_figure.rst",
-            category=SHARED["thresholds"].category,
-            subcategory="all scenes",
-            labels=SHARED["thresholds"].labels,
-        ),
-    log:
-        f"{RESULTS}/logs/figure-thresholds.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figure-thresholds.tsv"
-    params:
-        scene={"height": MAIN.height, "width": MAIN.width},
-        tables=lambda w, input: " ".join(
-            f"--table {Path(t).stem}={t}" for t in input.tables
-        ),
-        caption=SHARED["thresholds"].caption,
-    shell:
-        "python -m twodiscs.cli.figure thresholds --scene {params.scene:q} {params.tables}"
-        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
-
-
 rule thresholds:
     input:
         rules.thresholds_table.output,
-        rules.thresholds_figure.output,
+        shared_figure_files("thresholds"),

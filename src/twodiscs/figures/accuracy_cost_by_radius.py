@@ -85,7 +85,7 @@ def _prediction(width, height, event, found, counts):
     near = last * (1 - np.geomspace(CLOSEST, 0.1, 40))
     radii = np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
     scenes = [Scene(width, height, radius) for radius in radii]
-    total = [theory.rate(s, "any_wall") + theory.rate(s, "disc_collision") for s in scenes]
+    total = [theory.event_rate(s) for s in scenes]
     rates = [theory.rate(s, event) for s in scenes]
     return radii, np.array(total) / np.array(rates) / counts
 

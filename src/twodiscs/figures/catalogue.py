@@ -365,8 +365,7 @@ SHARED = {
 
 
 def caption(name):
-    """Return the caption of the figure ``name`` as plain text; raise ``ValueError`` without "
-    "one."""
+    """Return the caption of the figure ``name`` as plain text; raise ``ValueError`` without."""
     entries = FIGURES | SHARED
     if name not in entries:
         raise ValueError(f"name must be one of {', '.join(entries)}, not {name!r}")
