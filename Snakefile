@@ -1,19 +1,25 @@
 # From one configuration file to every table, every figure, the manuscript and the report.
-# The stages stand in workflow/rules, a file each, in the order in which data flows.
+# The stages stand in workflow/rules, in the order in which data flows.
 import os
 import sys
+from pathlib import Path
 
 from snakemake.utils import min_version
 
-from twodiscs.config import ConfigError, load, read
-from twodiscs.figures.catalogue import ANIMATION, FIGURES, SHARED
-from twodiscs.sources import imported
-from twodiscs.tables import TABLES
+from twodiscs.pipeline.configuration.load import ConfigError, load, read
 
 min_version("9.27")
 
+# Where this workflow stands, whoever uses it and from wherever it is run.
+HERE = Path(str(workflow.current_basedir))
 
-configfile: "config/config.yaml"
+if os.path.exists("config/config.yaml"):
+
+    configfile: "config/config.yaml"
+
+else:
+
+    configfile: str(HERE / "config/config.yaml")
 
 
 try:
@@ -28,33 +34,11 @@ except ConfigError as error:
 
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/grid.smk"
-include: "workflow/rules/theory.smk"
-include: "workflow/rules/compile.smk"
-include: "workflow/rules/forecast.smk"
-include: "workflow/rules/monte_carlo.smk"
-include: "workflow/rules/dynamics.smk"
+include: "workflow/rules/points.smk"
 include: "workflow/rules/tables.smk"
-include: "workflow/rules/check.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/animation.smk"
-include: "workflow/rules/accuracy_cost.smk"
-include: "workflow/rules/effects.smk"
-
-
-if MAIN:  # these are about a scene without effects
-
-    include: "workflow/rules/errata.smk"
-    include: "workflow/rules/stability.smk"
-    include: "workflow/rules/tails.smk"
-    include: "workflow/rules/distributions.smk"
-    include: "workflow/rules/thresholds.smk"
-    include: "workflow/rules/manuscript.smk"
-
-
-include: "workflow/rules/report.smk"
-include: "workflow/rules/verify.smk"
-include: "workflow/rules/benchmark.smk"
+include: "workflow/rules/studies.smk"
+include: "workflow/rules/documents.smk"
 
 
 rule all:

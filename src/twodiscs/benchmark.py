@@ -17,12 +17,23 @@ from statistics import median
 
 import numpy as np
 
-from twodiscs import config, dynamics, montecarlo, scalar
-from twodiscs.cli.arguments import Parser, run
-from twodiscs.invariant import draw_constants
-from twodiscs.scene import EVENTS, Scene
-from twodiscs.streams import open_stream
-from twodiscs.tables import write
+from twodiscs.dynamics import counting
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.intervals import hop_intervals
+from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.scene import Scene
+from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.starts import states
+from twodiscs.studies.accuracy_cost import scalar
+from twodiscs.studies.effects.table import EffectsCost
+
+
+class Benchmark(EffectsCost):
+    """One row a benchmark and variant, all variants of a benchmark measured in one run."""
+
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7
@@ -55,49 +66,42 @@ def interleaved(variants, repetitions=REPETITIONS):
     return {name: median(values) for name, values in speeds.items()}
 
 
-def wall_and_disc_events(sums):
-    """Return how many wall and disc events a count of all events (6) holds."""
-    return int(sums[EVENTS.index("any_wall")] + sums[EVENTS.index("disc_collision")])
-
-
 def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
     """Count ``events``, all of them if not told, fixed end time, statistics by replica."""
-    duration = dynamics.replica_duration(scene)
-    counted, seconds = timed(lambda: dynamics.run_blocks(scene, events, 1, 0, blocks, duration))
-    return wall_and_disc_events(counted[0]), seconds
+    duration = counting.replica_duration(scene)
+    counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
+    return counting.simulated_events(counted[0]), seconds
 
 
 def lockstep_intervals(intervals=5_000_000):
     """Record exact intervals between vertical hops; events are as many as their time holds."""
-    found, seconds = timed(lambda: dynamics.hop_intervals(SCENE, "vertical_hop", intervals, 1))
+    found, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
     return found["intervals"] * found["mean"] * total_rate(), seconds
 
 
 @cache
 def total_rate():
     """Return wall and disc events per unit of time, from one count of many."""
-    duration = dynamics.replica_duration(SCENE)
-    sums, _, eligible = dynamics.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
-    return wall_and_disc_events(sums) / (int(eligible[0]) * duration)
+    duration = counting.replica_duration(SCENE)
+    sums, _, eligible = counting.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
+    return counting.simulated_events(sums) / (int(eligible[0]) * duration)
 
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep`` one trajectory at a time."""
-    duration = dynamics.replica_duration(SCENE)
+    duration = counting.replica_duration(SCENE)
     draw = draw_constants(SCENE)
-    arguments = (dynamics.REPLICAS, duration, SCENE.contact_distance, draw, (0, 0), (False, False))
+    arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0), (False, False))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
-    return wall_and_disc_events(counted[0]), seconds
+    return scalar.simulated_events(counted[0]), seconds
 
 
 def plain_python(replicas=200):
     """Do the same without a compiler."""
-    starts = np.zeros((8, replicas))
-    dynamics.draw_starts(open_stream(np.uint64(1), 0), draw_constants(SCENE), 0, 0, starts)
-    states = [tuple(map(float, state)) for state in starts.T]
-    end = dynamics.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
-    counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in states])
-    return sum(map(wall_and_disc_events, counts)), seconds
+    starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
+    end = counting.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
+    return sum(map(scalar.simulated_events, counts)), seconds
 
 
 def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
@@ -131,7 +135,7 @@ def sampling_engine(blocks=100):
 
 def numpy_sampler(chunks=1000, chunk=16384):
     """Sample the same sets with numpy, in pieces that stay in the cache, the fastest way known."""
-    shells = [montecarlo.shell_thickness(SCENE, event, 0.02) for event in montecarlo.SHELLS]
+    shells = [montecarlo.shell_thickness(SCENE, event, 0.02) for event in SHELLS]
     range_x, range_y, sigma = SCENE.range_x, SCENE.range_y, SCENE.contact_distance
     generator = np.random.Generator(np.random.SFC64(1))
     hits = np.zeros(6, np.int64)
@@ -159,7 +163,7 @@ def numpy_sampler(chunks=1000, chunk=16384):
 def count_until(error):
     """Return (events, processor seconds) until counting knows the mean vertical hop time."""
     result, seconds = timed(
-        lambda: dynamics.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
+        lambda: counting.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
     )
     return result["events"], seconds
 
@@ -170,7 +174,7 @@ def intervals_until(error):
     def work():
         intervals = 500_000
         while True:
-            found = dynamics.hop_intervals(SCENE, "vertical_hop", intervals, 1)
+            found = hop_intervals(SCENE, "vertical_hop", intervals, 1)
             excess = found["stderr"] / found["mean"] / error
             if excess <= 1:
                 return found
@@ -285,12 +289,12 @@ def main():
     parser.add_argument("--table", choices=("benchmark", "effects_cost"), default="benchmark")
     parser.add_argument("--output", default="results/benchmark.csv")
     given = parser.parse_args()
-    requests = (one for path in given.scenes for one in config.load(config.read(path)).scenes)
+    requests = (one for path in given.scenes for one in load(read(path)).scenes)
     effects = {request.name: request.effects for request in requests}
     quick = given.table == "effects_cost"
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)
-    write(given.output, given.table, rows)
+    (EffectsCost if quick else Benchmark).write(given.output, rows)
     for row in rows:
         print(
             f"{row['benchmark']:<34}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"

@@ -1,12 +1,35 @@
-# Every figure of every scene that calls for it, as PDF for the manuscript and as PNG for the screen.
+# Every figure of every scene that calls for it, as PDF for the manuscript and as PNG for the screen; those
+# of studies, which are made once; and the animation, a GIF for any program and a PNG because the report
+# shows no other animated image.
+
+
+def figure_job(scene, entry):
+    """Return what a figure of a scene depends on beside its tables."""
+    given = {"box": scene.box.parameters(), **entry.options}
+    if "trajectory" in entry.tables:
+        given["radius"] = scene.watch.trajectory
+    return given
+
+
+def figure_tables(folder, entry):
+    """Return {name: path} of the tables that a figure of the scene in ``folder`` reads."""
+    return {name: f"{folder}/{name}.csv" for name in entry.tables}
+
+
+def study_figure_tables(entry):
+    """Return {name: path} of the tables that a figure of a study reads."""
+    found = figure_tables(RESULTS, entry)
+    for name in entry.main_tables:
+        if MAIN and name in MAIN.tables:
+            found[name] = table_files(MAIN)[name]
+    return found
 
 
 rule figure:
     input:
-        tables=lambda w: [
-            f"{RESULTS}/{w.scene}/{table}.csv" for table in FIGURES[w.figure].tables
-        ],
-        code=lambda w: code("cli.figure", f"figures.{w.figure}"),
+        tables=lambda w: figure_tables(
+            f"{RESULTS}/{w.scene}", FIGURES[w.figure]
+        ).values(),
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
@@ -17,53 +40,81 @@ rule figure:
             labels=lambda w: FIGURES[w.figure].labels,
         ),
     log:
-        f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
+        log_of("{scene}/figure-{figure}"),
     benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/figure-{{figure}}.tsv"
+        benchmark_of("{scene}/figure-{figure}")
     wildcard_constraints:
         figure="|".join(FIGURES),
     params:
-        scene=lambda w: figure_parameters(SCENES[w.scene], w.figure),
-        tables=lambda w, input: " ".join(
-            f"--table {Path(t).stem}={t}" for t in input.tables
+        job=lambda w: as_json(figure_job(SCENES[w.scene], FIGURES[w.figure])),
+        module=lambda w: FIGURES[w.figure].module,
+        tables=lambda w: named_tables(
+            figure_tables(f"{RESULTS}/{w.scene}", FIGURES[w.figure])
         ),
-        caption=lambda w: FIGURES[w.figure].caption_with(SCENES[w.scene].effects),
+        caption=lambda w: FIGURES[w.figure].full_caption(SCENES[w.scene].effects),
+        code=lambda w: code(FIGURES[w.figure].module),
     shell:
-        "python -m twodiscs.cli.figure {wildcards.figure} --scene {params.scene:q}"
-        " {params.tables} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
-
-
-# Those that are made once, whatever the scenes.
+        "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
+        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
 
 
 rule shared_figure:
     input:
-        tables=lambda w: shared_figure_tables(w.figure),
-        code=lambda w: code("cli.figure", f"figures.{w.figure}"),
+        tables=lambda w: study_figure_tables(STUDY_FIGURES[w.figure]).values(),
     output:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
             f"{RESULTS}/figures/{{figure}}.png",
             caption="../report/shared_figure.rst",
-            category=lambda w: SHARED[w.figure].category,
+            category=lambda w: STUDY_FIGURES[w.figure].category,
             subcategory="all scenes",
-            labels=lambda w: SHARED[w.figure].labels,
+            labels=lambda w: STUDY_FIGURES[w.figure].labels,
         ),
     log:
-        f"{RESULTS}/logs/figure-{{figure}}.log",
+        log_of("figure-{figure}"),
     benchmark:
-        f"{RESULTS}/benchmarks/figure-{{figure}}.tsv"
+        benchmark_of("figure-{figure}")
     wildcard_constraints:
-        figure="|".join(SHARED),
+        figure="|".join(STUDY_FIGURES),
     params:
-        scene={"height": MAIN.height, "width": MAIN.width} if MAIN else {},
-        tables=lambda w, input: " ".join(
-            f"--table {Path(t).stem}={t}" for t in input.tables
-        ),
-        caption=lambda w: SHARED[w.figure].caption,
+        job=as_json({"box": MAIN.box.parameters() if MAIN else None}),
+        module=lambda w: STUDY_FIGURES[w.figure].module,
+        tables=lambda w: named_tables(study_figure_tables(STUDY_FIGURES[w.figure])),
+        caption=lambda w: STUDY_FIGURES[w.figure].full_caption(),
+        code=lambda w: code(STUDY_FIGURES[w.figure].module),
     shell:
-        "python -m twodiscs.cli.figure {wildcards.figure} --scene {params.scene:q}"
-        " {params.tables} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+        "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
+        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+
+
+rule animate:
+    input:
+        table=f"{RESULTS}/{{scene}}/trajectory.csv",
+    output:
+        gif=f"{RESULTS}/{{scene}}/figures/animation.gif",
+        png=report(
+            f"{RESULTS}/{{scene}}/figures/animation.png",
+            caption="../report/figure.rst",
+            category=ANIMATION.category,
+            subcategory="{scene}",
+            labels=ANIMATION.labels,
+        ),
+    log:
+        log_of("{scene}/animation"),
+    benchmark:
+        benchmark_of("{scene}/animation")
+    params:
+        job=lambda w: as_json(figure_job(SCENES[w.scene], ANIMATION)),
+        caption=ANIMATION.full_caption(),
+        code=code("figures.animation"),
+    shell:
+        "{JOB} animation figures.animation --parameters {params.job:q}"
+        " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q} > {log:q} 2>&1"
+
+
+rule animation:
+    input:
+        [animation_files(scene) for scene in SCENES.values()],
 
 
 # A figure's name is a target: that figure, for every scene that calls for it.

@@ -1,12 +1,35 @@
-# What the jobs of a scene found, gathered into tables and set against the exact values.
+# What the jobs of a scene found, gathered into tables and set against the exact values; and the verdict:
+# exact theory = Monte Carlo = molecular dynamics? Its table always comes to be.
+
+GATHERED = {
+    "volume": ["monte_carlo"],
+    "areas": ["monte_carlo"],
+    "mean_times": ["dynamics"],
+    "hop_histogram": ["intervals"],
+    "check": [*STAGES],
+    "cost": [*STAGES],
+}
+
+
+def gathered_points(scene, table):
+    """Return the files that a table of a scene is gathered from."""
+    if table == "cost":
+        return cost_files(scene)
+    return point_files(scene, GATHERED[table])
+
+
+def tables_beside(scene, table):
+    """Return {name: path} of the tables that another one needs; of a forecast, if there is one."""
+    if table != "cost":
+        return {"theory": f"{RESULTS}/{scene}/theory.csv"}
+    path = f"{RESULTS}/forecast.csv"
+    return {"forecast": path} if os.path.exists(path) else {}
 
 
 rule table:
     input:
-        theory=f"{RESULTS}/{{scene}}/theory.csv",
-        points=lambda w: table_points(SCENES[w.scene], w.table),
-        forecast=lambda w: forecast_file(w.table),
-        code=code("cli.tables"),
+        tables=lambda w: tables_beside(w.scene, w.table).values(),
+        points=lambda w: gathered_points(SCENES[w.scene], w.table),
     output:
         table=report(
             ensure(f"{RESULTS}/{{scene}}/{{table}}.csv", non_empty=True),
@@ -15,21 +38,48 @@ rule table:
             subcategory="{scene}",
             labels=lambda w: {
                 "table": w.table,
-                "what a row says": TABLES[w.table].meaning,
+                "what a row says": SCENE_TABLES[w.table].meaning(),
             },
         ),
     log:
-        f"{RESULTS}/logs/{{scene}}/{{table}}_table.log",
+        log_of("{scene}/{table}_table"),
     benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/{{table}}_table.tsv"
+        benchmark_of("{scene}/{table}_table")
     wildcard_constraints:
-        table="volume|areas|mean_times|hop_histogram|cost",
+        table="|".join(GATHERED),
     params:
-        scene=lambda w: table_parameters(SCENES[w.scene]),
-        forecast=lambda w, input: (
-            f"--forecast {input.forecast}" if input.forecast else ""
-        ),
+        job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
+        tables=lambda w: named_tables(tables_beside(w.scene, w.table)),
+        points=f"{RESULTS}/{{scene}}/points",
+        code=code("comparison.gather"),
     shell:
-        "python -m twodiscs.cli.tables {wildcards.table} --scene {params.scene:q}"
-        " --theory {input.theory:q} --points {input.points:q} {params.forecast}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        "{JOB} table comparison.gather --function {wildcards.table}_rows --parameters {params.job:q}"
+        " --table {params.tables:q} --points {params.points:q} --output {output.table:q}"
+        " > {log:q} 2>&1"
+
+
+rule check:
+    input:
+        tables=[
+            files["check"]
+            for files in map(table_files, SCENES.values())
+            if "check" in files
+        ],
+    output:
+        passed=f"{RESULTS}/check.passed",
+    log:
+        log_of("check"),
+    benchmark:
+        benchmark_of("check")
+    params:
+        tables=named_tables(
+            {
+                name: table_files(scene)["check"]
+                for name, scene in SCENES.items()
+                if "check" in scene.tables
+            }
+        ),
+        code=code("comparison.check"),
+    shell:
+        "{JOB} verdict comparison.check --table {params.tables:q} --output {output.passed:q}"
+        " > {log:q} 2>&1"

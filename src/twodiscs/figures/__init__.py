@@ -1,1 +1,1 @@
-"""Figures: one module for each, and the style that they share."""
+"""Figures of a scene, the drawings of geometry, and the kit that they share."""

@@ -14,9 +14,10 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle
 from PIL import Image
 
-from twodiscs.figures import drawing
-from twodiscs.figures.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
-from twodiscs.scene import HOPS, length
+from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.model.checks import length
+from twodiscs.model.events import HOPS
 
 #: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
 DPI = 100
@@ -65,9 +66,8 @@ def moments(rows, step):
 class Stage:
     """The panels and what moves in them, for one stretch of a trajectory."""
 
-    def __init__(self, scene, rows):
-        width, height = drawing.box(scene)
-        radius = length("radius", scene["radius"])
+    def __init__(self, box, radius, rows):
+        width, height, radius = box.width, box.height, length("radius", radius)
         step = (width + height) / CROSSING
         names = ("time", "x1", "y1", "x2", "y2", "event")
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
@@ -173,18 +173,18 @@ class Stage:
         moving["hops"].set_data(hops, 0 * hops)
 
 
-def animate(scene, rows, paths):
+def animate(box, radius, rows, paths):
     """Write an animation of one hop to every one of ``paths``, which are .gif or .png files.
 
-    ``scene`` is a dict of width, height and radius; ``rows`` are those of trajectory.csv, at least
-    two frames of them. Raises ``ValueError`` for anything else.
+    ``box`` is the ``Box`` and ``radius`` that of the discs; ``rows`` are those of trajectory.csv,
+    at least two frames of them. Raises ``ValueError`` for anything else.
     """
     for path in paths:
         if not str(path).endswith((".gif", ".png")):
             raise ValueError(f"output must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise ValueError("rows must be those of a trajectory, not none")
-    stage = Stage(scene, rows)
+    stage = Stage(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():
         artist.set_animated(True)

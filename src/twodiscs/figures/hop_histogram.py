@@ -4,9 +4,9 @@ from itertools import groupby
 
 import numpy as np
 
-from twodiscs import parameters, theory
-from twodiscs.figures import panels
-from twodiscs.figures.style import BLACK, SERIES, new_figure
+from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
+from twodiscs.theory import tails
 
 #: Inches: the panel of all intervals, that of the short ones, the gap between them, the room above.
 ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
@@ -25,7 +25,7 @@ DASH = 0.035
 APART, APART_SHORT = 1.2, 0.4
 
 
-def draw(scene, tables):
+def draw(box, tables):
     """Draw the densities of hop_histogram.csv, in units of the exact mean interval."""
     rows = tables["hop_histogram"]
     figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP)
@@ -49,10 +49,10 @@ def draw(scene, tables):
             axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
-        if "effects" not in scene:
+        if not box.effects:
             first = group[0]
-            here = parameters.scene(scene, first["radius"])
-            value = first["exact_mean"] * theory.density_at_zero(here, first["event"])
+            here = box.scene(first["radius"])
+            value = first["exact_mean"] * tails.density_at_zero(here, first["event"])
             short.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
@@ -64,7 +64,7 @@ def draw(scene, tables):
     panels.letter(whole, "a")
     panels.letter(short, "b")
     hop = rows[0]["event"].replace("_", " ")
-    panels.name_box(whole, scene, f",  {hop}s")
+    panels.name_box(whole, box, f",  {hop}s")
     return figure
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twodiscs.figures import drawing, panels
-from twodiscs.figures.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
 
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
@@ -12,16 +12,15 @@ PANEL, GAP, TOP = 1.15, 0.3, 0.22
 CLOSE = 150
 
 
-def draw(scene, tables):
+def draw(box, tables, radius=None):
     """Draw x2 − x1 against time from trajectory.csv.
 
-    In a box higher than wide, or where x is periodic, it is y2 − y1. ``scene`` may give the radius
-    too, to be written above. The discs move freely between events, or fall alike, so straight lines
+    In a box higher than wide, or where x is periodic, it is y2 − y1. The ``radius``, if given, is
+    written above. The discs move freely between events, or fall alike, so straight lines
     through the rows are the trajectory itself.
     """
-    width, height = drawing.box(scene)
-    periodic = scene.get("effects", {}).get("periodic", "")
-    along_x = "y" in periodic or (width >= height and "x" not in periodic)
+    periodic = box.effects.get("periodic", "")
+    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
     axis, hop = ("x", "horizontal_hop") if along_x else ("y", "vertical_hop")
     rows = tables["trajectory"]
     times = np.array([row["time"] for row in rows])
@@ -44,8 +43,7 @@ def draw(scene, tables):
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0)
-    radius = scene.get("radius")
-    panels.name_box(whole, scene, f",  $r={radius:g}$" if radius else "")
+    panels.name_box(whole, box, f",  $r={radius:g}$" if radius else "")
     return figure
 
 

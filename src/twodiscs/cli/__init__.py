@@ -1,1 +1,0 @@
-"""Command lines: one thin module for each workflow rule, and ``twodiscs`` for people."""

@@ -1,0 +1,179 @@
+"""Each row compares one estimate with the exact theory. `z` is the deviation in standard errors or,
+where a normal law would not be right, the standard normal deviate with the same two-sided
+probability `p`. A row has `passed` when |z| ≤ `bound`.
+
+The bounds are Bonferroni's. If everything is right, a scene fails with a probability of one in a
+thousand at most: half of that is shared equally by all comparisons at a radius, and half by the
+statements on all radii. `z_mean` says whether the scores of one quantity, by one method, scatter
+about zero (√n times their mean), and `z_spread` whether they scatter by one (their sum of squares,
+a χ² of n degrees): errors that are too small or too large show there. Both take the scores whose
+`test` is `normal`, and are exact for any number of them; tails of discrete laws are conservative
+by design and would look too narrow.
+
+A row without an honest error says so in `status`. It is still compared wherever a bound holds: no
+hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
+"""
+
+import math
+from itertools import groupby
+
+from twodiscs.comparison import estimates, scores
+from twodiscs.comparison.rows import ordered
+
+SUM_RULE = ("disc_collision", "right_wall", "top_wall")
+
+
+def _comparison(name, quantity, method, values):
+    """Return a row of check.csv, without a verdict; ``values`` has the columns not named here."""
+    z = values["z"]
+    return {
+        "comparison": name,
+        "quantity": quantity,
+        "radius": values["radius"],
+        "method": method,
+        "exact": values["exact"],
+        "estimate": values["estimate"],
+        "stderr": values["stderr"],
+        "z": z,
+        "p": None if z is None else scores.two_sided_p(z),
+        "bound": None,
+        "passed": None,
+        "status": values["status"],
+        "test": values["test"],
+    }
+
+
+def _normal_values(radius, exact, estimate, stderr, z):
+    """Return the values of a comparison by a normal law, made only where the error is honest."""
+    status, test = ("too-few", None) if z is None else ("counted", "normal")
+    return {
+        "radius": radius,
+        "exact": exact,
+        "estimate": estimate,
+        "stderr": stderr,
+        "z": z,
+        "status": status,
+        "test": test,
+    }
+
+
+def _sum_rule(scene, point):
+    """Return the comparison of the sum rule for one dynamics point, at the radius of ``scene``."""
+    counts, replicas = point["counts"], point["replicas"]
+    rule = estimates.sum_rule(scene, point["duration"], replicas, counts, point["products"])
+    enough = min(counts[event] for event in SUM_RULE) >= scores.NORMAL
+    stderr = z = None
+    if enough and replicas >= estimates.HONEST and rule.stderr:
+        stderr = rule.stderr
+        z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
+    values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)
+    return _comparison("sum_rule", "mean_times", "dynamics", values)
+
+
+def comparisons(scene, volume, areas, times, histogram, dynamics):
+    """Return one comparison for every estimate at a radius, without verdicts.
+
+    ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
+    points, for the sum rule of plain scenes wherever its three events were counted.
+    """
+    rows = []
+    for name, table in (("volume", volume), ("area", areas)):
+        for row in table:
+            values = {**row, "exact": row["expectation"]}
+            rows.append(_comparison(name, row["quantity"], row["method"], values))
+    for row in times:
+        rows.append(_comparison("mean_time", f"{row['event']}_time", "dynamics", row))
+    for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
+        row = next(bins)
+        values = _normal_values(
+            radius, row["exact_mean"], row["mean"], row["mean_stderr"], row["z"]
+        )
+        rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
+    for point in ordered(dynamics):
+        if set(SUM_RULE) <= set(point["counts"]) and not scene.has_effects:
+            rows.append(_sum_rule(scene.with_radius(point["radius"]), point))
+    return sorted(rows, key=lambda row: row["radius"])
+
+
+def distributions(rows):
+    """Return, for each quantity and method, whether its scores over radii look standard normal.
+
+    Two comparisons each, ``z_mean`` and ``z_spread``, of the scores that a normal law gave, at two
+    radii or more.
+    """
+    groups = {}
+    for row in rows:
+        if row["test"] == "normal":
+            groups.setdefault((row["quantity"], row["method"]), []).append(row["z"])
+    found = []
+    for (quantity, method), z in groups.items():
+        n = len(z)
+        if n > 1:
+            mean = {
+                "exact": 0.0,
+                "estimate": math.fsum(z) / n,
+                "stderr": 1 / math.sqrt(n),
+                "z": scores.z_mean(z),
+                "test": "normal",
+            }
+            spread = {
+                "exact": 1.0,
+                "estimate": math.sqrt(math.fsum(x * x for x in z) / n),
+                "stderr": None,
+                "z": scores.z_spread(z),
+                "test": "chi-square",
+            }
+            for name, values in (("z_mean", mean), ("z_spread", spread)):
+                values |= {"radius": None, "status": None}
+                found.append(_comparison(name, quantity, method, values))
+    return found
+
+
+def judged(rows, alarm):
+    """Return ``rows`` with verdicts, by Bonferroni's bound for a false-alarm probability."""
+    tested = sum(row["z"] is not None for row in rows)
+    bound = scores.bonferroni_bound(tested, alarm) if tested else None
+    return [
+        row if row["z"] is None else {**row, "bound": bound, "passed": abs(row["z"]) <= bound}
+        for row in rows
+    ]
+
+
+def check_rows(rows, alarm=scores.FALSE_ALARM):
+    """Return the rows of check.csv: the comparisons ``rows`` and their distributions, judged.
+
+    The probability that any of them fails although all is right is at most ``alarm``, half of it
+    for the comparisons at a radius and half for the distributions.
+    """
+    return judged(rows, alarm / 2) + judged(distributions(rows), alarm / 2)
+
+
+def failure(scene, row):
+    """Return the sentence on a comparison that failed, naming quantity and radius."""
+    where = "over all radii" if row["radius"] is None else f"at radius {row['radius']!r}"
+    return (
+        f"{scene}: {row['comparison']} of {row['quantity']} {where} by {row['method']} has "
+        f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
+    )
+
+
+def summary(scene, rows):
+    """Return the sentence on a scene that passed, with how much of it says little."""
+    tested = [row for row in rows if row["passed"] is not None]
+    few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
+    largest = max((abs(row["z"]) for row in tested), default=0.0)
+    return (
+        f"{scene}: {len(tested)} comparisons passed, largest |z| {largest:.3g}; {few} of them had "
+        f"too few events for an error, {len(rows) - len(tested)} more could not be compared"
+    )
+
+
+def verdict(tables):
+    """Return (failures, text that sums up) of the check tables of scenes, {scene: rows}."""
+    failures = [
+        failure(scene, row)
+        for scene, rows in tables.items()
+        for row in rows
+        if row["passed"] is False
+    ]
+    return failures, "".join(f"{summary(scene, rows)}\n" for scene, rows in tables.items())

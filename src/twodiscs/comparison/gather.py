@@ -1,0 +1,103 @@
+"""The tables of a scene, from the files of its points and the exact values."""
+
+import json
+from pathlib import Path
+
+from twodiscs.comparison import check, rows
+from twodiscs.model.events import EVENTS
+
+#: What a point of each stage has and no other one has.
+MARKS = {"monte_carlo": "quantities", "dynamics": "products", "intervals": "bin_width"}
+
+
+def _no_number(text):
+    raise ValueError(f"{text} is no number")
+
+
+def _read(path):
+    """Return what the JSON file at ``path`` holds, an object."""
+    try:
+        point = json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=_no_number)
+    except ValueError as error:
+        raise ValueError(f"{path} is not the file of a point: {error}") from None
+    if not isinstance(point, dict):
+        raise ValueError(f"{path} is not the file of a point: it holds no JSON object")
+    return point
+
+
+def read_points(folder, keys):
+    """Return {stage: points} from the files ``folder``/stage/key.json; ``keys`` is {stage: keys}.
+
+    Raises ``ValueError`` for a file that holds no point of its stage, ``OSError`` for a missing
+    one.
+    """
+    found = {stage: [] for stage in MARKS}
+    for stage, names in keys.items():
+        for name in names:
+            path = Path(folder, stage, f"{name}.json")
+            point = _read(path)
+            if MARKS[stage] not in point:
+                raise ValueError(f"{path} is not the file of a {stage} point")
+            found[stage].append(point)
+    return found
+
+
+def _scene_of(box, points):
+    """Return the ``Scene`` of the first point there is."""
+    return box.scene(next(point["radius"] for some in points.values() for point in some))
+
+
+def volume_rows(tables, points, box, keys, watched=EVENTS):
+    """Return the rows of volume.csv; ``points`` is a list of the folder that holds them."""
+    found = read_points(points[0], keys)
+    return rows.volume_rows(rows.exact_values(tables["theory"]), found["monte_carlo"])
+
+
+def areas_rows(tables, points, box, keys, watched=EVENTS):
+    """Return the rows of areas.csv for the ``watched`` events."""
+    found, exact = read_points(points[0], keys), rows.exact_values(tables["theory"])
+    return rows.area_rows(_scene_of(box, found), exact, found["monte_carlo"], watched)
+
+
+def mean_times_rows(tables, points, box, keys, watched=EVENTS):
+    """Return the rows of mean_times.csv."""
+    found, exact = read_points(points[0], keys), rows.exact_values(tables["theory"])
+    return rows.mean_time_rows(_scene_of(box, found), exact, found["dynamics"])
+
+
+def hop_histogram_rows(tables, points, box, keys, watched=EVENTS):
+    """Return the rows of hop_histogram.csv."""
+    found = read_points(points[0], keys)
+    return rows.histogram_rows(rows.exact_values(tables["theory"]), found["intervals"])
+
+
+def check_rows(tables, points, box, keys, watched=EVENTS):
+    """Return the rows of check.csv."""
+    found, exact = read_points(points[0], keys), rows.exact_values(tables["theory"])
+    scene = _scene_of(box, found)
+    compared = check.comparisons(
+        scene,
+        rows.volume_rows(exact, found["monte_carlo"]),
+        rows.area_rows(scene, exact, found["monte_carlo"], watched),
+        rows.mean_time_rows(scene, exact, found["dynamics"]),
+        rows.histogram_rows(exact, found["intervals"]),
+        found["dynamics"],
+    )
+    return check.check_rows(compared)
+
+
+def cost_rows(tables, points, keys, box=None, watched=EVENTS):
+    """Return the rows of cost.csv, with the forecast of the scene if ``tables`` have one."""
+    folder = Path(points[0])
+    costs = [
+        (stage, float(name), _read(folder / "cost" / f"{stage}-{name}.json"))
+        for stage, names in keys.items()
+        for name in names
+    ]
+    scene = folder.resolve().parent.name
+    forecast = {
+        (row["stage"], row["radius"]): row["seconds"]
+        for row in tables.get("forecast", [])
+        if row["scene"] == scene
+    }
+    return rows.cost_rows(costs, forecast)

@@ -1,0 +1,187 @@
+"""How far an estimate is from the exact value: z, and the bounds for many comparisons at once.
+
+A z-score is always a standard normal deviate: a test whose own law is not normal gives a two-sided
+p-value that is never too small, and z is the deviate with that p-value. Positive z means that the
+estimate is above the exact value.
+"""
+
+import math
+
+from scipy.special import betainc, gammainc, gammaincc, log_ndtr, ndtr, ndtri, ndtri_exp
+
+from twodiscs.comparison.estimates import (
+    CLUSTER,
+    HONEST,
+    checked_hits,
+    effective_count,
+    moments_of,
+    real,
+)
+from twodiscs.model.checks import proportion, whole
+
+#: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
+#: skewness 1/√n: five errors out, n = 1000 doubles one tail and n = 100 multiplies it by eight.
+NORMAL = 1000
+
+#: Probability that a check of one scene fails although everything is right.
+FALSE_ALARM = 1e-3
+
+
+def two_sided_p(z):
+    """Return the probability that a standard normal deviate is at least as far out as ``z``."""
+    return float(2 * ndtr(-abs(z)))
+
+
+def _deviate(log_p):
+    """Return |z| of a two-sided p-value, given its logarithm; finite far beyond p = 1e-308."""
+    return float(-ndtri_exp(log_p - math.log(2))) if log_p < 0 else 0.0
+
+
+def _signed(size, sign):
+    """Return ``size`` with the sign of ``sign``, but no negative zero."""
+    return math.copysign(size, sign) if size else 0.0
+
+
+def _doubled(low, high, log_bound):
+    """Return |z| for the smaller of two tails, doubled; ``log_bound`` serves when it underflows."""
+    tail = float(min(low, high))
+    return _deviate(math.log(2) + (math.log(tail) if tail > 1e-290 else log_bound))
+
+
+def _entropy(x, mean):
+    """x ln(x/mean) − x + mean: what Chernoff's bound has in the exponent for a Poisson count."""
+    return (x * math.log(x / mean) if x else 0.0) - x + mean
+
+
+def student_deviate(t, degrees):
+    """Return the normal deviate as far out as ``t`` is for Student's law, sign kept.
+
+    Wallace, Ann. Math. Stat. 30, 1121 (1959): within 1e-3 for |t| ≤ 8 and degrees ≥ 99, and free of
+    underflow. ``degrees`` ≥ 1.
+    """
+    degrees = whole("degrees", degrees, 1)
+    t = real("t", t, low=-math.inf)
+    size = math.sqrt(degrees * math.log1p(t * t / degrees))
+    return math.copysign(size * (8 * degrees + 1) / (8 * degrees + 3), t)
+
+
+def binomial_z(hits, samples, probability):
+    """Return (z, test) of ``hits`` against the exact ``probability`` of one.
+
+    ``test`` says how: "normal" where at least 1000 hits and 1000 misses are expected, with the
+    variance of the exact probability; "exact-tail" otherwise, the smaller tail of the binomial law
+    doubled. Doubling, unlike a mid-p, never rejects more often than p says, so the false alarms of
+    a family of tests stay below what is stated; the price is that z is discrete and short of
+    normal. Where the tail underflows, Chernoff's bound takes its place. "certain" is a probability
+    of 0 or 1: z is 0 or infinite. ``probability`` in [0, 1].
+    """
+    hits, samples = checked_hits(hits, samples)
+    p = real("probability", probability, high=1.0, ends=True)
+    if p in (0.0, 1.0):
+        return _signed(0.0 if hits == p * samples else math.inf, 0.5 - p), "certain"
+    misses, expected, expected_misses = samples - hits, samples * p, samples * (1 - p)
+    if min(expected, expected_misses) >= NORMAL:
+        return (hits - expected) / math.sqrt(expected * (1 - p)), "normal"
+    low = betainc(misses, hits + 1, 1 - p) if misses else 1.0
+    high = betainc(hits, misses + 1, p) if hits else 1.0
+    bound = -_entropy(hits, expected) - _entropy(misses, expected_misses)
+    return _signed(_doubled(low, high, bound), hits - expected), "exact-tail"
+
+
+def shells_z(hits, both, samples, measures, probabilities):
+    """Return (z, test) of Σ_i measure_i · hits_i/samples over two sets that overlap.
+
+    ``hits``, ``measures`` and ``probabilities`` are pairs, as for ``binomial_z``; ``both`` is the
+    number of samples in both sets, which stands in for the one probability that is not known.
+    "normal" if both parts are; otherwise "exact-tail", by ``union_z``, or "certain" if both are.
+    """
+    parts = [binomial_z(h, samples, p) for h, p in zip(hits, probabilities, strict=True)]
+    both, _ = checked_hits(both, samples)
+    (m1, m2), (p1, p2) = measures, probabilities
+    deviation = m1 * (hits[0] / samples - p1) + m2 * (hits[1] / samples - p2)
+    if all(test == "normal" for _, test in parts):
+        overlap = both / samples - p1 * p2
+        variance = m1**2 * p1 * (1 - p1) + m2**2 * p2 * (1 - p2) + 2 * m1 * m2 * overlap
+        return deviation / math.sqrt(variance / samples), "normal"
+    certain = all(test == "certain" for _, test in parts)
+    return union_z([z for z, _ in parts], deviation), "certain" if certain else "exact-tail"
+
+
+def union_z(parts, sign):
+    """Return the deviate of a sum of parts, tested by its parts: Bonferroni's p = k · min p_i.
+
+    For a sum whose own law is unknown, as that of counts in two shells that overlap; it holds for
+    any dependence of the parts. ``parts`` are their deviates, and ``sign`` is any number with the
+    sign of the sum's deviation.
+    """
+    largest = max((abs(z) for z in parts), default=0.0)
+    log_p = math.log(2 * max(len(parts), 1)) + float(log_ndtr(-largest))
+    return _signed(_deviate(log_p), sign)
+
+
+def mean_time_z(total, squares, replicas, duration, exact):
+    """Return (z, test) of a measured mean time against the ``exact`` one.
+
+    The count is tested, for ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased; the sign is turned,
+    so that positive still means a time that is too long. ``test`` is
+
+    - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
+      as a normal deviate.
+    - "cluster-bound" below: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ)) with
+      h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds where a replica that sees
+      the event sees at most K; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be false,
+      for hops come in clusters.
+    - "certain" for an impossible event, ``exact`` = None: any count at all gives −∞.
+    """
+    total, squares, replicas = moments_of(total, squares, replicas)
+    duration = real("duration", duration)
+    if exact is None:
+        return (-math.inf if total else 0.0), "certain"
+    expected = duration / real("exact", exact)
+    if replicas >= HONEST and effective_count(total, squares, replicas) >= NORMAL:
+        error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
+        return student_deviate((expected - total / replicas) / error, replicas - 1), "normal"
+    cluster = max(CLUSTER, squares / total) if total else CLUSTER
+    exponent = _entropy(total / cluster, expected * replicas / cluster)
+    size = _deviate(math.log(2) - exponent)
+    return _signed(size, expected * replicas - total), "cluster-bound"
+
+
+def chi2_p(chi2, degrees):
+    """Return the probability of a larger χ² of so many ``degrees`` of freedom."""
+    return float(gammaincc(degrees / 2, chi2 / 2))
+
+
+def bonferroni_bound(comparisons, alarm=FALSE_ALARM):
+    """Return the |z| that one of ``comparisons`` passes by chance with probability ≤ ``alarm``."""
+    comparisons = whole("comparisons", comparisons, 1)
+    return float(-ndtri(proportion("alarm", alarm) / (2 * comparisons)))
+
+
+def _scores(z):
+    scores = [real("z", value, low=-math.inf) for value in z]
+    if not scores:
+        raise ValueError("z must not be empty")
+    return scores
+
+
+def z_mean(z):
+    """Return √n times the mean of n scores: a standard normal deviate if they are n of them.
+
+    It finds what is shifted by less than a single comparison would notice.
+    """
+    scores = _scores(z)
+    return math.fsum(scores) / math.sqrt(len(scores))
+
+
+def z_spread(z):
+    """Return the deviate of the χ² of n scores, positive when they spread too widely.
+
+    The χ² law of n degrees is exact for every n; the smaller tail is doubled. It finds errors that
+    are too small, and those that are too large, which no single comparison can. All zeros: −∞.
+    """
+    scores = _scores(z)
+    half, half_chi2 = len(scores) / 2, math.fsum(z * z for z in scores) / 2
+    low, high = gammainc(half, half_chi2), gammaincc(half, half_chi2)
+    bound = -_entropy(half, half_chi2) if half_chi2 else -math.inf
+    return _signed(_doubled(low, high, bound), low - high)

@@ -1,0 +1,1 @@
+"""Molecular dynamics: one event, the ensemble, counts, intervals, a trajectory."""

@@ -1,0 +1,337 @@
+"""Counts of events in a fixed time, from starts of the invariant measure.
+
+The mean count in a time T is rate × T exactly, for every T and without burn-in; the spread between
+independent replicas gives its error.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    PASSES,
+    REPLICAS,
+    nearest_power_of_two,
+    new_rows,
+    put_state,
+    state_at,
+)
+from twodiscs.dynamics.law import (
+    DISC,
+    END_OF_TIME,
+    WALL_X1,
+    WALL_Y1,
+    after_event,
+    crosses,
+    law_of,
+    next_event,
+)
+from twodiscs.model.box import Box
+from twodiscs.model.checks import one_of, proportion, whole
+from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
+from twodiscs.model.scene import a_scene
+from twodiscs.sampling.jit import compiled, tally
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import exact
+
+#: Looks at which lanes have ended between two unpackings of the counts: a packed count must stay
+#: below 256.
+LOOKS = 31
+
+#: Wall and disc events that a replica is meant to last; fewer where an open hop happens less than
+#: so many times in it.
+EVENTS_PER_REPLICA = 256
+HOPS_PER_REPLICA = 4
+EVENTS_BETWEEN_RARE_HOPS = 64
+
+#: Blocks of the first round, and how many times the work done so far a round may be: an error seen
+#: in few events predicts badly.
+FIRST_ROUND = 32
+GROWTH = 8.0
+
+# How events are counted --------------------------------------------------------------------------
+
+# How a flight shows an event, as a function of the code of its end and the states before and after.
+
+
+def _hop_seen(event):
+    k = "xy".index(event.axis)
+    return lambda code, a, b: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
+
+
+def _wall_seen(event):
+    k, wall = "xy".index(event.axis), WALL_X1 if event.axis == "x" else WALL_Y1
+    if event.side > 0:
+        return lambda code, a, b: (code == wall) & (b[k] > 0.0)
+    return lambda code, a, b: (code == wall) & (b[k] < 0.0)
+
+
+SEEN = by_kind(
+    "dynamics/counting.py",
+    {
+        "hop": _hop_seen,
+        "collision": lambda event: lambda code: code == DISC,
+        "wall": _wall_seen,
+        # Collisions of the discs too; they are subtracted where a replica ends.
+        "walls": lambda event: lambda code: code > END_OF_TIME,
+    },
+)
+
+N = len(EVENTS)
+COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
+
+#: The row of disc 1's coordinate along the axis of each event, 0 for those without one.
+ALONG = tuple("xy".index(DECLARED[event].axis or "x") for event in EVENTS)
+
+#: A lane counts in a double: fields of eight bits, so many of which it holds. A second double takes
+#: the events that the first one has no room for.
+FIELDS = 6
+if N > 2 * FIELDS:
+    raise TypeError(f"dynamics/counting.py has room for {2 * FIELDS} events, not for {N}")
+
+
+def _word(events):
+    # What is not watched is not compiled.
+    groups = {"hop": "hops", "wall": "walls"}
+    counters = (
+        (256.0**field, SEEN[event], groups.get(DECLARED[event].kind))
+        for field, event in enumerate(events)
+    )
+    return tally(counters, "code, before, after, hops, walls")
+
+
+first_word, second_word = _word(EVENTS[:FIELDS]), _word(EVENTS[FIELDS:])
+
+
+@compiled
+def unpack(packed, more, counts, lane):
+    """Move the packed counts of a ``lane`` to ``counts`` (n, lanes)."""
+    words = np.int64(packed[lane]), np.int64(more[lane])
+    packed[lane] = more[lane] = 0.0
+    for e in range(N):
+        counts[e, lane] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
+
+
+@compiled
+def count_blocks(
+    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, needed, hops, walls
+):
+    """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
+
+    Returns (sums, products, eligible): Σ N_e (n), Σ N_e N_f for e ≤ f (n, n) over all replicas, and
+    how many replicas can see each event (n), all int64, in the order of EVENTS. Starts come from
+    ``draw`` with ``sides`` as in ``draw_configuration``, or from ``prism`` unless it is None.
+    ``needed`` says for each event on which side of disc 2 disc 1 has to start to see it (+1, −1, or
+    0 for any). ``hops`` and ``walls`` are True or None: what is None is not compiled.
+    """
+    rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
+    remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    packed, more = np.zeros(lanes), np.zeros(lanes)
+    counts, one = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
+    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    eligible, busy = np.zeros(N, np.int64), np.zeros(lanes, np.bool_)
+    block, used, running, looks = first, replicas, 0, 0
+
+    while True:
+        for i in range(lanes):
+            if remaining[i] > 0.0:
+                continue
+            if busy[i]:
+                unpack(packed, more, counts, i)
+                for e in range(N):
+                    one[e] = counts[e, i]
+                    counts[e, i] = 0
+                one[ANY_WALLS] -= one[COLLISIONS]
+                for e in range(N):
+                    sums[e] += one[e]
+                    for f in range(e, N):
+                        products[e, f] += one[e] * one[f]
+                busy[i] = False
+                running -= 1
+            if used == replicas and block < stop:
+                draw_any_starts(open_stream(seed, block), draw, sides, starts, prism)
+                block, used = block + 1, 0
+            if used < replicas:
+                put_state(rows, i, starts[:, used], law)
+                remaining[i] = duration
+                busy[i] = True
+                running += 1
+                for e in range(N):
+                    apart = starts[ALONG[e], used] - starts[ALONG[e] + 2, used]
+                    eligible[e] += 0 if needed[e] * apart < 0.0 else 1
+                used += 1
+        if running == 0:
+            return sums, products, eligible
+
+        for _ in range(PASSES):
+            for i in range(lanes):
+                times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
+            for i in range(lanes):
+                # Everything is loaded before anything is stored.
+                before, code, first_count = state_at(rows, i, law), codes[i], packed[i]
+                second_count = more[i] if N > FIELDS else 0.0
+                remaining[i] -= times[i]
+                after = after_event(before, times[i], code, law)
+                put_state(rows, i, after, law)
+                packed[i] = first_word(first_count, code, before, after, hops, walls)
+                if N > FIELDS:
+                    more[i] = second_word(second_count, code, before, after, hops, walls)
+        looks += 1
+        if looks == LOOKS:
+            looks = 0
+            for i in range(lanes):
+                unpack(packed, more, counts, i)
+
+
+def simulated_events(sums):
+    """Return how many wall hits and disc collisions there are among the counts of all events."""
+    return int(sums[COLLISIONS] + sums[ANY_WALLS])
+
+
+def replica_duration(scene):
+    """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
+
+    That is long enough for drawing a start to cost little. Where an open hop happens less than
+    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts of wall hits
+    have two states: then more and shorter replicas know the mean better for the same work.
+    """
+    rate = exact.event_rate(scene)
+    duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
+    times = exact.mean_times(scene)
+    if any(scene.is_possible(hop) and HOPS_PER_REPLICA * times[hop] > duration for hop in HOPS):
+        return nearest_power_of_two(EVENTS_BETWEEN_RARE_HOPS / rate)
+    return duration
+
+
+def run_blocks(
+    scene, events, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES, sides=(0, 0)
+):
+    """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
+
+    A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
+    ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
+    detected: without a hop among them no crossing is looked for. Returns (sums, products,
+    eligible) as ``count_blocks`` does. They are integers: two shards add up to the whole.
+    """
+    hops = True if any(event in HOPS for event in events) else None
+    walls = True if any(event in WALLS for event in events) else None
+    needed = tuple(scene.needed_side(event) for event in EVENTS)
+    return count_blocks(
+        np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
+        sides, needed, hops, walls,
+    )  # fmt: skip
+
+
+def relative_errors(sums, products, eligible):
+    """Return the relative standard error of each mean count (n), inf where nothing was counted.
+
+    Replicas are independent, so the error is √(var N / R) / ⟨N⟩ over the replicas that can see the
+    event.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = sums / eligible
+        variance = np.maximum(np.diag(products) / eligible - mean**2, 0.0)
+        errors = np.sqrt(variance / eligible) / mean
+    return np.where(sums > 0, errors, np.inf)
+
+
+def count_events(scene, target, budget, seed, report=None):
+    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
+
+    ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
+    blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
+    events to simulate; a block of replicas is the least that is. Work goes in rounds: the first
+    one is small, the next ones as long as the errors seen so far predict. ``report``, if given, is
+    called after each round with a text on what is done and the work that is left, over that done.
+
+    Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
+    events simulated, and for each watched event how many replicas can see it (eligible), its count
+    ΣN, its target and status (reached, budget or impossible); products hold ΣN_a N_b of each pair.
+    Raises ``ValueError`` for an unknown event or a number out of range.
+    """
+    a_scene(scene)
+    if not isinstance(target, dict) or not target:
+        raise ValueError(f"target must name at least one event, with its error, not {target!r}")
+    target = {
+        one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
+    }
+    budget, seed = whole("budget", budget), whole("seed", seed, 0)
+
+    duration = replica_duration(scene)
+    events = [event for event in EVENTS if event in target]
+    waited = [event for event in events if scene.is_possible(event)]
+    index = [EVENTS.index(event) for event in waited]
+    goals = np.array([target[event] for event in waited])
+
+    n = len(EVENTS)
+    sums, products, eligible = (np.zeros(shape, np.int64) for shape in (n, (n, n), n))
+    rate = exact.event_rate(scene)
+    affordable = int(budget / (REPLICAS * rate * duration))
+    blocks = max(1, min(FIRST_ROUND, affordable))
+    done, rounds = 0, 0
+    while True:
+        for total, part in zip(
+            (sums, products, eligible),
+            run_blocks(scene, events, seed, done, done + blocks, duration),
+            strict=True,
+        ):
+            total += part
+        done, rounds = done + blocks, rounds + 1
+        simulated = simulated_events(sums)
+        if not waited:
+            break
+        excess = relative_errors(sums, products, eligible)[index] / goals
+        worst = float(np.max(excess))
+        # In units of the work done so far: what the error asks for, and what the budget allows.
+        missing, affordable = 1.05 * worst * worst - 1.0, budget / simulated - 1.0
+        if report is not None:
+            done_so_far = f"{simulated:.3g} events, error {worst:.2f} of the target"
+            report(done_so_far, max(0.0, min(missing, affordable)))
+        if worst <= 1.0 or affordable * done < 1.0:
+            break
+        blocks = math.ceil(min(missing, GROWTH) * done)
+        blocks = min(blocks, math.floor(affordable * done))
+
+    watched = [EVENTS.index(event) for event in events]
+    reached = dict(zip(waited, excess <= 1.0, strict=True)) if waited else {}
+    return {
+        "radius": scene.radius,
+        "duration": duration,
+        "replicas": done * REPLICAS,
+        "rounds": rounds,
+        "events": simulated,
+        "eligible": {EVENTS[e]: int(eligible[e]) for e in watched},
+        "counts": {EVENTS[e]: int(sums[e]) for e in watched},
+        "products": {
+            f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
+            for e in watched
+            for f in watched
+            if e <= f
+        },
+        "target": {event: target[event] for event in events},
+        "status": {
+            e: ("reached" if reached[e] else "budget") if e in reached else "impossible"
+            for e in events
+        },
+    }
+
+
+#: What the work of a job is counted in: an entry of its result.
+WORK = "events"
+
+
+def job(box, radius, accuracy, event_budget, seed, report=None):
+    """Return ``count_events`` for plain values: the job of one radius."""
+    return count_events(box.scene(radius), accuracy, event_budget, seed, report)
+
+
+def compile_kernels(box=None, events=()):
+    """Compile the kernel that counts ``events`` in a ``Box``; without one those of plain scenes."""
+    if box is not None:
+        run_blocks(box.tiny, events, 0, 0, 1, 1.0, replicas=1)
+        return
+    scene = Box(1.5, 1.0).scene(0.2)
+    for one in (EVENTS, HOPS[:1], WALLS[:1], ("any_wall",)):
+        run_blocks(scene, one, 0, 0, 1, 1.0, replicas=1)

@@ -1,0 +1,95 @@
+"""An ensemble of trajectories in lock step: what every experiment with it shares.
+
+Some tens of independent trajectories are kept as arrays, one entry a lane, and each pass of the
+inner loop advances every lane by one event. The loop has no branch, so it is compiled to vector
+instructions. A lane whose trajectory has ended idles for a few passes and is then given the next
+start.
+
+Starts come from streams keyed by block, and sums are integers or taken in the order of the starts.
+So a result depends on the scene, the seed and the blocks, not on lanes, processors or shards.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.sampling.jit import inlined, optional
+
+LANES = 64
+
+#: Passes between two looks at which lanes have ended.
+PASSES = 8
+
+#: Replicas that share a random stream.
+REPLICAS = 1024
+
+
+def nearest_power_of_two(value):
+    """Return the power of two next to ``value`` > 0 on a logarithmic scale.
+
+    Durations and bin widths come from the exact theory, whose last digit may depend on the math
+    library; rounded like this they are the same on every machine.
+    """
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(1.0, exponent if mantissa > math.sqrt(0.5) else exponent - 1)
+
+
+# Rows: the states of all lanes, a tuple of as many arrays as a state has components ---------------
+
+
+@optional(lambda lanes, present: ())
+def pair_of_rows(lanes, present):
+    """Return two arrays, or nothing if the effect they belong to is absent."""
+    return np.zeros(lanes), np.zeros(lanes)
+
+
+@inlined
+def new_rows(lanes, law):
+    """Return the rows of a ``Law``: (lanes,) zeros for each component of a state."""
+    plain = (
+        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes),
+        np.zeros(lanes), np.zeros(lanes), np.zeros(lanes), np.zeros(lanes),
+    )  # fmt: skip
+    deep = pair_of_rows(lanes, law.depth) + pair_of_rows(lanes, law.depth)
+    return plain + deep + pair_of_rows(lanes, law.rough)
+
+
+@optional(lambda rows, k, i, present: ())
+def pair_at(rows, k, i, present):
+    """Return the entries of lane ``i`` in rows ``k`` and ``k`` + 1, or nothing if absent."""
+    return rows[k][i], rows[k + 1][i]
+
+
+@inlined
+def state_at(rows, i, law):
+    """Return the state of lane ``i``."""
+    plain = (
+        rows[0][i], rows[1][i], rows[2][i], rows[3][i],
+        rows[4][i], rows[5][i], rows[6][i], rows[7][i],
+    )  # fmt: skip
+    deep = pair_at(rows, 8, i, law.depth) + pair_at(rows, 10, i, law.depth)
+    return plain + deep + pair_at(rows, 8, i, law.rough)
+
+
+@optional(lambda rows, k, i, state, present: None)
+def put_pair(rows, k, i, state, present):
+    """Set the entries of lane ``i`` in rows ``k`` and ``k`` + 1, unless they are absent."""
+    rows[k][i], rows[k + 1][i] = state[k], state[k + 1]
+
+
+@inlined
+def put_state(rows, i, state, law):
+    """Set the state of lane ``i``."""
+    rows[0][i], rows[1][i], rows[2][i], rows[3][i] = state[0], state[1], state[2], state[3]
+    rows[4][i], rows[5][i], rows[6][i], rows[7][i] = state[4], state[5], state[6], state[7]
+    put_pair(rows, 8, i, state, law.depth)
+    put_pair(rows, 10, i, state, law.depth)
+    put_pair(rows, 8, i, state, law.rough)
+
+
+@inlined
+def across(state, horizontal):
+    """Return the separation and relative velocity along y, or along x if ``horizontal``."""
+    if horizontal is None:
+        return state[1] - state[3], state[5] - state[7]
+    return state[0] - state[2], state[4] - state[6]

@@ -1,0 +1,162 @@
+"""Intervals between hops, each of them an exact draw.
+
+Chains start on the surface of a hop, weighted by the flux through it, and record the next returns:
+no window could cut one off.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    PASSES,
+    across,
+    nearest_power_of_two,
+    new_rows,
+    put_state,
+    state_at,
+)
+from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
+from twodiscs.model.box import Box
+from twodiscs.model.checks import one_of, whole
+from twodiscs.model.events import HOPS
+from twodiscs.model.scene import a_scene
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import exact
+
+#: Successive intervals that a chain records, chains that share a stream, bins of a histogram.
+RETURNS = 256
+CHAINS = 256
+BINS = 512
+
+
+@compiled
+def record_returns(
+    seed, first, stop, chains, lanes, returns, law, draw, prism, horizontal, width, histogram
+):
+    """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
+
+    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
+    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. Adds the
+    intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what is
+    longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in order.
+    """
+    rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
+    times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    chain, found = np.full(lanes, -1), np.zeros(lanes + 1)
+    totals = np.zeros((stop - first) * chains)
+    per_width, last_bin, wanted = 1.0 / width, histogram.size - 1, np.float64(returns)
+    surface = 1 if horizontal is None else 0
+    state = open_stream(seed, first)
+    started, running = 0, 0
+
+    while True:
+        for i in range(lanes):
+            if left[i] > 0.0:
+                continue
+            if chain[i] >= 0:
+                totals[chain[i]] = elapsed[i]
+                chain[i] = -1
+                running -= 1
+            if started == totals.size:
+                continue
+            if started % chains == 0:
+                state = open_stream(seed, first + started // chains)
+            start_on_surface(state, draw, surface, start, prism)
+            put_state(rows, i, start[:, 0], law)
+            chain[i], elapsed[i], age[i] = started, 0.0, 0.0
+            # A start that falls through the surface is seen to cross it at time 0; that is not a
+            # return.
+            _, rising = across(state_at(rows, i, law), horizontal)
+            left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
+            started += 1
+            running += 1
+        if running == 0:
+            return totals
+
+        for _ in range(PASSES):
+            for i in range(lanes):
+                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
+            for i in range(lanes):
+                before, time, waited = state_at(rows, i, law), times[i], age[i]
+                after = after_event(before, time, codes[i], law)
+                put_state(rows, i, after, law)
+                apart, rising = across(before, horizontal)
+                hop = crosses(apart, across(after, horizontal)[0])
+                until, to_come = crossing_time(apart, rising), left[i]
+                recorded = hop & (to_come > 0.0) & (to_come <= wanted)
+                interval = waited + until
+                intervals[i] = interval if recorded else -1.0
+                elapsed[i] += interval if recorded else 0.0
+                age[i] = time - until if hop else waited + time
+                left[i] = to_come - 1.0 if hop else to_come
+            n = 0
+            for i in range(lanes):
+                found[n] = intervals[i]
+                n += 1 if intervals[i] >= 0.0 else 0
+            for k in range(n):
+                histogram[min(np.int64(found[k] * per_width), last_bin)] += 1
+
+
+def hop_intervals(scene, event, intervals, seed):
+    """Draw intervals between hops of one kind, each one exact, and count them in bins.
+
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least.
+    Chains of ``RETURNS`` successive intervals start on the hop's surface with the flux-weighted
+    measure, which the map from hop to hop preserves: so every interval of a chain has the law of
+    the interval between hops. Intervals within a chain are correlated, chains are independent.
+
+    Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
+    number of intervals and of chains, and the mean with its standard error over chains. Raises
+    ``ValueError`` for a hop that is unknown or blocked, or a number out of range.
+    """
+    a_scene(scene)
+    one_of("event", event, HOPS)
+    if not scene.is_possible(event):
+        raise ValueError(
+            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
+        )
+    blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
+    seed = whole("seed", seed, 0)
+    width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
+    upright, horizontal = scene, None
+    if event == "horizontal_hop" and scene.has_effects:
+        horizontal = True
+    elif event == "horizontal_hop":
+        # That is a vertical hop of the box on its side.
+        upright = Box.of(scene).turned().scene(scene.radius)
+    histogram = np.zeros(BINS + 1, np.int64)
+    totals = record_returns(
+        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, law_of(upright), *origins(upright),
+        horizontal, width, histogram,
+    )  # fmt: skip
+    means = totals / RETURNS
+    return {
+        "radius": scene.radius,
+        "event": event,
+        "bin_width": width,
+        "counts": [int(n) for n in histogram[:-1]],
+        "overflow": int(histogram[-1]),
+        "intervals": totals.size * RETURNS,
+        "chains": totals.size,
+        "mean": math.fsum(means) / means.size,
+        "stderr": float(np.std(means, ddof=1) / math.sqrt(means.size)),
+    }
+
+
+#: What the work of a job is counted in: an entry of its result.
+WORK = "intervals"
+
+
+def job(box, radius, event, intervals, seed):
+    """Return ``hop_intervals`` for plain values: the job of one radius."""
+    return hop_intervals(box.scene(radius), event, intervals, seed)
+
+
+def compile_kernels(box=None, event="vertical_hop"):
+    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes."""
+    hop_intervals(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 1, 0)

@@ -1,0 +1,415 @@
+"""One event: when it happens and what it does. Plain floats in, plain floats out.
+
+A state is the tuple (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities, with the origin at
+the centre of the box. Balls append (z1, z2, w1, w2); rough discs append (s1, s2), their spins as
+the speeds rω of their surfaces. The ``Law`` holds what a scene calls for, and None for what it does
+not: each effect is one short function here that does nothing for None, and numba compiles it to
+nothing. So the law of a scene has only the effects of that scene.
+
+Every function is compiled into the lock-step ensemble, into the audit and into the trajectories for
+people, so the law stands in this file only. There are no branches at run time, only selections, so
+that an ensemble advances in vector instructions.
+
+A time is kept as a quotient ``gap / speed`` and quotients are compared by cross-multiplication: one
+division an event instead of five.
+"""
+
+import math
+from typing import NamedTuple
+
+from twodiscs.sampling.jit import inlined, optional
+
+#: What ended a free flight. Codes are floats because they travel in the same registers as the
+#: state. To leave a periodic cell and come back on its other side is no event: those are negative.
+END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
+WALL_Z1, WALL_Z2 = 6.0, 7.0
+WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
+
+#: Normal speeds of approach below this (four roundings of the speed scale, 1) are rest. A collision
+#: at such a speed would be lost in the rounding of the velocities, and happen again and again.
+RESTING_SPEED = 4 * 2.0**-52
+
+#: Where discs are smaller than the spacing of coordinates their centres may coincide, or all but
+#: do. Below this square of their distance there is no line of centres, and they go on as they are.
+VANISHING = 1e-280
+
+
+class Law(NamedTuple):
+    """What the motion of a scene depends on; None for what is absent, lengths otherwise.
+
+    The centre of disc i keeps within ±half_xi; the half-ranges of disc 2 are None where they are
+    those of disc 1, and both are where the axis is periodic. ``wrap_x`` is (half the period, the
+    shares of the period by which disc 1 and disc 2 move when the separation leaves ±half of it).
+    """
+
+    half_x1: float | None
+    half_y1: float | None
+    sigma: float
+    half_x2: float | None = None
+    half_y2: float | None = None
+    half_z1: float | None = None
+    half_z2: float | None = None
+    wrap_x: tuple | None = None
+    wrap_y: tuple | None = None
+    wrap_z: tuple | None = None
+    depth: bool | None = None
+    gravity: float | None = None
+    weights: tuple | None = None  # 2 m2/M, 2 m1/M of unequal masses
+    rough: tuple | None = None  # κ/(1 + κ), 1/(1 + κ) with κ = I/(m r²)
+
+
+def divided(whole, first, second):
+    """Return ``whole`` divided as ``first`` to ``second``, in two parts with exactly this sum.
+
+    Where two bodies share a change of velocity the sum of their parts decides about the energy: a
+    rounding there would be the same in every event, and add up.
+    """
+    larger = whole * (max(first, second) / (first + second))
+    return (larger, whole - larger) if first > second else (whole - larger, larger)
+
+
+def law_of(scene):
+    """Return the ``Law`` of a ``Scene``."""
+    m1, m2 = scene.masses
+    shares = divided(1.0, m2, m1)
+    halves = [
+        {axis: (scene.side(axis) - 2 * radius) / 2 for axis in scene.walled}
+        for radius in scene.radii
+    ]
+    equal = scene.radius_ratio == 1
+    walls = {
+        f"half_{axis}{disc + 1}": halves[disc].get(axis)
+        for axis in scene.axes
+        for disc in range(1 if equal else 2)
+    }
+    wraps = {
+        f"wrap_{axis}": (scene.side(axis) / 2, *(scene.side(axis) * share for share in shares))
+        for axis in scene.periodic
+    }
+    inertia = scene.moment_of_inertia
+    return Law(
+        sigma=scene.contact_distance,
+        depth=None if scene.depth is None else True,
+        gravity=scene.field or None,
+        weights=None if m1 == m2 else divided(2.0, m2, m1),
+        rough=None if inertia is None else divided(1.0, inertia, 1.0),
+        **walls,
+        **wraps,
+    )
+
+
+# Effects: what is absent (None, the last argument) is compiled to nothing ------------------------
+
+
+@optional(lambda other, own: other)
+def either(other, own):
+    """Return ``own``, or ``other`` where that is None."""
+    return own
+
+
+@optional(lambda a, b: None)
+def difference(a, b):
+    """Return a − b, or None where there is no such coordinate."""
+    return a - b
+
+
+@optional(lambda a, b: None)
+def product(a, b):
+    """Return a b, or None where there is no b."""
+    return a * b
+
+
+@optional(lambda x, y, z, u, v, w: x * u + y * v)
+def dot(x, y, z, u, v, w):
+    """Return the scalar product of (x, y, z) and (u, v, w), in the plane without z and w."""
+    return x * u + y * v + z * w
+
+
+def _cross_square(x, y, z, u, v, w):
+    cross = x * v - y * u
+    return cross * cross
+
+
+@optional(_cross_square)
+def cross_square(x, y, z, u, v, w):
+    """Return the square of the vector product of (x, y, z) and (u, v, w)."""
+    c_x, c_y, c_z = y * w - z * v, z * u - x * w, x * v - y * u
+    return c_x * c_x + c_y * c_y + c_z * c_z
+
+
+@optional(lambda state, depth: (None, None, None, None))
+def depth_part(state, depth):
+    """Return (z1, z2, w1, w2), in the plane four times None."""
+    return state[8], state[9], state[10], state[11]
+
+
+@optional(lambda state, rough: ())
+def spins(state, rough):
+    """Return (s1, s2), or nothing for smooth discs."""
+    return state[8], state[9]
+
+
+@optional(lambda position, velocity, time, gravity: (position + velocity * time, velocity))
+def flown(position, velocity, time, gravity):
+    """Return position and velocity after a flight, parabolic in a field."""
+    gained = gravity * time
+    return position + (velocity - 0.5 * gained) * time, velocity - gained
+
+
+@optional(lambda position, time, velocity: None)
+def moved(position, time, velocity):
+    """Return the position after a straight flight, or None where there is no such coordinate."""
+    return position + velocity * time
+
+
+@optional(lambda exchange, disc, weights: exchange)
+def scaled(exchange, disc, weights):
+    """Return the exchange of velocities times the weight of a disc, if masses differ."""
+    return exchange * weights[disc]
+
+
+@optional(lambda q1, q2, relative, hit, wrap: (q1, q2))
+def wrapped(q1, q2, relative, hit, wrap):
+    """Return coordinates whose separation has left ±half a period, moved to its other end.
+
+    The discs share the move so that their centre of mass stays.
+    """
+    q1 -= math.copysign(wrap[1], relative) if hit else 0.0
+    q2 += math.copysign(wrap[2], relative) if hit else 0.0
+    return q1, q2
+
+
+@optional(lambda position, hit, half: position)
+def on_wall(position, hit, half):
+    """Return the position, put on the wall at ±``half`` exactly if it is ``hit``."""
+    return math.copysign(half, position) if hit else position
+
+
+@optional(lambda gap, speed, code, state, law, depth: (gap, speed, code))
+def deep_event(gap, speed, code, state, law, depth):
+    """Return (gap, speed, code) of what comes first: the event given, or one along z."""
+    z1, z2, w1, w2 = depth_part(state, depth)
+    gap_z, speed_z, code_z = axis_quotient(
+        z1, z2, w1, w2, law.half_z1, law.half_z2, None, WALL_Z1, WALL_Z2, WRAP_Z, law.wrap_z
+    )
+    sooner = gap_z * speed < gap * speed_z
+    return gap_z if sooner else gap, speed_z if sooner else speed, code_z if sooner else code
+
+
+@optional(lambda state, time, code, kick, law, depth: ())
+def deep_after(state, time, code, kick, law, depth):
+    """Return what balls append to the state after an event with this ``kick`` along z."""
+    z1, z2, w1, w2 = depth_part(state, depth)
+    relative = w1 - w2
+    z1 = on_wall(z1 + w1 * time, code == WALL_Z1, law.half_z1)
+    z2 = on_wall(z2 + w2 * time, code == WALL_Z2, either(law.half_z1, law.half_z2))
+    z1, z2 = wrapped(z1, z2, relative, code == WRAP_Z, law.wrap_z)
+    w1 = (-w1 if code == WALL_Z1 else w1) - scaled(kick, 0, law.weights)
+    w2 = (-w2 if code == WALL_Z2 else w2) + scaled(kick, 1, law.weights)
+    return z1, z2, w1, w2
+
+
+@optional(lambda state, before, dx, dy, code, weights, rough: state)
+def rolled(state, before, dx, dy, code, weights, rough):
+    """Return ``state`` with what rough surfaces do at the event: their velocities are reversed.
+
+    ``before`` is the state just before the event and (dx, dy) the separation. Where surfaces touch,
+    disc 1 moves along t = (−dy, dx)/|Δx| against disc 2 at g = Δv·t − (s1 + s2); an impulse along t
+    changes velocities and spins so that g becomes −g. At a wall it is the velocity of the disc's
+    surface against the wall that is reversed.
+    """
+    x1, y1, x2, y2, u1, v1, u2, v2 = state
+    s1, s2 = before[8], before[9]
+    turn, spin = rough
+    square = dx * dx + dy * dy
+    meets = (code == DISC) & (square > VANISHING)
+    distance = math.sqrt(square)
+    slip = (dx * (before[5] - before[7]) - dy * (before[4] - before[6])) / distance - (s1 + s2)
+    slip = slip if meets else 0.0
+    push = slip * turn / distance if meets else 0.0
+    push_x, push_y = -dy * push, dx * push
+    u1, v1 = u1 - scaled(push_x, 0, weights), v1 - scaled(push_y, 0, weights)
+    u2, v2 = u2 + scaled(push_x, 1, weights), v2 + scaled(push_y, 1, weights)
+    s1, s2 = s1 + scaled(slip * spin, 0, weights), s2 + scaled(slip * spin, 1, weights)
+    u1, v1, s1 = rolled_on_wall(
+        u1, v1, s1, before[4], before[5], code == WALL_X1, code == WALL_Y1, turn, spin
+    )
+    u2, v2, s2 = rolled_on_wall(
+        u2, v2, s2, before[6], before[7], code == WALL_X2, code == WALL_Y2, turn, spin
+    )
+    return x1, y1, x2, y2, u1, v1, u2, v2, s1, s2
+
+
+@inlined
+def rolled_on_wall(u, v, s, u_before, v_before, on_x, on_y, turn, spin):
+    """Return (u, v, s) of a rough disc that may be on a wall of x or of y."""
+    side_x, side_y = math.copysign(1.0, u_before), math.copysign(1.0, v_before)
+    slip_y, slip_x = v_before + side_x * s, u_before - side_y * s
+    v -= 2.0 * turn * slip_y if on_x else 0.0
+    u -= 2.0 * turn * slip_x if on_y else 0.0
+    s -= 2.0 * spin * side_x * slip_y if on_x else 0.0
+    s += 2.0 * spin * side_y * slip_x if on_y else 0.0
+    return u, v, s
+
+
+# The law ----------------------------------------------------------------------------------------
+
+
+@inlined
+def wall_quotient(position, velocity, limit):
+    """Return (gap, speed) towards the wall ahead, at ±``limit``; the time to it is gap / speed.
+
+    ``speed`` is 0 for a disc that never gets there. A disc that a rounding has put behind the wall
+    it moves to reaches it after a rounding of time.
+    """
+    return abs(math.copysign(limit, velocity) - position), abs(velocity)
+
+
+@optional(lambda position, velocity, limit, gravity: wall_quotient(position, velocity, limit))
+def fall_quotient(position, velocity, limit, gravity):
+    """Return (gap, speed) towards the wall that a disc in a field hits first, at ±``limit``.
+
+    Without a field (None) that is ``wall_quotient``. A disc that rises fast enough, v² > 2 g (limit
+    − y), hits the upper wall; every other one falls on the lower one. The roots of y + v t − g t²/2
+    = ±limit are taken in the forms that do not cancel.
+    """
+    above, below = abs(limit - position), abs(limit + position)
+    square = velocity * velocity
+    left = square - 2.0 * gravity * above
+    at_top, at_bottom = math.sqrt(left), math.sqrt(square + 2.0 * gravity * below)
+    rises = velocity > 0.0
+    hits = rises & (left > 0.0)
+    # Downwards (v + root)/g, which is 2 below/(root − v).
+    gap = velocity + at_bottom if rises else 2.0 * below
+    speed = gravity if rises else at_bottom - velocity
+    return 2.0 * above if hits else gap, velocity + at_top if hits else speed
+
+
+def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
+    gap1, speed1 = fall_quotient(q1, p1, half1, gravity)
+    gap2, speed2 = fall_quotient(q2, p2, either(half1, half2), gravity)
+    # A speed of 0 never wins, because 0 · gap < gap · speed is false; nor does NaN. Disc 1 at rest
+    # on its wall is 0/0, against which disc 2 would not win either, and is set aside.
+    second = (gap2 * speed1 < gap1 * speed2) | (speed1 == 0.0)
+    return gap2 if second else gap1, speed2 if second else speed1, code2 if second else code1
+
+
+@optional(_walls_quotient)
+def axis_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
+    """Return (gap, speed, code) of the first thing that happens along one axis.
+
+    Between walls that is a disc at a wall; on a periodic axis it is the separation at half a
+    period.
+    """
+    gap, speed = wall_quotient(q1 - q2, p1 - p2, wrap[0])
+    return gap, speed, code_wrap
+
+
+@inlined
+def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
+    """Return (gap, speed, approach) for a separation (dx, dy, dz) and relative velocity.
+
+    In the plane dz and dw are None. They touch after gap / speed, if the approach counts and
+    ``speed`` is a number. The equation is a t² + 2 b t + c = 0 with c = |Δx|² − σ², b = Δx·Δv, a =
+    |Δv|². Its discriminant b² − a c is taken as a σ² − (Δx ∧ Δv)², which does not cancel where
+    discs graze; it is negative, and ``speed`` NaN, where they miss. The root is taken as c / (√disc
+    − b), which does not cancel near contact. In a uniform field the relative motion is as straight.
+
+    Whether there is a contact at all is a matter of direction, b < 0, not of a tolerance on the
+    distance: discs that touch and part are left alone, discs that touch and approach collide now.
+    """
+    b = dot(dx, dy, dz, du, dv, dw)
+    c = dot(dx, dy, dz, dx, dy, dz) - sigma * sigma
+    square = dot(du, dv, dw, du, dv, dw) * (sigma * sigma)
+    discriminant = square - cross_square(dx, dy, dz, du, dv, dw)
+    return c, math.sqrt(discriminant) - b, b < -RESTING_SPEED * sigma
+
+
+@inlined
+def next_event(state, remaining, law):
+    """Return (time, code) of the first event within the ``remaining`` time.
+
+    A wall wins over a disc that is tied with it, and of several tied walls one comes now and the
+    others after a time of zero: the outcome is the same, and none is lost.
+    """
+    x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
+    z1, z2, w1, w2 = depth_part(state, law.depth)
+    gap_x, speed_x, code_x = axis_quotient(
+        x1, x2, u1, u2, law.half_x1, law.half_x2, None, WALL_X1, WALL_X2, WRAP_X, law.wrap_x
+    )
+    gap_y, speed_y, code_y = axis_quotient(
+        y1, y2, v1, v2, law.half_y1, law.half_y2, law.gravity, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
+    )
+    gap_d, speed_d, approach = contact_quotient(
+        x1 - x2, y1 - y2, difference(z1, z2), u1 - u2, v1 - v2, difference(w1, w2), law.sigma
+    )
+
+    # A tree of comparisons rather than a chain: shorter for the processor to wait for.
+    sooner = gap_x < remaining * speed_x
+    gap = gap_x if sooner else remaining
+    speed = speed_x if sooner else 1.0
+    code = code_x if sooner else END_OF_TIME
+
+    sooner = gap_y * speed < gap * speed_y
+    gap = gap_y if sooner else gap
+    speed = speed_y if sooner else speed
+    code = code_y if sooner else code
+
+    gap, speed, code = deep_event(gap, speed, code, state, law, law.depth)
+
+    sooner = approach & (gap_d * speed < gap * speed_d)
+    gap = gap_d if sooner else gap
+    speed = speed_d if sooner else speed
+    code = DISC if sooner else code
+
+    time = gap / speed
+    # Discs that overlap by a rounding and approach collide now.
+    return time if time > 0.0 else 0.0, code
+
+
+@inlined
+def after_event(state, time, code, law):
+    """Return the state after a free flight of ``time`` and the event ``code`` that ends it.
+
+    A disc that hits a wall is put on the wall exactly. Discs that collide exchange the components
+    of their velocities along the line of centres, weighted by 2 m/M of the other one; dividing by
+    the |Δx|² of this very moment, not by σ², keeps the energy to a rounding whose sign is random.
+    """
+    x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
+    z1, z2, w1, w2 = depth_part(state, law.depth)
+    du, dv, dw = u1 - u2, v1 - v2, difference(w1, w2)
+    x1, x2 = x1 + u1 * time, x2 + u2 * time
+    y1, v1 = flown(y1, v1, time, law.gravity)
+    y2, v2 = flown(y2, v2, time, law.gravity)
+    dx, dy, dz = x1 - x2, y1 - y2, difference(moved(z1, time, w1), moved(z2, time, w2))
+    square = dot(dx, dy, dz, dx, dy, dz)
+    exchange = dot(dx, dy, dz, du, dv, dw) / square
+    exchange = exchange if (code == DISC) & (square > VANISHING) else 0.0
+    kick_x, kick_y, kick_z = exchange * dx, exchange * dy, product(exchange, dz)
+    before = (x1, y1, x2, y2, u1, v1, u2, v2)
+
+    x1 = on_wall(x1, code == WALL_X1, law.half_x1)
+    y1 = on_wall(y1, code == WALL_Y1, law.half_y1)
+    x2 = on_wall(x2, code == WALL_X2, either(law.half_x1, law.half_x2))
+    y2 = on_wall(y2, code == WALL_Y2, either(law.half_y1, law.half_y2))
+    x1, x2 = wrapped(x1, x2, du, code == WRAP_X, law.wrap_x)
+    y1, y2 = wrapped(y1, y2, dv, code == WRAP_Y, law.wrap_y)
+    u1 = (-u1 if code == WALL_X1 else u1) - scaled(kick_x, 0, law.weights)
+    v1 = (-v1 if code == WALL_Y1 else v1) - scaled(kick_y, 0, law.weights)
+    u2 = (-u2 if code == WALL_X2 else u2) + scaled(kick_x, 1, law.weights)
+    v2 = (-v2 if code == WALL_Y2 else v2) + scaled(kick_y, 1, law.weights)
+    after = (x1, y1, x2, y2, u1, v1, u2, v2)
+    after = rolled(after, before + spins(state, law.rough), dx, dy, code, law.weights, law.rough)
+    return after + deep_after(state, time, code, kick_z, law, law.depth)
+
+
+@inlined
+def crosses(before, after):
+    """Say whether a difference of coordinates changed sign; zero counts as positive."""
+    return (before < 0.0) != (after < 0.0)
+
+
+@inlined
+def crossing_time(before, relative_velocity):
+    """Return when in the flight the difference ``before`` becomes zero: −Δ/Δv, not interpolated."""
+    return -before / relative_velocity

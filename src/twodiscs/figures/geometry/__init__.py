@@ -1,0 +1,1 @@
+"""Drawings of the box and of its configuration space."""

@@ -1,0 +1,109 @@
+"""The largest radius: the jammed discs, and what is open to discs of any radius in any box."""
+
+from math import hypot
+
+from matplotlib.ticker import MultipleLocator
+
+from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, new_figure
+from twodiscs.model.box import Box
+
+#: Inches: the tallest drawing of the box, the room around it, the map beneath and its margins.
+TALLEST, LEFT, RIGHT, ABOVE, BENEATH = 1.75, 0.34, 0.58, 0.08, 0.42
+MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.42, 0.1, 0.36, 1.5
+
+
+def draw(box, tables):
+    """Draw the ``Box`` with discs that just fit, and the map; ``tables`` is not used."""
+    width, height = drawing.outline(box)
+    inches = drawing.scale(width, height, COLUMN - LEFT - RIGHT, TALLEST)
+    floor = MAP_BOTTOM + MAP_HEIGHT + BENEATH
+    figure = new_figure(floor + inches * height + ABOVE)
+    extent = (-width / 2, width / 2, -height / 2, height / 2)
+    left = LEFT + (COLUMN - LEFT - RIGHT - inches * width) / 2
+    _jammed(drawing.place(figure, left, floor, inches, extent), width, height)
+    up = figure.get_figheight()
+    across = COLUMN - MAP_LEFT - MAP_RIGHT
+    place = (MAP_LEFT / COLUMN, MAP_BOTTOM / up, across / COLUMN, MAP_HEIGHT / up)
+    _map(figure.add_axes(place), box)
+    return figure
+
+
+def _jammed(axes, width, height):
+    """Draw the discs at the largest radius, disc 1 in the lower left corner."""
+    radius = Box(width, height).largest_radius
+    a, b = width / 2 - radius, height / 2 - radius
+    right, top = width / 2, height / 2
+    drawing.disc(axes, 1, (-a, -b), radius)
+    drawing.disc(axes, 2, (a, b), radius)
+    drawing.rectangle(axes, -right, right, -top, top, width=1.2)
+    drawing.label(axes, "(a)", (-right, top), (-5, 0), ha="right", va="top")
+
+    point = drawing.points(axes)
+    near, far = 4 * point, 11 * point
+    if a > 0:
+        stops = (-right, -a, a, right)
+        for x in stops:
+            drawing.line(axes, [(x, -top - near), (x, -top - far)], BLACK, 0.4)
+        for start, end, name in zip(stops, stops[1:], ("r", "w-2r", "r"), strict=False):
+            ends = (start, -top - far), (end, -top - far)
+            drawing.dimension(axes, *ends, f"${name}$", (0, -7))
+    else:
+        ends = (-right, -top - far), (right, -top - far)
+        drawing.dimension(axes, *ends, "$w=2r$", (0, -7))
+    if b > 0:
+        stops = (-top, -b, b, top)
+        for y in stops:
+            drawing.line(axes, [(right + near, y), (right + far, y)], BLACK, 0.4)
+        for start, end, name in zip(stops, stops[1:], ("r", "h-2r", "r"), strict=False):
+            ends = (right + far, start), (right + far, end)
+            drawing.dimension(axes, *ends, f"${name}$", (4, 0), ha="left")
+    else:
+        ends = (right + far, -top), (right + far, top)
+        drawing.dimension(axes, *ends, "$h=2r$", (4, 0), ha="left")
+    if a > 0 and b > 0:
+        legs = [(-a, -b), (a, -b), (a, b)]
+        drawing.line(axes, legs, BLACK, 0.6, (0, (3, 2)))
+        drawing.line(axes, [(-a, -b), (a, b)], BLACK, 0.9)
+        away = 6 / hypot(a, b)
+        drawing.label(axes, "$2r$", (-a / 2, -b / 2), (-away * b, away * a))
+
+
+def _map(axes, box):
+    """Draw the regimes over the shape of the box, lengths in its short side, and mark this box."""
+    width, height = box.width, box.height
+    wide = width >= height
+    long, short, hops = ("w", "h", "vertical") if wide else ("h", "w", "horizontal")
+    shape = max(width, height) / min(width, height)
+    last = 3.4
+
+    # Up to twice as long as short the discs jam along a diagonal, beyond they span the short side.
+    bent = [1 + i / 100 for i in range(101)]
+    passing = [x / 4 for x in bent]
+    largest = [Box(x, 1).largest_radius for x in bent]
+    pieces = ([*bent, last], [*passing, 0.5])
+    axes.fill_between([1, last], 0.25, color="#DCEBF5", lw=0)
+    axes.fill_between(*pieces, 0.25, color="#F3E3B5", lw=0)
+    axes.fill_between(bent, passing, largest, color="#F8DDC8", lw=0)
+    axes.plot([1, last], [0.25, 0.25], color=BLACK, lw=0.6)
+    axes.plot(bent, passing, color=BLACK, lw=0.6)
+    axes.plot([*bent, last], [*largest, 0.5], color=BLACK, lw=1.2)
+
+    end = box.largest_radius / box.shortest
+    if shape < last:
+        axes.plot([shape, shape], [0, end], color=GREY, lw=0.8, ls=(0, (3, 2)), clip_on=False)
+        axes.plot(shape, end, "o", color=BLACK, clip_on=False, zorder=5)
+    else:
+        drawing.arrow(axes, (last - 0.25, 0.46), (last, 0.46))
+        drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
+    axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
+    drawing.label(axes, "(b)", (1, 0.6), (5, -4), ha="left", va="top")
+    clear = 2.3 if shape > 2.45 else 2.9
+    drawing.label(axes, "both hops", (clear, 0.125))
+    drawing.label(axes, f"{hops} hops", (clear, 0.375))
+    drawing.label(axes, f"$r={short}/4$", (1, 0.25), (5, -7), ha="left")
+    drawing.label(axes, rf"$r_{{\mathrm{{max}}}}={short}/2$", (last, 0.5), (-4, 7), ha="right")
+    drawing.arrow(axes, (1.16, 0.47), (1.12, 0.302), "-", width=0.5)
+    drawing.label(axes, "no hops", (1, 0.47), (5, 5), ha="left")
+    drawing.label(axes, f"$r={long}/4$", (1.6, 0.4), (3, -9), ha="left")

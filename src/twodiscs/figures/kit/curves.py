@@ -1,0 +1,68 @@
+"""Exact curves over the radius, dense where they bend and broken where they jump."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from twodiscs.figures.kit.limits import limits
+from twodiscs.model.events import EVENTS
+from twodiscs.theory.exact import areas, mean_times, volume
+
+#: Closest approach to the limits of a regime, over its length.
+CLOSEST = 1e-9
+
+#: Radii in each regime: evenly spaced, and in geometric progression towards either end.
+EVEN, GEOMETRIC = 60, 25
+
+#: The same for scenes with effects, whose theory takes longer; the even ones are those of all
+#: regimes.
+ALL_EVEN, FEWER_GEOMETRIC, FARTHER = 60, 8, 1e-5
+
+
+def branches(box, others=()):
+    """Return one ascending array of radii for each regime of a ``Box``, none on its limits.
+
+    The first one starts at 1e-4 of its length, where the law for small radii has long set in.
+    ``others`` are more limits, such as those of a box that this one is compared with.
+    """
+    found = [radius for radius, _ in limits(box)]
+    ends = sorted({0, *found, *(radius for radius in others if radius < found[-1])})
+    found = []
+    for low, high in pairwise(ends):
+        even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
+        if box.effects:
+            even = max(6, round(ALL_EVEN * (high - low) / ends[-1]))
+            geometric, closest = FEWER_GEOMETRIC, FARTHER
+        near = np.geomspace(closest, 1 / even, geometric)
+        inner = np.linspace(0, 1, even + 1)[1:-1]
+        start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
+        fractions = np.unique(np.concatenate([start, inner, 1 - near]))
+        radii = low + fractions * (high - low)
+        found.append(np.unique(radii[(radii > low) & (radii < high)]))
+    return found
+
+
+def exact(box, others=()):
+    """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
+
+    Quantities are named as in theory.csv. Between two regimes stands a NaN, so that a line drawn
+    through the values is never joined across a limit, where some of them jump; NaN also means that
+    an event is impossible. ``others`` are more limits, as in ``branches``.
+    """
+    radii, rows = [], []
+    for branch in branches(box, others):
+        for radius in branch:
+            here = box.scene(float(radius))
+            values = {"volume": volume(here)}
+            values |= {f"{event}_area": area for event, area in areas(here).items()}
+            values |= {f"{event}_time": time for event, time in mean_times(here).items()}
+            radii.append(radius)
+            rows.append(values)
+        radii.append(np.nan)
+        rows.append({})
+    names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
+    columns = {
+        name: np.array([np.nan if row.get(name) is None else row[name] for row in rows])
+        for name in names
+    }
+    return np.array(radii), columns

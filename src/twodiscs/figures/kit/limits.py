@@ -1,0 +1,61 @@
+"""The radii at which something ends, and their names, for drawings and for axes."""
+
+from twodiscs.model.events import AXIS, HOPS
+
+#: What the largest radius is called, and the sides at a quarter of which hops become blocked.
+LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
+
+#: The radii of a box with effects at which something changes: hops become blocked, in a field the
+#: top wall comes within reach, disc 1 can no longer change sides; where an axis is periodic, discs
+#: can no longer pass each other. Where two are the same, hops give the name, or what comes first.
+VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
+CHANGES = {
+    VERTICAL: lambda scene: scene.vertical_hops,
+    HORIZONTAL: lambda scene: scene.horizontal_hops,
+    r"r_{\mathrm{t}}": lambda scene: scene.is_possible("top_wall"),
+    r"r_{\mathrm{x}}": lambda scene: scene.confined[0],
+    r"r_{\mathrm{y}}": lambda scene: scene.confined[1],
+    r"\sigma=h/2": lambda scene: _fills(scene, "y"),
+    r"\sigma=w/2": lambda scene: _fills(scene, "x"),
+}
+
+
+def limits(box):
+    """Return [(radius, name in mathtext), …] of a ``Box``, ascending.
+
+    They are h/4 and w/4, where they fit, and the largest radius. With effects they are r_v and r_h,
+    where vertical and horizontal hops become blocked; r_t, from which on discs rise to the top wall
+    in a field; r_x and r_y, where disc 1 loses its way to the other side of disc 2, if that is not
+    where the hop becomes blocked; with a periodic axis, the radii at which σ = r1 + r2 is half of a
+    side; and the largest radius, which a field may lower.
+    """
+    found = {}
+    if not box.effects:
+        for hop in sorted(HOPS, key=AXIS.get):
+            radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
+            found[radius] = f"{found[radius]}={name}" if radius in found else name
+        found = {radius: name for radius, name in found.items() if radius in box.thresholds}
+        return [*sorted(found.items()), (box.largest_radius, LARGEST)]
+    largest = box.last_radius
+    for name, state in CHANGES.items():
+        first = state(box.scene(1e-6 * largest))
+        radius = box.end(lambda here, s=state, f=first: s(here) == f)
+        if radius in found and name == HORIZONTAL:
+            found[radius] += f"={name}"
+        elif radius < largest:
+            found.setdefault(radius, name)
+    return [*sorted(found.items()), (largest, LARGEST)]
+
+
+def _fills(scene, axis):
+    return bool(scene.periodic) and scene.reach(axis) <= sum(scene.exact_radii)
+
+
+def hop_ends(box):
+    """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
+    found = limits(box)
+    names = (QUARTERS["y"], QUARTERS["x"]) if not box.effects else (VERTICAL, HORIZONTAL)
+    return {
+        hop: next((limit for limit in found if name in limit[1].split("=")), found[-1])
+        for hop, name in zip(HOPS, names, strict=True)
+    }

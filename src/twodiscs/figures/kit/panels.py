@@ -1,0 +1,257 @@
+"""Estimates against exact curves over the radius, with residuals beneath.
+
+A series is drawn from rows of a table: the exact curve on top of open symbols with error bars, one
+standard error each. Rows without an honest error are crosses, and where nothing was seen an arrow
+stands on the lower bound of the mean time. Radii at which a regime ends are marked across both
+panels and named above.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.limits import limits
+from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
+from twodiscs.model.effects import EFFECTS
+
+#: Inches: margins, the panel of the curves, the gap and the panel of the residuals.
+LEFT, RIGHT, BOTTOM, TOP = 0.48, 0.1, 0.34, 0.3
+MAIN, GAP, LOWER = 1.9, 0.07, 0.82
+
+#: Inches and points: a second line above, for the box and its effects.
+LINE, ABOVE = 0.13, 14
+
+#: Residuals beyond this many standard errors are drawn as triangles at the edge.
+LARGEST_RESIDUAL = 6.5
+
+#: Guide lines: within the inner ones lie 95 % of all residuals; no test lets pass what is beyond 5.
+GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
+
+
+@dataclass(frozen=True)
+class Series:
+    """One quantity: its name in the legend, rows of a table, exact values along the curve."""
+
+    name: str
+    rows: list
+    exact: np.ndarray
+
+
+def panels(box, label, beneath=0):
+    """Return (figure, main axes, axes of the residuals) for curves over the radius.
+
+    ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
+    """
+    line = LINE if box.effects else 0
+    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line)
+    lower = add_panel(figure, beneath + BOTTOM, LOWER)
+    main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
+    main.set_ylabel(label)
+    main.tick_params(labelbottom=False)
+    lower.set(xlabel="radius $r$", ylabel="residual $z$")
+    mark(main, lower, limits(box))
+    name_box(main, box, up=ABOVE if line else 0)
+    return figure, main, lower
+
+
+def mark(main, lower, found):
+    """Mark the limits ``found`` in both panels, where the abscissa ends, and sizes of residuals."""
+    lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
+    lower.set_yticks([-5, -2, 0, 2, 5])
+    lower.axhline(0, color=GREY, lw=0.5, zorder=0)
+    for size, dashes in GUIDES.items():
+        for z in (-size, size):
+            lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
+    for axes in (main, lower):
+        axes.set_xlim(0, 1.02 * found[-1][0])
+        for radius, _ in found:
+            axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
+    name_limits(main, found)
+
+
+def add_panel(figure, bottom, height):
+    """Return new axes across the figure, ``height`` inches high and ``bottom`` inches up."""
+    up = figure.get_figheight()
+    across = COLUMN - LEFT - RIGHT
+    return figure.add_axes((LEFT / COLUMN, bottom / up, across / COLUMN, height / up))
+
+
+def letter(axes, name):
+    """Write the letter of a panel beside its upper left corner."""
+    align = {"ha": "left", "va": "top", "xycoords": "axes fraction"}
+    drawing.label(axes, f"({name})", (0, 1), (2 - 72 * LEFT, 3), **align)
+
+
+def name_box(axes, box, more="", up=0):
+    """Write the sides of the box, ``more`` and the effects above the left end of ``axes``.
+
+    ``up`` are points by which that is higher than usual.
+    """
+    sides = rf"$w\times h={box.width:g}\times{box.height:g}$"
+    text = ",  ".join([f"{sides}{more}", *effects(box)])
+    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
+    drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
+
+
+def effects(box):
+    """Return the effects of a ``Box`` in symbols, a list of texts."""
+    texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
+    return [EFFECTS[name].symbol.format(value) for name, value in texts]
+
+
+def name_limits(axes, found):
+    """Write the names of the limits above ``axes``, moved apart where they would overlap."""
+    x0, x1 = axes.get_xlim()
+    points = 72 * axes.get_position().width * axes.figure.get_figwidth() / (x1 - x0)
+    renderer = axes.figure.canvas.get_renderer()
+    texts = [
+        axes.annotate(f"${name}$", (0, 1), xycoords="axes fraction", fontsize=7.5, va="bottom")
+        for _, name in found
+    ]
+    scale = 72 / axes.figure.dpi
+    widths = [text.get_window_extent(renderer).width * scale for text in texts]
+    wanted = [(radius - x0) * points for radius, _ in found]
+    most = (x1 - x0) * points + 72 * RIGHT - 1
+    for text, place, middle in zip(texts, wanted, spread(wanted, widths, 4, most), strict=True):
+        text.remove()
+        axes.annotate(
+            text.get_text(),
+            (place / points, 1),
+            (middle - place, 5),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=7.5,
+            arrowprops={
+                "arrowstyle": "-",
+                "color": GREY,
+                "linewidth": 0.5,
+                "shrinkA": 0,
+                "shrinkB": 0,
+                "relpos": (0.5, 0),
+            },
+        )
+
+
+def spread(wanted, widths, gap, most):
+    """Return middles for intervals of ``widths``, in order, ``gap`` apart, near those ``wanted``.
+
+    Those that would overlap become a block around the mean of what they want; none ends beyond
+    ``most``.
+    """
+    blocks = []
+    for middle, width in zip(wanted, widths, strict=True):
+        block = [middle - width / 2, [width]]
+        while blocks and blocks[-1][0] + sum(blocks[-1][1]) + gap * len(blocks[-1][1]) > block[0]:
+            left, before = blocks.pop()
+            length = sum(before) + gap * len(before)
+            share = len(before) / (len(before) + len(block[1]))
+            block = [left * share + (block[0] - length) * (1 - share), before + block[1]]
+        blocks.append(block)
+    middles, end = [], most
+    for left, members in reversed(blocks):
+        right = min(end, left + sum(members) + gap * (len(members) - 1))
+        for width in reversed(members):
+            middles.append(right - width / 2)
+            right -= width + gap
+        end = right
+    return middles[::-1]
+
+
+def draw_series(main, lower, radii, series, single=False):
+    """Draw the ``series`` in both panels; a ``single`` one has its curve in black."""
+    for (colour, marker), one in zip(SERIES, series, strict=False):
+        main.plot(radii, one.exact, color=BLACK if single else colour, zorder=5)
+        estimates(main, one.rows, colour, marker)
+        residuals(lower, one.rows, colour, marker)
+
+
+def asymptote(axes, x, y):
+    """Draw a limiting law."""
+    axes.plot(x, y, color=BLACK, lw=0.7, ls=(0, (4, 2)), zorder=6)
+
+
+def _column(rows, *names):
+    return [[row[name] for row in rows] for name in names]
+
+
+def estimates(axes, rows, colour, marker):
+    """Draw the estimates of ``rows`` over their radii."""
+    known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
+    rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
+    bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
+    r, y, s = _column(known, "radius", "estimate", "stderr")
+    axes.errorbar(r, y, s, ls="", elinewidth=0.6, **open_symbol(colour, marker), zorder=3)
+    axes.plot(*_column(rough, "radius", "estimate"), "x", color=colour, zorder=3)
+    r, y = _column(bound, "radius", "bound")
+    axes.errorbar(r, y, [0.4 * b for b in y], lolims=True, ls="", color=colour, elinewidth=0.6)
+
+
+def open_symbol(colour, marker):
+    """Return the settings of an open symbol."""
+    size = SIZES[marker]
+    return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
+
+
+def residuals(axes, rows, colour, marker):
+    """Draw the residuals of ``rows`` over their radii, but for those that are certain."""
+    rows = [row for row in rows if row["z"] is not None and row["test"] != "certain"]
+    for shown, symbol, clip in (
+        ([r for r in rows if abs(r["z"]) <= LARGEST_RESIDUAL], marker, 1),
+        ([r for r in rows if r["z"] > LARGEST_RESIDUAL], "^", 0.97),
+        ([r for r in rows if r["z"] < -LARGEST_RESIDUAL], "v", 0.97),
+    ):
+        r, z = _column(shown, "radius", "z")
+        z = [math.copysign(min(abs(v), clip * LARGEST_RESIDUAL), v) for v in z]
+        style = open_symbol(colour, symbol) if clip == 1 else {"color": colour, "marker": symbol}
+        axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
+
+
+def legend(axes, box, series, place, single=None):
+    """Explain the symbols at a ``place``; ``single`` names the method of the only series.
+
+    ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
+    regimes end, which may lie as low as half of the largest. In a ``box`` with effects it is
+    wherever the curves leave room.
+    """
+    place = "best" if box.effects else place
+    handles, names = [], []
+    for (colour, marker), one in zip(SERIES, series, strict=False):
+        style = open_symbol(colour, marker)
+        if single:
+            handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
+            names += ["exact", single]
+        else:
+            handles += axes.plot([], [], **style)
+            names.append(one.name)
+    if place == "beside":
+        axes.legend(handles, names, loc="upper right", bbox_to_anchor=(0.49, 1))
+    else:
+        axes.legend(handles, names, loc=place)
+
+
+def logarithmic(axes, radii, series):
+    """Make the ordinate logarithmic and as long as estimates and most of the curves need."""
+    seen = [row["estimate"] or row.get("bound") for one in series for row in one.rows]
+    ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
+    largest = ends[-1]
+    clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
+    shown = [value for one in series for value in one.exact[clear] if value > 0]
+    shown += [value for value in seen if value]
+    low, high = min(shown), max(shown)
+    room = (high / low) ** 0.06
+    axes.set_yscale("log")
+    axes.set_ylim(low / room, high * room)
+    label_decades(axes.yaxis, high / low)
+
+
+def label_decades(axis, ratio):
+    """Label 2 and 5 as well on a logarithmic ``axis`` whose ends have a ``ratio`` below 100."""
+    if ratio < 100:
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
+    else:
+        axis.set_minor_formatter("")

@@ -1,0 +1,104 @@
+"""Volume, areas and mean times over the radius: estimates against exact curves.
+
+One figure for all of them; the catalogue says which quantities each shows and how.
+"""
+
+import numpy as np
+
+from twodiscs.figures.kit import curves, panels
+from twodiscs.figures.kit.limits import hop_ends
+from twodiscs.figures.kit.style import SERIES
+from twodiscs.theory.exact import mean_times
+from twodiscs.theory.laws import small_radius_time, threshold_time
+
+#: Reach of the limiting laws, over the largest radius: from r = 0, and down from the end.
+SMALL, LAST = 0.4, 0.1
+
+#: Inches: the height of a lower panel and of the room that it takes.
+APPROACH, ROOM = 1.4, 1.8
+
+#: The lower panel begins this close to the end, relatively; its law is drawn from there on.
+CLOSEST, LAW = 1e-5, 0.3
+
+
+def draw(box, tables, names, label, place, single=None, linear=False, laws=(), approach=False):
+    """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
+
+    ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
+    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
+    ``linear``; ``place`` that of the legend, and ``single`` the method if there is one series only.
+    ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
+    ``approach`` a panel beneath shows the times over the distance from the radius of their end.
+    Raises ``ValueError`` if the table has none of the quantities.
+    """
+    ((table, rows),) = tables.items()
+    radii, exact = curves.exact(box)
+    found = {
+        quantity: panels.Series(name, shown, exact[quantity])
+        for quantity, name in names.items()
+        if (shown := [_as_drawn(row) for row in rows if _quantity(row) == quantity])
+    }
+    if not found:
+        raise ValueError(f"{table}.csv has no row of {', '.join(names)}")
+    series = list(found.values())
+    figure, main, lower = panels.panels(box, label, ROOM if approach else 0)
+    panels.draw_series(main, lower, radii, series, single=bool(single))
+    for quantity in found:
+        _laws(main, box, quantity.removesuffix("_time"), laws)
+    if not linear:
+        panels.logarithmic(main, radii, series)
+    panels.legend(main, box, series, place, single=single)
+    if approach:
+        panels.letter(main, "a")
+        _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, found)
+    return figure
+
+
+def _quantity(row):
+    return row["quantity"] if "quantity" in row else f"{row['event']}_time"
+
+
+def _as_drawn(row):
+    """Return a row; an area of zero is found where no sample fell into the shell."""
+    if row["exact"] == 0 and row.get("hits") == 0:
+        return row | {"estimate": 0.0, "stderr": 0.0}
+    return row
+
+
+def _laws(axes, box, event, laws):
+    """Draw laws for small discs and below the largest radius, known for boxes without effects."""
+    if box.effects:
+        return
+    end = box.largest_radius
+    if "small" in laws:
+        radii = np.linspace(0, SMALL, 41)[1:] * end
+        panels.asymptote(axes, radii, [small_radius_time(box, event, r) for r in radii])
+    if "last" in laws:
+        radii = end * (1 - np.geomspace(LAST, 1e-6, 60))
+        panels.asymptote(axes, radii, [threshold_time(box.scene(r), event) for r in radii])
+
+
+def _approach(axes, box, found):
+    """Draw the times over the distance from the radius at which the hop dies out."""
+    distances = np.geomspace(CLOSEST, 0.99, 70)
+    ends = hop_ends(box)
+    shown = []
+    for (colour, marker), (quantity, one) in zip(SERIES, found.items(), strict=False):
+        event = quantity.removesuffix("_time")
+        end, name = ends[event]
+        scenes = [box.scene(float(end * (1 - d))) for d in distances]
+        exact = [mean_times(scene)[event] for scene in scenes]
+        (line,) = axes.plot(distances, exact, color=colour, zorder=5)
+        line.set_label(rf"{one.name}, $r_{{\mathrm{{c}}}}={name}$")
+        shown += exact
+        if not box.effects:
+            near = distances < LAW
+            laws = [threshold_time(scene, event) for scene in scenes]
+            panels.asymptote(axes, distances[near], np.array(laws)[near])
+        rows = [row | {"radius": 1 - row["radius"] / end} for row in one.rows]
+        panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
+    axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
+    axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
+    axes.set_ylabel(r"mean time $\tau$")
+    axes.legend(loc="upper right")
+    panels.letter(axes, "b")

@@ -1,0 +1,149 @@
+"""A box and its effects: a scene without its radius, and the radii at which something ends."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from twodiscs.model.checks import length, one_of
+from twodiscs.model.effects import ABSENT, EFFECTS
+from twodiscs.model.events import AXIS, EVENTS, HOPS
+from twodiscs.model.scene import Scene
+
+#: Larger radii than this share of the shortest side tell nothing of a box that smaller ones do not.
+TINY = 1e-6
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which discs may move.
+
+    Effects that have the value of their absence are left out. Raises ``ValueError`` for a side that
+    is no length, for an unknown effect, and for effects that do not go together.
+    """
+
+    width: float
+    height: float
+    effects: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        for name in ("width", "height"):
+            object.__setattr__(self, name, length(name, getattr(self, name)))
+        effects = self.effects
+        if not isinstance(effects, dict) or not effects.keys() <= EFFECTS.keys():
+            known = ", ".join(EFFECTS)
+            raise ValueError(f"effects must be a dict of some of {known}, not {effects!r}")
+        named = {name: value for name, value in effects.items() if value != ABSENT[name]}
+        object.__setattr__(self, "effects", named)
+        if named:
+            object.__setattr__(self, "effects", dict(sorted(self.tiny.effects.items())))
+
+    def __hash__(self):
+        return hash((self.width, self.height, *self.effects.items()))
+
+    @classmethod
+    def of(cls, scene):
+        """Return the box of a ``Scene``."""
+        return cls(scene.width, scene.height, scene.effects)
+
+    def parameters(self):
+        """Return {"effects": …, "height": …, "width": …}: plain values, without absent effects.
+
+        ``Box(**parameters)`` is this box again. So the parameters of a job in a plain box, and with
+        them its results, do not know that there are effects.
+        """
+        box = {"height": self.height, "width": self.width}
+        return {"effects": dict(self.effects)} | box if self.effects else box
+
+    def scene(self, radius):
+        """Return the ``Scene`` at a ``radius``; raise ``ValueError`` where there is none."""
+        return Scene(self.width, self.height, radius, **self.effects)
+
+    def fits(self, radius):
+        """Say whether there is a scene at this ``radius``, a length."""
+        radius = length("radius", radius)
+        try:
+            self.scene(radius)
+        except ValueError:
+            return False
+        return True
+
+    @cached_property
+    def tiny(self):
+        """A scene of tiny discs: what does not depend on the radius can be asked of it."""
+        widest = max(1.0, _ratio(self.effects))
+        return self.scene(TINY * self.shortest / widest)
+
+    @property
+    def sides(self):
+        """The sides of the box: width, height and maybe depth."""
+        return self.width, self.height, *(self.effects[n] for n in ("depth",) if n in self.effects)
+
+    @property
+    def shortest(self):
+        """The shortest side."""
+        return min(self.sides)
+
+    def turned(self):
+        """Return the box turned by a quarter; raise ``ValueError`` if it has effects."""
+        if self.effects:
+            raise ValueError(
+                f"box must be plain to be turned, but it has {', '.join(self.effects)}"
+            )
+        return replace(self, width=self.height, height=self.width)
+
+    @cached_property
+    def largest_radius(self):
+        """The radius at which the discs have no room left; a field may stop them before."""
+        return self.tiny.largest_radius
+
+    @cached_property
+    def last_radius(self):
+        """The radius from which on there is no scene: ``largest_radius``, or less in a field."""
+        return self.end(lambda scene: True) if self.effects else self.largest_radius
+
+    def end(self, holds):
+        """Return the radius from which on there is no scene, or ``holds`` is no longer true of it.
+
+        ``holds`` says something of a ``Scene`` that is true of small discs and false of larger
+        ones. By bisection, to the last digit; below 2⁻⁶⁰ of the shorter side nothing is found.
+        """
+        low, high = 0.0, min(self.sides) / 2
+        for _ in range(60):
+            middle = (low + high) / 2
+            try:
+                found = holds(self.scene(middle))
+            except ValueError:
+                found = False
+            low, high = (middle, high) if found else (low, middle)
+        return high
+
+    def threshold(self, event):
+        """Return the radius from which on ``event`` is impossible; None if it always is.
+
+        For hops of equal discs that is w/4 (vertical) or h/4 (horizontal), unless the discs jam
+        before; for what stays possible to the end it is the largest radius.
+        """
+        one_of("event", event, EVENTS)
+        if self.effects:
+            return self.end(lambda scene: scene.is_possible(event)) if self._has(event) else None
+        if event not in HOPS:
+            return self.largest_radius
+        # Discs side by side along the other axis need four radii.
+        across = self.width if AXIS[event] == "y" else self.height
+        return min(across / 4, self.largest_radius)
+
+    def _has(self, event):
+        return event in self.tiny.events
+
+    @cached_property
+    def thresholds(self):
+        """The radii below the last one at which a hop becomes blocked, ascending, without repeats.
+
+        Those of h/4 and w/4 that fit, where there are no effects.
+        """
+        found = {self.threshold(hop) for hop in HOPS if self._has(hop)}
+        return tuple(sorted(radius for radius in found if radius < self.last_radius))
+
+
+def _ratio(effects):
+    ratio = effects.get("radius_ratio", 1.0)
+    return ratio if isinstance(ratio, int | float) and ratio == ratio else 1.0

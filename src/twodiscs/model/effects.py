@@ -1,0 +1,115 @@
+"""What a scene may call for beyond two equal, smooth discs between walls. Declared here, once.
+
+The fields of ``Scene``, the keys of a configuration, the options of the command line and the labels
+of the figures follow from these declarations.
+"""
+
+from dataclasses import dataclass
+from numbers import Real
+
+from twodiscs.model.checks import LONGEST, SHORTEST, number
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A physical effect: a number, or axes.
+
+    ``default`` is the value that means its absence, ``low`` and ``high`` the range of every other
+    value (None for ``periodic``, whose value is text such as "xy"), ``unit`` that of the value,
+    ``meaning`` what it is, ``more`` what else to know of it in a configuration, and ``symbol`` how
+    a figure writes it, in mathtext with one place for the value. ``of_box`` says that it is a side
+    of the box, beside width and height.
+    """
+
+    name: str
+    default: object
+    low: float | None
+    high: float | None
+    unit: str
+    meaning: str
+    symbol: str
+    more: str = ""
+    of_box: bool = False
+
+    @property
+    def is_number(self):
+        """Whether the value is a number; otherwise it is text that names axes."""
+        return self.low is not None
+
+    def checked(self, value):
+        """Return ``value`` as a float; raise ``ValueError`` unless it is absent or in range."""
+        real = isinstance(value, Real) and not isinstance(value, bool)
+        if value is None or (real and value == self.default):
+            return self.default
+        kind = "ratio" if self.name.endswith("_ratio") else "number"
+        return number(self.name, value, self.low, self.high, kind)
+
+
+EFFECTS = {
+    effect.name: effect
+    for effect in (
+        Effect(
+            "depth",
+            None,
+            SHORTEST,
+            LONGEST,
+            "length",
+            "the third side of the box; the discs are balls then",
+            "$d={:g}$",
+            of_box=True,
+        ),
+        Effect(
+            "radius_ratio",
+            1.0,
+            1e-3,
+            1e3,
+            "radius of disc 1",
+            "the radius of disc 2",
+            "$r_2/r_1={:g}$",
+            "Every radius of the configuration is that of disc 1.",
+        ),
+        Effect(
+            "mass_ratio",
+            1.0,
+            1e-3,
+            1e3,
+            "mass of disc 1",
+            "the mass of disc 2",
+            "$m_2/m_1={:g}$",
+        ),
+        Effect(
+            "periodic",
+            "",
+            None,
+            None,
+            "",
+            "the axes with neither walls nor ends",
+            "${}$ periodic",
+            "The momentum along them is conserved, unless rough discs meet walls, and it is zero.",
+        ),
+        Effect(
+            "field",
+            0.0,
+            SHORTEST,
+            LONGEST,
+            "speed²/length",
+            "the uniform acceleration along −y",
+            "$g={:g}$",
+            "The potential energy counts in the total of 1/2.",
+        ),
+        Effect(
+            "moment_of_inertia",
+            None,
+            1e-3,
+            1.0,
+            "m r² of each disc",
+            "the moment of inertia of rough discs",
+            "$I/mr^2={:g}$",
+            "Collisions with each other and with walls reverse the tangential velocity of their"
+            " surfaces too.",
+        ),
+    )
+}
+
+#: {name: the value that means its absence}, in the order of the declarations.
+ABSENT = {effect.name: effect.default for effect in EFFECTS.values()}

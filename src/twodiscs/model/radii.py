@@ -1,0 +1,104 @@
+"""The radii of a scene, the text keys that name them, and the random streams that belong to them.
+
+Standard library only: the grid is computed while the Snakefile is read.
+"""
+
+import math
+from hashlib import blake2b
+from itertools import pairwise
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import length, one_of, whole
+
+#: The stochastic stages, each with random streams of its own.
+METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory", "unmet")
+
+#: No grid has more points.
+MOST = 1000
+
+#: Regimes narrower than this fraction of the largest radius get no points of their own.
+NARROWEST = 1e-6
+
+
+def key(radius):
+    """Return the text that names ``radius`` in file names and seeds: its shortest repr."""
+    return repr(length("radius", radius))
+
+
+def radii(width, height, smallest, count):
+    """Return ``count`` ascending radii from ``smallest`` up to just below the largest that fits.
+
+    Every regime has its share of the points, placed like Chebyshev nodes, so that they crowd
+    quadratically towards both sides of h/4 and w/4 and below the largest radius without touching
+    any of the three; from the smallest radius they start evenly. Each is then rounded to the
+    fewest digits that leave it near its place.
+
+    Raises ``ValueError`` if ``count`` is not an integer from 1 to ``MOST``, or ``smallest`` is not
+    a length below the largest radius or lies on a threshold.
+    """
+    box = Box(width, height)
+    largest, limits = box.largest_radius, box.thresholds
+    smallest, count = length("smallest", smallest), whole("count", count, 1, MOST)
+    if smallest >= largest * (1 - NARROWEST):
+        raise ValueError(
+            f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
+        )
+    if smallest in limits:
+        raise ValueError(f"smallest must not be {smallest!r}, where a hop becomes blocked")
+
+    edges = [smallest]
+    for limit in (*limits, largest):
+        if limit - edges[-1] > NARROWEST * largest:
+            edges.append(limit)
+    regimes = list(pairwise(edges))
+    places = []
+    shared = 0.0
+    for low, high in regimes:
+        # Half of the points are shared equally between the regimes, half by length.
+        shared += 1 / len(regimes) + (high - low) / (largest - smallest)
+        n = max(1, round(count * shared / 2)) - len(places)
+        if not places:
+            fractions = [math.sin(math.pi / 2 * j / n) for j in range(n)]
+        else:
+            fractions = [math.sin(math.pi / 2 * (j + 0.5) / n) ** 2 for j in range(n)]
+        # Twelve digits of the sines, for the last one depends on the math library.
+        places += [low + round(fraction, 12) * (high - low) for fraction in fractions]
+
+    result = [smallest]
+    for i in range(1, len(places)):
+        near = [*edges, places[i - 1], *places[i + 1 : i + 2]]
+        room = min(abs(places[i] - other) for other in near)
+        result.append(shortest_decimal(places[i], room / 4, avoid=limits))
+    return tuple(result)
+
+
+def even_radii(smallest, largest, count):
+    """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
+
+    Each is rounded to the fewest digits that leave it near its place, but for the first. Raises
+    ``ValueError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
+    """
+    smallest, largest = length("smallest", smallest), length("largest", largest)
+    count = whole("count", count, 1, MOST)
+    if smallest >= largest:
+        raise ValueError(f"smallest must be below {largest!r}, not {smallest!r}")
+    step = (largest - smallest) / max(count - 1, 1)
+    places = [largest - i * step for i in reversed(range(count - 1))]
+    return (smallest, *(shortest_decimal(p, min(step / 4, p / 100)) for p in places))
+
+
+def shortest_decimal(value, distance, avoid=()):
+    """Return the number of fewest digits within ``distance`` of ``value`` and not in ``avoid``."""
+    candidates = (float(f"{value:.{digits}g}") for digits in range(1, 18))
+    return next(c for c in candidates if abs(c - value) <= distance and c not in avoid)
+
+
+def stream_seed(root, scene, method, key):
+    """Return the integer in [0, 2**63) that seeds the streams of one job.
+
+    It depends on the configured ``root`` seed, the scene's name, the method (one of ``METHODS``)
+    and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
+    """
+    root = whole("root", root, 0)
+    text = "\n".join((str(root), scene, one_of("method", method, METHODS), key))
+    return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1

@@ -1,0 +1,384 @@
+"""The scene: two hard discs in a rectangular box, and the geometry that follows from it.
+
+Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, disc 1
+has mass one and the total energy is 1/2: the speed of disc 1 is at most one, and times are lengths
+over that speed.
+
+The plain scene has equal, smooth discs between walls. A scene may call for effects: unequal radii
+or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
+are balls). What a scene does not call for is neither simulated nor compiled.
+"""
+
+import math
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
+from functools import cached_property
+
+from twodiscs.model.checks import LONGEST, SHORTEST, length, number
+from twodiscs.model.effects import ABSENT, EFFECTS
+from twodiscs.model.events import DECLARED, EVENTS
+
+#: What is open to the discs, named by the hops that remain.
+REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
+
+#: The total energy, kinetic and potential.
+ENERGY = 0.5
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Two hard discs in a box of ``width`` × ``height``, disc 1 of radius ``radius``.
+
+    Effects, each absent by default:
+
+    * ``depth``: the third side of the box; the discs are balls then.
+    * ``radius_ratio``, ``mass_ratio``: of disc 2 to disc 1.
+    * ``periodic``: the axes ("x", "y", "z", as text such as "xy") with neither wall nor end.
+    * ``field``: the acceleration g along −y, in speed²/length. Heights count from where each disc
+      rests on the bottom, so the potential energy is never negative.
+    * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
+      of the surfaces is reversed too, between discs and at walls. None means smooth.
+
+    Raises ``ValueError`` for a value that is not of its kind, for a radius that leaves the discs no
+    room or no motion at total energy 1/2, and for effects that do not go together.
+    """
+
+    width: float
+    height: float
+    radius: float
+    depth: float | None = None
+    radius_ratio: float = 1.0
+    mass_ratio: float = 1.0
+    periodic: str = ""
+    field: float = 0.0
+    moment_of_inertia: float | None = None
+
+    def __post_init__(self):
+        for name in ("width", "height", "radius"):
+            object.__setattr__(self, name, length(name, getattr(self, name)))
+        for name in EFFECTS:
+            if isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} must not be a truth value, {getattr(self, name)!r}")
+        if self.has_effects:
+            self._check_effects()
+        if not self._fits():
+            raise ValueError(
+                f"radius {self.radius!r} does not fit: two {self._what} in a box of "
+                f"{self._box} need a radius below {self.largest_radius!r}"
+            )
+        if self.field:
+            self._check_energy()
+
+    def _check_effects(self):
+        def settle(name, value):
+            object.__setattr__(self, name, value)
+
+        if self.depth is not None:
+            # Six lengths are multiplied.
+            for name in ("depth", "width", "height", "radius"):
+                settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
+        for name, effect in EFFECTS.items():
+            if effect.is_number:
+                settle(name, effect.checked(getattr(self, name)))
+
+        allowed = "".join(self.axes)
+        if not isinstance(self.periodic, str) or len(set(self.periodic)) != len(self.periodic):
+            raise ValueError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
+        for axis in self.periodic:
+            if axis not in allowed:
+                raise ValueError(
+                    f"periodic must be some of the axes {allowed}, not {self.periodic!r}"
+                )
+        settle("periodic", "".join(sorted(self.periodic)))
+        if self.field and "y" in self.periodic:
+            raise ValueError(
+                "field must be 0 where y is periodic, for nothing would hold the discs, not "
+                f"{self.field!r}"
+            )
+        if self.moment_of_inertia is not None:
+            self._check_roughness()
+
+    def _check_roughness(self):
+        if self.depth is not None:
+            where = "in a box with a depth (rough discs are for the plane)"
+        elif not self.walled:
+            where = "in a box without walls (the spins would keep I1 ω1/r1 − I2 ω2/r2 for ever)"
+        else:
+            return
+        raise ValueError(
+            f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
+        )
+
+    def _check_energy(self):
+        if self._lowest_potential(self._spread("y")) >= ENERGY:
+            raise ValueError(
+                f"field {self.field!r} is too strong at radius {self.radius!r}: with a total "
+                "energy of 1/2 the discs cannot leave the bottom, where they do not fit side by "
+                "side"
+            )
+        if (self.radius_ratio, self.mass_ratio) != (1.0, 1.0) and not self.vertical_hops:
+            raise ValueError(
+                "unequal discs in a field need room and energy to pass each other on y1 = y2, or "
+                f"the parts of configuration space are unequal, too; at radius {self.radius!r} "
+                "they lack it"
+            )
+
+    @property
+    def _what(self):
+        return "discs" if self.depth is None else "balls"
+
+    @property
+    def _box(self):
+        return " × ".join(repr(self.side(axis)) for axis in self.axes)
+
+    def with_radius(self, radius):
+        """Return the same scene with another radius of disc 1."""
+        return replace(self, radius=radius)
+
+    @property
+    def effects(self):
+        """The effects that the scene calls for, {name: value} in the order of the fields."""
+        return {
+            name: getattr(self, name)
+            for name, default in ABSENT.items()
+            if getattr(self, name) != default
+        }
+
+    @property
+    def has_effects(self):
+        """Whether the scene calls for any effect."""
+        return bool(self.effects)
+
+    @cached_property
+    def axes(self):
+        """The names of the axes: x, y and, for balls, z."""
+        return ("x", "y") if self.depth is None else ("x", "y", "z")
+
+    @cached_property
+    def walled(self):
+        """The axes with walls."""
+        return tuple(axis for axis in self.axes if axis not in self.periodic)
+
+    @cached_property
+    def conserved(self):
+        """The axes along which the total momentum is conserved; the ensemble has it at 0.
+
+        Those are the periodic ones, unless there are rough walls, which push discs along them.
+        """
+        return tuple(self.periodic) if self.moment_of_inertia is None else ()
+
+    @cached_property
+    def velocity_components(self):
+        """D: the components of velocities and spins, less the momenta that are conserved."""
+        spins = 0 if self.moment_of_inertia is None else 2
+        return 2 * len(self.axes) + spins - len(self.conserved)
+
+    @cached_property
+    def radii(self):
+        """The radii of disc 1 and disc 2."""
+        return self.radius, self.radius * self.radius_ratio
+
+    @cached_property
+    def masses(self):
+        """The masses of disc 1 and disc 2."""
+        return 1.0, self.mass_ratio
+
+    def side(self, axis):
+        """Return the side of the box along ``axis``."""
+        return {"x": self.width, "y": self.height, "z": self.depth}[axis]
+
+    @cached_property
+    def range_x(self):
+        """A = w − σ: the largest separation x1 − x2 between walls, and an equal disc's range."""
+        return self.width - self.contact_distance
+
+    @cached_property
+    def range_y(self):
+        """B = h − σ: the same along y; neither means anything on a periodic axis."""
+        return self.height - self.contact_distance
+
+    @cached_property
+    def contact_distance(self):
+        """σ: the distance of the centres when the discs touch, twice the radius if equal."""
+        return sum(self.radii)
+
+    @cached_property
+    def exact_radii(self):
+        """The radii of the discs as fractions; the same doubles as ``radii``."""
+        return tuple(map(Fraction, self.radii))
+
+    def reach(self, axis):
+        """Return the largest separation of the centres along ``axis``, as an exact fraction.
+
+        That is the side less σ between walls, and half the side on a periodic axis, where the
+        nearest image counts.
+        """
+        side = Fraction(self.side(axis))
+        return side / 2 if axis in self.periodic else side - sum(self.exact_radii)
+
+    def _spread(self, *without):
+        """Return the sum of the squared reaches of all axes but some, an exact fraction."""
+        return sum(self.reach(axis) ** 2 for axis in self.axes if axis not in without)
+
+    def _fits(self):
+        """Say, in exact arithmetic, whether both discs have room to move."""
+        widest = 2 * max(self.exact_radii)
+        if any(Fraction(self.side(axis)) <= widest for axis in self.axes):
+            return False
+        if any(self.reach(axis) <= 0 for axis in self.axes):
+            return False
+        return self._spread() > sum(self.exact_radii) ** 2
+
+    @cached_property
+    def largest_radius(self):
+        """The radius of disc 1 at which the discs have no room left."""
+        if not self.has_effects:
+            return _largest_radius(self.width, self.height)
+        # In σ: Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ².
+        walls = [self.side(axis) for axis in self.walled]
+        n, total = len(walls), math.fsum(walls)
+        squares = math.fsum(side * side for side in walls)
+        squares += math.fsum(self.side(axis) ** 2 / 4 for axis in self.periodic)
+        limits = [min(map(self.side, self.axes)) / max(1.0, self.radius_ratio) / 2]
+        limits += [side / (1 + self.radius_ratio) for side in walls]
+        if n == 0:
+            limits.append(math.sqrt(squares) / (1 + self.radius_ratio))
+        elif n == 1:
+            limits.append(squares / (2 * total) / (1 + self.radius_ratio))
+        elif total**2 >= (n - 1) * squares:
+            # The smaller root, without its cancellation.
+            root = math.sqrt(total**2 - (n - 1) * squares)
+            limits.append(squares / (total + root) / (1 + self.radius_ratio))
+        return min(limits)
+
+    def _lowest_potential(self, spread):
+        """Return the least potential energy of discs whose separation but for y has this square.
+
+        ``spread`` is the largest such square. The lower disc lies on the bottom and the other one
+        on it, or beside it if there is room.
+        """
+        if not self.field:
+            return 0.0
+        square = sum(self.exact_radii) ** 2 - spread
+        apart = math.sqrt(square) if square > 0 else 0.0
+        (r1, r2), (m1, m2) = self.radii, self.masses
+        return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
+
+    def _passable(self, axis):
+        """Say whether the discs can exchange sides along ``axis``."""
+        if axis not in self.walled:
+            return False
+        if self._spread(axis) <= sum(self.exact_radii) ** 2:
+            return False
+        if axis == "y":
+            (r1, r2), (m1, m2) = self.radii, self.masses
+            lowest = self.field * (m1 * (r2 - r1) if r2 > r1 else m2 * (r1 - r2))
+        else:
+            lowest = self._lowest_potential(self._spread(axis, "y"))
+        return lowest < ENERGY
+
+    @cached_property
+    def vertical_hops(self):
+        """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
+        return self._passable("y")
+
+    @cached_property
+    def horizontal_hops(self):
+        """Whether the discs can pass each other on x1 = x2; equal discs of the plane if h > 4r."""
+        return self._passable("x")
+
+    @cached_property
+    def regime(self):
+        """One of ``REGIMES``; on a periodic axis there are no hops."""
+        if self.vertical_hops and self.horizontal_hops:
+            return "all-hops"
+        if self.vertical_hops:
+            return "vertical-hops"
+        return "horizontal-hops" if self.horizontal_hops else "no-hops"
+
+    @cached_property
+    def ergodic_components(self):
+        """The number of disjoint parts of configuration space.
+
+        Each hop that is blocked between walls doubles it. A periodic axis has a way around.
+        """
+        return 2 ** sum(not self._passable(axis) for axis in self.walled)
+
+    def _confined(self, axis):
+        """Say whether disc 1 reaches the far wall of ``axis`` only from its own side of disc 2.
+
+        It does so once the hop is blocked, unless it is the larger disc and there is room for
+        disc 2 in the corner behind it.
+        """
+        if self._passable(axis) or axis not in self.walled:
+            return False
+        r1, r2 = self.exact_radii
+        if r1 <= r2:
+            return True
+        behind = (r1 - r2) ** 2
+        if self._spread(axis) + behind <= (r1 + r2) ** 2:
+            return True
+        return self._lowest_potential(self._spread(axis, "y") + behind) >= ENERGY
+
+    @cached_property
+    def confined(self):
+        """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2."""
+        return self._confined("x"), self._confined("y")
+
+    def needed_side(self, event):
+        """Return on which side of disc 2 disc 1 has to start in order to see ``event``.
+
+        That is +1 or −1 along the axis of a wall that is reached from one side only, else 0.
+        """
+        found = DECLARED[event]
+        confined = found.kind == "wall" and self.confined["xy".index(found.axis)]
+        return found.side if confined else 0
+
+    @cached_property
+    def events(self):
+        """Those of ``EVENTS`` that have a place in the scene, whether or not they are possible."""
+        return tuple(event.name for event in DECLARED.values() if self._has_place(event))
+
+    def _has_place(self, event):
+        if event.axis:
+            return event.axis in self.walled
+        return event.kind == "collision" or bool(self.walled)
+
+    def is_possible(self, event):
+        """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
+        if event not in EVENTS:
+            raise ValueError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
+        if event not in self.events:
+            return False
+        found = DECLARED[event]
+        if found.kind == "hop":
+            return self._passable(found.axis)
+        if self.field and (found.axis, found.side) == ("y", +1):
+            return self.field * (self.height - 2 * self.radius) < ENERGY
+        return True
+
+
+def _largest_radius(width, height):
+    """Return the radius at which two equal discs just fit in a ``width`` × ``height`` box.
+
+    For max < 2 min the discs jam along a diagonal, (w + h − √(2wh))/2; otherwise each of them spans
+    the short side, min/2.
+    """
+    short, long = min(width, height), max(width, height)
+    if long >= 2 * short:
+        return short / 2
+    return (width + height - math.sqrt(2 * width) * math.sqrt(height)) / 2
+
+
+def a_scene(value):
+    """Return ``value``; raise ``ValueError`` unless it is a ``Scene``."""
+    if not isinstance(value, Scene):
+        raise ValueError(f"scene must be a Scene, not {value!r}")
+    return value
+
+
+if {f.name: f.default for f in fields(Scene)[3:]} != ABSENT:
+    raise TypeError(
+        "the fields of Scene after radius must be the effects of model/effects.py with the values "
+        f"that mean their absence, {ABSENT}"
+    )

@@ -1,0 +1,1 @@
+"""What the workflow needs: configuration, jobs, sources, forecast, verify, manuscript."""

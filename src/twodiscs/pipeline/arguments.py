@@ -1,0 +1,75 @@
+"""What the command lines share: arguments that are JSON, and mistakes that are one sentence."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that answers a mistake with one sentence and exit status 2."""
+
+    def __init__(self, **options):
+        super().__init__(allow_abbrev=False, **options)
+
+    def error(self, message):
+        fail(message)
+
+
+def parameters(text):
+    """Return the object that ``text`` spells in JSON, or the file that it names as @path.
+
+    Raises ``ValueError`` for anything else, ``OSError`` for a file that cannot be read.
+    """
+    if text.startswith("@"):
+        text = Path(text[1:]).read_text(encoding="utf-8")
+    try:
+        value = json.loads(text, parse_constant=_no_number)
+    except (ValueError, RecursionError):
+        value = None
+    if not isinstance(value, dict):
+        raise ValueError(f"parameters must be a JSON object, not {text[:80]!r}")
+    return value
+
+
+def _no_number(text):
+    raise ValueError(f"{text} is no number")
+
+
+def named(texts, what):
+    """Return {name: value} of arguments NAME=VALUE; raise ``ValueError`` for another form."""
+    found = {}
+    for text in texts:
+        name, mark, value = text.partition("=")
+        if not mark or not name or not value:
+            raise ValueError(f"{what} must be given as NAME=VALUE, not {text!r}")
+        found[name] = value
+    return found
+
+
+def number(text):
+    """Return ``text`` as a float, for ``type=`` of an argument."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a number, not {text!r}") from None
+
+
+def fail(message):
+    """Print ``message`` on one line of standard error and exit with status 2."""
+    print(f"error: {' '.join(str(message).split())}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+def run(main):
+    """Call ``main()`` and exit with the status that it returns (None means 0).
+
+    A ``ValueError`` or ``OSError`` becomes one sentence on standard error and exit status 2.
+    """
+    try:
+        status = main()
+    except OSError as error:
+        fail(f"{error.filename}: {error.strerror}" if error.filename else error)
+    except ValueError as error:
+        fail(error)
+    raise SystemExit(status)

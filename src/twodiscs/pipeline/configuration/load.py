@@ -1,0 +1,378 @@
+"""From a configuration file to what it asks for, or to one sentence about a mistake.
+
+Quick to import, for the Snakefile reads it: no numerical package but for effects.
+"""
+
+import math
+import re
+import reprlib
+from collections.abc import Mapping
+from copy import deepcopy
+from difflib import get_close_matches
+
+import yaml
+
+from twodiscs.model.box import Box
+from twodiscs.model.effects import ABSENT, EFFECTS
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.radii import even_radii, radii
+from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
+from twodiscs.pipeline.configuration.schema import schema
+from twodiscs.studies.catalogue import STUDIES
+
+#: Relative standard errors of the mean times, by name.
+PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
+
+#: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
+HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
+
+#: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
+TRAJECTORY_FRACTION = 0.24
+
+#: The same for a scene with effects, over the radius at which the first hop becomes blocked: in a
+#: field it is rare long before.
+BELOW_THRESHOLD = 0.5
+
+#: The default grid of a scene with effects ends at this fraction of its largest radius.
+LAST_FRACTION = 0.9
+
+#: The least share of the prism, in which both centres keep to their ranges, that must be free of
+#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
+LEAST_SHARE = 1e-4
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+class ConfigError(ValueError):
+    """A mistake in a configuration, told in one sentence."""
+
+
+def load(mapping):
+    """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
+
+    Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
+    with one sentence that names the key, what it may hold and what it holds.
+    """
+    if not isinstance(mapping, Mapping):
+        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {_shown(mapping)}")
+    settled = _settled(mapping, schema(), "")
+    _validate(settled)
+    _fill_defaults(settled, schema())
+    scenes = tuple(
+        _scene(block, f"scenes[{i}]", settled["seed"]) for i, block in enumerate(settled["scenes"])
+    )
+    names = [scene.name for scene in scenes]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise ConfigError(
+                f"scenes[{i}].name must differ from every other scene's, not {name!r}"
+            )
+    shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
+    return Configuration(
+        settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
+    )
+
+
+def read(path):
+    """Return the mapping in the YAML file ``path``.
+
+    Raises ``ConfigError`` where YAML itself would keep silent about a key given twice (the last one
+    would win), and for a file that holds no mapping; ``OSError`` for one that cannot be read.
+    """
+    with open(path, encoding="utf-8") as file:
+        try:
+            mapping = yaml.load(file, _StrictLoader)
+        except yaml.MarkedYAMLError as error:
+            line = error.problem_mark.line + 1
+            raise ConfigError(f"{path}, line {line}: {error.problem}") from None
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
+    if not isinstance(mapping, dict):
+        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {_shown(mapping)}")
+    return mapping
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML as usual, but a key given twice is a mistake."""
+
+    def compose_mapping_node(self, anchor):
+        node = super().compose_mapping_node(anchor)
+        seen = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    problem = f"the key {key.value!r} is given a second time"
+                    raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
+                seen.add(key.value)
+        return node
+
+
+def _types(node):
+    types = node.get("type", [])
+    return [types] if isinstance(types, str) else types
+
+
+def _settled(value, node, path):
+    """Copy ``value`` with every number in one form: float, or int where an integer is asked."""
+    if isinstance(value, Mapping):
+        known = node.get("properties", {})
+        return {k: _settled(v, known.get(k, {}), f"{path}.{k}") for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        items = node.get("items", {})
+        return [_settled(v, items, f"{path}[{i}]") for i, v in enumerate(value)]
+    types = _types(node)
+    if isinstance(value, bool) or not {"number", "integer"} & set(types):
+        return value
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value) if re.search(r"[.eE]", value) else int(value)
+    if isinstance(value, float) and math.isnan(value):
+        # A comparison with NaN is never true, so no limit of the schema would catch it.
+        raise ConfigError(f"{path.lstrip('.')} must be {node['allowed']}, not nan")
+    if "integer" in types:
+        return int(value) if isinstance(value, float) and value.is_integer() else value
+    try:
+        return float(value) if isinstance(value, int) else value
+    except OverflowError:
+        return value
+
+
+def _validate(settled):
+    from jsonschema import Draft202012Validator
+
+    errors = list(Draft202012Validator(schema()).iter_errors(settled))
+    # A misspelt key often explains a missing one, so it goes first.
+    errors.sort(key=lambda error: error.validator != "additionalProperties")
+    if errors:
+        raise ConfigError(_sentence(errors[0]))
+
+
+def _sentence(error):
+    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.absolute_path)
+    path = "".join(steps).lstrip(".") or "the configuration"
+    node, value = error.schema, error.instance
+    if error.validator == "required":
+        missing = next(key for key in error.validator_value if key not in value)
+        return f"{path} needs the key {missing!r}"
+    if error.validator == "additionalProperties":
+        known = list(node["properties"])
+        unknown = next(key for key in value if key not in known)
+        hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
+        return f"{path} has an unknown key {unknown!r}{hint}"
+    hint = _nearest(value, node.get("enum", ()))
+    return f"{path} must be {node['allowed']}, not {_shown(value)}{hint}"
+
+
+def _nearest(word, known):
+    near = get_close_matches(str(word), known, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def _shown(value):
+    return "empty" if value is None else reprlib.repr(value)
+
+
+def _fill_defaults(value, node):
+    if isinstance(value, dict):
+        for key, below in node.get("properties", {}).items():
+            if "default" in below:
+                value.setdefault(key, deepcopy(below["default"]))
+            if key in value:
+                _fill_defaults(value[key], below)
+    elif isinstance(value, list):
+        for item in value:
+            _fill_defaults(item, node.get("items", {}))
+
+
+def _scene(block, path, seed):
+    box = _box(block, path)
+    found = _radii(block["radii"], box, f"{path}.radii")
+    scene = box.scene(found[0])
+    watched = block.get("watch")
+    if watched is None:
+        watched = dict.fromkeys(Watch.__dataclass_fields__, True)
+        watched["trajectory"] = bool(_hops(scene))
+        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene)
+    histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
+    watch = Watch(
+        volume=watched["volume"],
+        areas=_events(watched["areas"], scene, f"{path}.watch.areas"),
+        mean_times=_events(watched["mean_times"], scene, f"{path}.watch.mean_times"),
+        hop_histogram=histogram.pop("radii"),
+        trajectory=_trajectory(watched["trajectory"], box, scene, f"{path}.watch.trajectory"),
+    )
+    if not watch.quantities:
+        known = ", ".join(Watch.__dataclass_fields__)
+        raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    accuracy = block["accuracy"]
+    if not isinstance(accuracy, dict):
+        accuracy = {"default": accuracy}
+    asked = {event: accuracy.get(event, accuracy["default"]) for event in watch.mean_times}
+    return SceneRequest(
+        name=block["name"],
+        box=box,
+        radii=found,
+        watch=watch,
+        monte_carlo=block["monte_carlo"],
+        dynamics={
+            "accuracy": {event: PRESETS.get(asked[event], asked[event]) for event in sorted(asked)},
+            "event_budget": block["event_budget"],
+        },
+        histogram=histogram,
+        seed=seed,
+    )
+
+
+def _box(block, path):
+    """Return the ``Box`` of a scene; its effects are checked to go together."""
+    sides, named = dict(block["box"]), dict(block["effects"])
+    named["periodic"] = "".join(sorted(named["periodic"]))
+    named |= {name: sides.pop(name) for name in EFFECTS if name in sides}
+    named = {name: value for name, value in named.items() if value != ABSENT[name]}
+    try:
+        return Box(sides["width"], sides["height"], named)
+    except ValueError as error:
+        raise ConfigError(f"{path}.effects: {error}") from None
+
+
+def _radii(asked, box, path):
+    if isinstance(asked, list):
+        return _checked(asked, box, path)
+    smallest = asked.get("smallest", _smallest(box))
+    _checked([smallest], box, f"{path}.smallest")
+    include = _checked(asked.get("include", []), box, f"{path}.include")
+    try:
+        if box.effects:
+            generated = even_radii(smallest, LAST_FRACTION * box.last_radius, asked["count"])
+        else:
+            generated = radii(box.width, box.height, smallest, asked["count"])
+    except ValueError as error:
+        raise ConfigError(f"{path}: {error}") from None
+    return _checked(tuple({*generated, *include}), box, path)
+
+
+def _smallest(box):
+    return _short(box.shortest / max(1, box.effects.get("radius_ratio", 1)) / 100)
+
+
+def _hops(scene):
+    return [hop for hop in HOPS if hop in scene.events]
+
+
+def _is_smooth(scene):
+    return scene.moment_of_inertia is None
+
+
+def _histogram(asked, box, scene, path):
+    """Return the histogram's block with its radii (a tuple, empty if it is off) and event."""
+    if isinstance(asked, bool):
+        asked = {} if asked else {"radii": []}
+    elif isinstance(asked, list):
+        asked = {"radii": asked}
+    keys = schema()["properties"]["scenes"]["items"]["properties"]["watch"]["properties"]
+    _fill_defaults(asked, keys["hop_histogram"])
+    hops = _hops(scene)
+    event = asked.get("event", next(iter(hops), None))
+    if asked.get("radii") == []:
+        return {**asked, "radii": (), "event": event}
+    if not _is_smooth(scene):
+        raise ConfigError(
+            f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
+            "have no exact mean; watch mean_times instead"
+        )
+    if not hops:
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if event not in hops:
+        raise ConfigError(
+            f"{path}.event must have a place in the scene, as {hops[0]} has, not {event!r}"
+        )
+    threshold = box.threshold(event)
+    default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
+    found = _checked(asked.get("radii", default), box, path)
+    for radius in found:
+        if not box.scene(radius).is_possible(event):
+            raise ConfigError(
+                f"{path} must keep to radii below {threshold!r}, where {event} is possible, "
+                f"not {radius!r}"
+            )
+    return {**asked, "radii": found, "event": event}
+
+
+def _trajectory(asked, box, scene, path):
+    if asked is False:
+        return None
+    if not _hops(scene):
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if asked is not True:
+        radius = asked
+    elif box.effects:
+        radius = _short(BELOW_THRESHOLD * min(map(box.threshold, _hops(scene))))
+    else:
+        radius = _short(TRAJECTORY_FRACTION * box.shortest)
+    return _checked([radius], box, path)[0]
+
+
+def _events(asked, scene, path):
+    """Return the events asked for in the order of ``EVENTS``, if all have a place in the scene."""
+    if isinstance(asked, bool):
+        return scene.events if asked else ()
+    for event in asked:
+        if event not in scene.events:
+            raise ConfigError(
+                f"{path} must keep to what has a place in the scene, {', '.join(scene.events)}, "
+                f"not {event!r}"
+            )
+    return tuple(event for event in EVENTS if event in asked)
+
+
+def _checked(found, box, path):
+    """Return radii as an ascending tuple if all of them fit and none appears twice."""
+    seen = set()
+    for radius in found:
+        try:
+            scene = box.scene(radius)
+        except ValueError as error:
+            raise ConfigError(f"{path}: {error}") from None
+        if scene.has_effects and (share := _free_share(scene)) < LEAST_SHARE:
+            raise ConfigError(
+                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
+                f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
+            )
+        if radius in seen:
+            raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
+        seen.add(radius)
+    return tuple(sorted(found))
+
+
+def _free_share(scene):
+    """Return the share of the prism in which the discs are free, weighted in a field."""
+    # Numerical packages are imported here, for nothing else needs them.
+    from twodiscs.theory import weighted
+
+    ranges = (
+        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
+        for axis in scene.axes
+        for radius in scene.radii
+    )
+    return weighted.volume(scene) / math.prod(ranges)
+
+
+def _shared(asked, all_have_effects):
+    """Return the names of what is built once, in the order of the schema."""
+    known = schema()["properties"]["shared"]["items"]["enum"]
+    studies = [study.name for study in STUDIES.values() if study.shared]
+    about_plain = {name for name in studies if STUDIES[name].about_plain} | {"paper"}
+    if asked is None:
+        asked = [name for name in known if not (all_have_effects and name in about_plain)]
+    for name in asked:
+        if all_have_effects and name in about_plain:
+            raise ConfigError(
+                f"shared must leave out {name!r} where every scene has effects, for it is about a "
+                "scene without them"
+            )
+    # The manuscript reads all studies.
+    wanted = {*asked, *(studies if "paper" in asked else ())}
+    return tuple(name for name in known if name in wanted)
+
+
+def _short(value):
+    return float(f"{value:.3g}")

@@ -1,0 +1,180 @@
+"""What a configuration asks for, checked and with every default filled in."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from twodiscs.model.box import Box
+from twodiscs.model.radii import key, stream_seed
+
+#: The stages whose jobs run once for each radius, and the module that does the work of each.
+STAGES = {
+    "monte_carlo": "sampling.montecarlo",
+    "dynamics": "dynamics.counting",
+    "intervals": "dynamics.intervals",
+}
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What a scene computes and measures; an empty tuple, ``False`` or ``None`` means not at all.
+
+    ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
+    radii, ``trajectory`` a radius.
+    """
+
+    volume: bool
+    areas: tuple
+    mean_times: tuple
+    hop_histogram: tuple
+    trajectory: float | None
+
+    @property
+    def quantities(self):
+        """Everything watched, as a set of names: those of theory.csv, and the two others.
+
+        Such as {"volume", "right_wall_area", "right_wall_time", "hop_histogram", "trajectory"}.
+        """
+        names = {f"{event}_area" for event in self.areas}
+        names |= {f"{event}_time" for event in self.mean_times}
+        names |= {n for n in ("volume", "hop_histogram", "trajectory") if getattr(self, n)}
+        return frozenset(names)
+
+
+@dataclass(frozen=True)
+class SceneRequest:
+    """One scene of the configuration.
+
+    ``radii`` ascend. ``monte_carlo``, ``dynamics`` and ``histogram`` are the settings of the
+    stages, blocks of the configuration that are handed on as they are. Methods return what one job
+    depends on and nothing else, as a dict of plain values with sorted keys, so that an edit reruns
+    the jobs it concerns and no other. A job for one radius is named by its key.
+    """
+
+    name: str
+    box: Box
+    radii: tuple
+    watch: Watch
+    monte_carlo: dict
+    dynamics: dict
+    histogram: dict
+    seed: int
+
+    @property
+    def effects(self):
+        """The effects of the box, {name: value}."""
+        return self.box.effects
+
+    @property
+    def event_budget(self):
+        """The most events that the simulation of one radius may spend."""
+        return self.dynamics["event_budget"]
+
+    @cached_property
+    def keys(self):
+        """{stage: {key: radius}} of the jobs that there are."""
+        watch = self.watch
+        radii = {
+            "monte_carlo": self.radii if watch.volume or watch.areas else (),
+            "dynamics": self.radii if watch.mean_times else (),
+            "intervals": watch.hop_histogram,
+        }
+        return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
+
+    @cached_property
+    def tables(self):
+        """The names of the tables that the scene calls for."""
+        jobs = any(self.keys.values())
+        measured = {
+            "volume": self.watch.volume,
+            "areas": self.watch.areas,
+            "mean_times": self.watch.mean_times,
+            "hop_histogram": self.watch.hop_histogram,
+            "trajectory": self.watch.trajectory,
+            "check": jobs,
+            "cost": jobs,
+        }
+        return ("grid", "theory", *(name for name, called in measured.items() if called))
+
+    def job(self, stage, key):
+        """Return what the job of a ``stage`` at the radius of this ``key`` depends on.
+
+        Raises ``ValueError`` if there is no such job.
+        """
+        radii = self.keys[stage]
+        if key not in radii:
+            raise ValueError(f"key must be one of {', '.join(radii) or 'none'}, not {key!r}")
+        settings = {
+            "monte_carlo": self.monte_carlo
+            | {"areas": list(self.watch.areas), "volume": self.watch.volume},
+            "dynamics": self.dynamics,
+            "intervals": self.histogram,
+        }
+        seed = stream_seed(self.seed, self.name, stage, key)
+        return self._sorted(**settings[stage], radius=radii[key], seed=seed)
+
+    def kernels(self, stage):
+        """Return what the compiled code of a ``stage`` depends on, as all of its jobs do too."""
+        watched = {
+            "monte_carlo": {"areas": list(self.watch.areas), "volume": self.watch.volume},
+            "dynamics": {"events": list(self.watch.mean_times)},
+            "intervals": {"event": self.histogram["event"]},
+        }
+        return self._sorted(**watched[stage])
+
+    def grid_job(self):
+        """Return the box and the scene's radii."""
+        return self._sorted(radii=list(self.radii))
+
+    def theory_job(self):
+        """Return the box and the radii of theory.csv: the scene's and those of its histograms."""
+        return self._sorted(radii=sorted({*self.radii, *self.watch.hop_histogram}))
+
+    def trajectory_job(self):
+        """Return box, radius and seed; raise ``ValueError`` if no trajectory is watched."""
+        radius = self.watch.trajectory
+        if radius is None:
+            raise ValueError(f"scene {self.name} watches no trajectory")
+        return self._sorted(
+            radius=radius, seed=stream_seed(self.seed, self.name, "trajectory", key(radius))
+        )
+
+    def table_job(self, stages):
+        """Return what a table of the points of these ``stages`` depends on, beside the points."""
+        keys = {stage: list(self.keys[stage]) for stage in stages if self.keys[stage]}
+        return self._sorted(keys=keys, watched=list(self.watch.areas))
+
+    def _sorted(self, **more):
+        return dict(sorted({"box": self.box.parameters(), **more}.items()))
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A whole configuration: the folder of results, the root seed and the scenes in their order.
+
+    ``accuracy_cost`` is the block of this name, and ``shared`` names what is built once, in the
+    order of the schema, with all that the manuscript reads.
+    """
+
+    results: str
+    seed: int
+    shared: tuple
+    scenes: tuple
+    accuracy_cost: dict = field(default_factory=dict)
+
+    @property
+    def plain(self):
+        """The scenes without effects."""
+        return tuple(scene for scene in self.scenes if not scene.effects)
+
+    @property
+    def main(self):
+        """The first scene without effects, or None."""
+        return next(iter(self.plain), None)
+
+    def scene(self, name):
+        """Return the scene called ``name``, or raise ``ValueError``."""
+        for scene in self.scenes:
+            if scene.name == name:
+                return scene
+        names = ", ".join(scene.name for scene in self.scenes)
+        raise ValueError(f"name must be one of {names}, not {name!r}")

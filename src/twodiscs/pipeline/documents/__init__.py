@@ -1,0 +1,1 @@
+"""The manuscript, and the pages that are made from the sources."""

@@ -1,0 +1,89 @@
+"""Typeset the manuscript; the template reads every number and figure from the results."""
+
+import json
+import os
+import platform
+import subprocess
+from importlib.metadata import version
+
+from twodiscs.figures.catalogue import FIGURES, NOTES
+from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.studies.catalogue import STUDY_FIGURES
+
+#: What the manuscript names the versions of, beside Python.
+PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
+
+
+def captions():
+    """Return {figure: (what is the figure's own, what it explains as others do or "")}."""
+    return {
+        name: (entry.own_caption(), NOTES[entry.note].plain if entry.note else "")
+        for name, entry in (FIGURES | STUDY_FIGURES).items()
+    }
+
+
+def commit(folder):
+    """Return the commit that ``folder`` is at, marked where files differ from it, or "unknown"."""
+    words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
+    try:
+        run = subprocess.run(
+            [*words, "--dirty= with changes"], capture_output=True, text=True, check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return run.stdout.strip()
+
+
+def versions():
+    """Return {name: version} of Python and of the packages that do the work."""
+    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
+
+
+def typeset(template, output, contents):
+    """Compile the Typst file ``template`` to the PDF file ``output``.
+
+    The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
+    ``captions`` of all figures, the ``commit`` of the template and the
+    ``versions``; its entry ``results``, their folder, becomes a path from the root that template
+    and results have in common. The same inputs at the same commit give the same bytes on every
+    machine: fonts are those that come with Typst. Raises ``ValueError`` if the template does not
+    compile.
+    """
+    import typst
+
+    results = os.path.abspath(contents["results"])
+    folder = os.path.dirname(os.path.abspath(template))
+    root = os.path.commonpath([results, folder])
+    contents = contents | {
+        "captions": captions(),
+        "commit": commit(folder),
+        "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
+        "versions": versions(),
+    }
+    try:
+        typst.compile(
+            template,
+            output=output,
+            root=root,
+            ignore_system_fonts=True,
+            sys_inputs={"contents": json.dumps(contents)},
+        )
+    except typst.TypstError as error:
+        raise ValueError(f"{template} does not compile: {error.message}; {error.trace}") from None
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.documents.manuscript", description=__doc__)
+    parser.add_argument("--template", required=True, help="the Typst file")
+    parser.add_argument(
+        "--parameters",
+        required=True,
+        help="configuration (its hash), figures and tables of no scene, results, scenes; JSON",
+    )
+    parser.add_argument("--output", required=True, help="the PDF file")
+    options = parser.parse_args()
+    typeset(options.template, options.output, parameters(options.parameters))
+
+
+if __name__ == "__main__":
+    run(main)

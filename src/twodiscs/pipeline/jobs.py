@@ -1,0 +1,203 @@
+"""The jobs of the workflow: a module does the work, and this reads and writes the files.
+
+    python -m twodiscs.pipeline.jobs point dynamics.counting --parameters '{"radius": …}' \\
+        --output points/dynamics/0.2.json --cost points/cost/dynamics-0.2.json
+    python -m twodiscs.pipeline.jobs table studies.tails.measure --parameters '{…}' \\
+        --output results/tails.csv
+    python -m twodiscs.pipeline.jobs figure figures.radius --parameters '{…}' \\
+        --table volume=results/paper/volume.csv --output volume.pdf volume.png
+
+Modules are named from the package on, and found by their name, so that an edit of one of them does
+not concern the jobs of the others. Parameters are one JSON object, or @path of a file that holds
+it; their entry ``box`` becomes a ``Box``.
+"""
+
+import inspect
+import json
+import sys
+import time
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+from twodiscs.model.box import Box
+from twodiscs.pipeline.arguments import Parser, named, parameters, run
+
+
+def module_of(name):
+    """Return the module ``name`` of this package; raise ``ValueError`` if there is none."""
+    parts = name.split(".")
+    try:
+        if all(part.isidentifier() for part in parts) and find_spec(f"twodiscs.{name}"):
+            return import_module(f"twodiscs.{name}")
+    except ModuleNotFoundError as error:
+        if not f"twodiscs.{name}".startswith(f"{error.name}"):
+            raise
+    raise ValueError(f"module must be one of the package twodiscs, not {name!r}")
+
+
+def table_of(name, beside=""):
+    """Return the ``Table`` called ``name``, of a scene, beside a module or of a study."""
+    from twodiscs.comparison.scene_tables import SCENE_TABLES
+
+    if name in SCENE_TABLES:
+        return SCENE_TABLES[name]
+    places = beside.rpartition(".")[0], f"studies.{name}", f"studies.{name.rpartition('_')[0]}"
+    for place in filter(None, places):
+        try:
+            declared = module_of(f"{place}.table")
+        except ValueError:
+            continue
+        for table in vars(declared).values():
+            if isinstance(table, type) and hasattr(table, "columns") and table.name() == name:
+                return table
+    raise ValueError(f"there is no table called {name!r}")
+
+
+def read_tables(texts):
+    """Return {name: rows} of the arguments NAME=CSV; a table is called as its file."""
+    return {
+        name: table_of(Path(path).stem).read(path) for name, path in named(texts, "--table").items()
+    }
+
+
+def call(function, given, **more):
+    """Call ``function`` with the parameters ``given``, a ``box`` made of those of that name.
+
+    Arguments in ``more`` are passed if the function takes them. Raises ``ValueError`` for
+    parameters that it does not take, and for missing ones.
+    """
+    if isinstance(given.get("box"), dict):
+        try:
+            given = given | {"box": Box(**given["box"])}
+        except TypeError:
+            raise ValueError(
+                f"box must have width, height and maybe effects, not {given['box']!r}"
+            ) from None
+    signature = inspect.signature(function)
+    given = given | {name: v for name, v in more.items() if name in signature.parameters}
+    try:
+        bound = signature.bind(**given)
+    except TypeError as error:
+        raise ValueError(f"parameters of {function.__module__}: {error}") from None
+    return function(*bound.args, **bound.kwargs)
+
+
+def write_json(path, content):
+    """Write ``content`` with sorted keys, one entry a line; floats keep all their digits."""
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(content, file, sort_keys=True, indent=1, allow_nan=False)
+        file.write("\n")
+
+
+def progress(start):
+    """Return a reporter that logs what a job has done and the time that is left.
+
+    It takes a text and the work that is left, over the work that is done.
+    """
+
+    def report(done, left):
+        seconds = left * (time.process_time() - start)
+        print(f"{done}, about {seconds:.0f} s left", file=sys.stderr)
+
+    return report
+
+
+def point(options):
+    """Write what a module finds at one radius, and what it took in processor time."""
+    work = module_of(options.module)
+    given = parameters(options.parameters)
+    start = time.process_time()
+    result = call(work.job, given, report=progress(start))
+    seconds = time.process_time() - start
+    write_json(options.output[0], result)
+    if options.cost:
+        write_json(options.cost, {"events": result[work.WORK], "seconds": seconds})
+
+
+def table(options):
+    """Write the table that a module makes of its parameters, of other tables and of points."""
+    work = getattr(module_of(options.module), options.function)
+    start = time.process_time()
+    rows = call(
+        work,
+        parameters(options.parameters),
+        tables=read_tables(options.table),
+        points=options.points,
+        report=progress(start),
+    )
+    (path,) = options.output
+    table_of(Path(path).stem, options.module).write(path, rows)
+
+
+def figure(options):
+    """Draw the figure of a module."""
+    draw = module_of(options.module).draw
+    given, tables = parameters(options.parameters), read_tables(options.table)
+    from twodiscs.figures.kit import style
+
+    with style.context():
+        drawn = call(draw, given, tables=tables)
+        for path in options.output:
+            style.save(drawn, path)
+
+
+def animation(options):
+    """Draw the animation of a trajectory."""
+    animate = module_of(options.module).animate
+    given, tables = parameters(options.parameters), read_tables(options.table)
+    from twodiscs.figures.kit import style
+
+    with style.context():
+        call(animate, given, rows=tables["trajectory"], paths=options.output)
+
+
+def kernels(options):
+    """Compile the kernels of modules, those of a scene or those of all plain ones."""
+    given = parameters(options.parameters) if options.parameters else {}
+    for name in options.module.split(","):
+        call(module_of(name).compile_kernels, given)
+    Path(options.output[0]).touch()
+
+
+def verdict(options):
+    """Write a line a scene if every comparison passed; otherwise print failures and return 1."""
+    failures, text = module_of(options.module).verdict(read_tables(options.table))
+    if failures:
+        print("\n".join(failures), file=sys.stderr)
+        return 1
+    print(text, end="")
+    Path(options.output[0]).write_text(text, encoding="utf-8", newline="\n")
+    return 0
+
+
+JOBS = {
+    "point": point,
+    "table": table,
+    "figure": figure,
+    "animation": animation,
+    "kernels": kernels,
+    "verdict": verdict,
+}
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.jobs", description="Do one job of the workflow.")
+    parser.add_argument("job", choices=JOBS)
+    parser.add_argument("module", help="the module that does the work, named from the package on")
+    parser.add_argument("--function", default="rows", help="what makes the rows of a table")
+    parser.add_argument("--parameters", help="all that the job depends on, JSON or @path")
+    parser.add_argument("--table", nargs="*", default=[], metavar="NAME=CSV")
+    parser.add_argument(
+        "--points", nargs="*", default=[], metavar="PATH", help="points, or folders"
+    )
+    parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
+    parser.add_argument("--cost", metavar="JSON", help="where to write the work and the seconds")
+    options = parser.parse_args()
+    if options.parameters is None and options.job not in ("kernels", "verdict"):
+        raise ValueError(f"{options.job} needs --parameters")
+    return JOBS[options.job](options)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,131 @@
+"""Which sources of this package a module is made of, and a fingerprint of them.
+
+The workflow passes fingerprints to its jobs, so that an edit reruns what it can change and nothing
+else: they follow the import statements, and see neither comments nor docstrings nor time stamps.
+Standard library only: the Snakefile imports this.
+"""
+
+import ast
+import re
+from functools import cache
+from hashlib import blake2b
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def imported(*modules):
+    """Return the sorted paths of all files of this package that importing ``modules`` may read.
+
+    They are dotted names below the package, "dynamics.counting" say. Imports are followed wherever
+    they stand, in functions too, through ``__init__.py`` files and relative names; a module that is
+    imported by a computed name is not seen. Raises ``ValueError`` for a name that is no module of
+    this package.
+    """
+    found, queue = set(), []
+    for module in modules:
+        name = tuple(module.split(".")) if isinstance(module, str) else ()
+        if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
+            raise ValueError(f"module must be a module of {PACKAGE.name}, not {module!r}")
+        queue.append(name)
+    while queue:
+        name = queue.pop()
+        if name not in found:
+            found.add(name)
+            queue += _imports(name)
+    return sorted(_file(name) for name in found)
+
+
+@cache
+def fingerprint(*modules):
+    """Return 16 hexadecimal digits that change with the code of ``modules`` and what they import.
+
+    Raises ``ValueError`` as ``imported`` does.
+    """
+    digest = blake2b(digest_size=8)
+    for path in imported(*modules):
+        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {_read(path)[0]}\n".encode())
+    return digest.hexdigest()
+
+
+def _file(name):
+    """Return the file of the module ``name``, a tuple of the parts below the package, or None."""
+    path = PACKAGE.joinpath(*name)
+    for candidate in (path / "__init__.py", path.with_name(path.name + ".py")):
+        if path.is_relative_to(PACKAGE) and candidate.is_file():
+            return candidate
+    return None
+
+
+@cache
+def _read(path):
+    """Return (hash of a source file without comments, docstrings and blank lines, its imports).
+
+    The hash is that of the text, not of the syntax tree, whose form depends on the version of
+    Python. Strings that are statements of their own are docstrings, of attributes too.
+    """
+    text = path.read_bytes()
+    lines, strings, imports = text.splitlines(), [], []
+    for node in ast.walk(ast.parse(text, filename=str(path))):
+        if isinstance(node, ast.Expr) and _is_text(node.value):
+            _cut(lines, node)
+        elif isinstance(node, ast.JoinedStr) or _is_text(node):
+            strings.append(node)
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            imports.append(node)
+    _cut_comments(lines, strings)
+    code = b"\n".join(line.rstrip() for line in lines if line.strip())
+    return blake2b(code, digest_size=8).hexdigest(), imports
+
+
+def _is_text(node):
+    return isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
+
+
+def _cut(lines, node):
+    """Empty the part of ``lines`` that a ``node`` covers."""
+    first, last = node.lineno - 1, node.end_lineno - 1
+    before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
+    lines[first : last + 1] = [before + after] + [b""] * (last - first)
+
+
+def _cut_comments(lines, strings):
+    """Cut everything from a # on that does not stand in one of ``strings``, nodes of the tree."""
+    covered = {}
+    for node in strings:
+        for number in range(node.lineno, node.end_lineno + 1):
+            start = node.col_offset if number == node.lineno else 0
+            stop = node.end_col_offset if number == node.end_lineno else len(lines[number - 1])
+            covered.setdefault(number, []).append((start, stop))
+    for number, line in enumerate(lines, start=1):
+        for mark in re.finditer(b"#", line):
+            inside = (start <= mark.start() < stop for start, stop in covered.get(number, ()))
+            if not any(inside):
+                lines[number - 1] = line[: mark.start()]
+                break
+
+
+@cache
+def _imports(name):
+    """Return the modules of this package that the module ``name`` imports, its parents included."""
+    path = _file(name)
+    here = name if path.name == "__init__.py" else name[:-1]
+    found = {name[:depth] for depth in range(len(name))}
+    for node in _read(path)[1]:
+        if isinstance(node, ast.Import):
+            targets = [_below_package(alias.name) for alias in node.names]
+        else:
+            base = _below_package(node.module or "")
+            if node.level:
+                base = here[: len(here) + 1 - node.level]
+                base += tuple(node.module.split(".")) if node.module else ()
+            targets = [] if base is None else [base, *((*base, a.name) for a in node.names)]
+        for target in filter(None, targets):
+            found.update(target[:depth] for depth in range(len(target) + 1))
+    return [target for target in found if _file(target) is not None]
+
+
+def _below_package(dotted):
+    """Return the parts of an absolute module name below this package, None if it lies outside."""
+    package, *parts = dotted.split(".")
+    return tuple(parts) if package == PACKAGE.name else None

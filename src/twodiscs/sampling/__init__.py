@@ -1,0 +1,1 @@
+"""Compiled random numbers, draws from the invariant measure, Monte Carlo."""

@@ -1,0 +1,539 @@
+"""Rejection sampling of the volume and, by thin shells, of the surfaces of configuration space.
+
+Centres are drawn uniformly in the prism; a sample that does not overlap belongs to the volume, and
+one that also lies within ε of a surface belongs to its shell. Shell thickness is measured along
+the normal in configuration space, g = 0 being the surface and |∇g| = 1:
+
+    vertical hop     |y1 − y2|/√2 ≤ ε, from both sides        horizontal hop  likewise in x
+    disc collision   0 ≤ (|Δx| − σ)/√2 ≤ ε                    right wall      0 ≤ a − x1 ≤ ε
+                                                              top wall        0 ≤ b − y1 ≤ ε
+
+A shell of finite thickness is biased; ``exact.shell_expectation`` is what it estimates exactly.
+Where the prism is almost all overlap, ``conditioned_point`` takes the place of ``sample_point``;
+``better_point`` is whichever of them is the better one.
+
+A coordinate is one of 2³² equidistant values, so that two of them come from one draw of 64 bits
+and their difference is an integer. The grain shifts a probability by some 2⁻³² of the prism, far
+below the error of any number of samples that can be drawn.
+
+Scenes with effects are sampled one draw at a time (``weighted_blocks``), with the weight of the
+invariant measure as the probability that a sample counts: so their errors are binomial too.
+Thickness is then measured in the metric of the masses, as ``weighted.shell_expectation`` has it.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import one_of, proportion, whole
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
+from twodiscs.model.scene import a_scene
+from twodiscs.sampling.jit import compiled, inlined, optional, tally, written_out
+from twodiscs.sampling.prism import kinetic_share, power_chance, prism_of, propose_in_prism
+from twodiscs.sampling.separations import draw_constants, propose_separation
+from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
+from twodiscs.theory import exact
+
+LANES = 64
+
+#: Samples of the prism that share a random stream: 2¹⁴ passes over the lanes.
+BLOCK = LANES << 14
+
+#: Passes between two readings of the packed counts; eight fields of eight bits.
+PASSES = 128
+
+#: Proposals of the conditioned sampler that share a random stream.
+PROPOSALS = 1 << 16
+
+#: How many times the time of a sample of the prism one of them takes, roughly.
+DEARER = 64
+
+
+# Plain scenes -----------------------------------------------------------------------------------
+
+
+#: A count of the volume, of each shell and of the samples at the right and at the top: eight fields
+#: of eight bits are all that an integer of 64 bits holds.
+SETS = 2 + len(SHELLS)
+if SETS > 8:
+    raise TypeError(f"sampling/montecarlo.py has room for 6 shells, not for {len(SHELLS)}")
+
+# How a sample that leaves the discs apart shows that it lies in a shell: a function of the squares
+# of the separations and of the distance, of the place of disc 1, and of the ends of all shells.
+
+
+def _hop_shell(event):
+    row = SHELLS.index(event.name)
+    if event.axis == "x":
+        return lambda uu, vv, square, x, y, ends: uu <= ends[row]
+    return lambda uu, vv, square, x, y, ends: vv <= ends[row]
+
+
+def _collision_shell(event):
+    row = SHELLS.index(event.name)
+    return lambda uu, vv, square, x, y, ends: square <= ends[row]
+
+
+def _wall_shell(event):
+    row = SHELLS.index(event.name)
+    if event.side < 0 and event.axis == "x":
+        return lambda uu, vv, square, x, y, ends: x <= ends[row]
+    if event.side < 0:
+        return lambda uu, vv, square, x, y, ends: y <= ends[row]
+    if event.axis == "x":
+        return lambda uu, vv, square, x, y, ends: x >= ends[row]
+    return lambda uu, vv, square, x, y, ends: y >= ends[row]
+
+
+IN_SHELL = by_kind(
+    "sampling/montecarlo.py",
+    {"hop": _hop_shell, "collision": _collision_shell, "wall": _wall_shell},
+    SHELLS,
+)
+
+in_shells = tally(
+    ((256 ** (1 + i), IN_SHELL[event], None) for i, event in enumerate(SHELLS)),
+    "uu, vv, square, x, y, ends",
+)
+BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
+
+
+@inlined
+def sets_of(uu, vv, square, x, y, ends):
+    """Return the sets that a sample is in, an integer with a field of eight bits for each."""
+    sets = in_shells(1, uu, vv, square, x, y, ends)
+    return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
+
+
+def _ends(epsilon, collision, wall):
+    """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELLS``.
+
+    ``collision`` gives the square of the distance where a shell of disc collisions of this
+    thickness ends, ``wall`` the place where one of an axis and side begins.
+    """
+    makers = {
+        "hop": lambda event, thick: 2.0 * (thick * thick),
+        "collision": lambda event, thick: collision(math.sqrt(2.0) * thick),
+        "wall": lambda event, thick: wall(event.axis, event.side, thick),
+    }
+    events = map(DECLARED.get, SHELLS)
+    return tuple(makers[e.kind](e, thick) for e, thick in zip(events, epsilon, strict=True))
+
+
+@compiled
+def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
+    """Count the samples of blocks ``first`` … ``stop`` − 1 that fall into each set.
+
+    ``ends`` are those of the shells, with places in grains. Returns int64 counts: volume, shells in
+    the order of ``SHELLS``, right and top at once. ``areas`` is True, or None where only the volume
+    is wanted: the shells are then not compiled.
+    """
+    s0, s1 = np.empty(LANES, np.uint64), np.empty(LANES, np.uint64)
+    packed, totals = np.zeros(LANES, np.int64), np.zeros(SETS, np.int64)
+    unit_x, unit_y = range_x * 2.0**-32, range_y * 2.0**-32
+    inner = sigma * sigma
+    mask = np.uint64(0xFFFFFFFF)
+    for block in range(first, stop):
+        counter = open_stream(seed, block)[0]
+        for i in range(LANES):
+            counter += GOLDEN
+            s0[i] = splitmix(counter)
+            counter += GOLDEN
+            s1[i] = splitmix(counter) | np.uint64(1)
+        for _ in range(BLOCK // LANES // PASSES):
+            for _ in range(PASSES):
+                for i in range(LANES):
+                    # xoroshiro128+ (Blackman and Vigna 2021), twice.
+                    a, b = s0[i], s1[i]
+                    bits_x = a + b
+                    b ^= a
+                    a = ((a << np.uint64(24)) | (a >> np.uint64(40))) ^ b ^ (b << np.uint64(16))
+                    b = (b << np.uint64(37)) | (b >> np.uint64(27))
+                    bits_y = a + b
+                    b ^= a
+                    s0[i] = ((a << np.uint64(24)) | (a >> np.uint64(40))) ^ b ^ (b << np.uint64(16))
+                    s1[i] = (b << np.uint64(37)) | (b >> np.uint64(27))
+                    grain_x = np.int64(bits_x >> np.uint64(32))
+                    grain_y = np.int64(bits_y >> np.uint64(32))
+                    u = np.float64(grain_x - np.int64(bits_x & mask)) * unit_x
+                    v = np.float64(grain_y - np.int64(bits_y & mask)) * unit_y
+                    uu, vv = u * u, v * v
+                    square = uu + vv
+                    count = 1
+                    if areas is not None:
+                        count = sets_of(uu, vv, square, grain_x, grain_y, ends)
+                    packed[i] += count if square >= inner else 0
+            for i in range(LANES):
+                for e in range(SETS):
+                    totals[e] += (packed[i] >> (8 * e)) & 255
+                packed[i] = 0
+    return totals
+
+
+def shell_thickness(scene, event, fraction):
+    """Return ε for the shell of ``event``: a ``fraction`` of the radius, or of the room if smaller.
+
+    The room is the distance of the radius from the one at which the surface vanishes: the largest
+    radius, or for a hop w/4 or h/4. Beyond it a hop's shell is empty, as is its surface. In a box
+    more than twice as long as wide the discs keep room along it up to the largest radius: long − 4r
+    is then that of collisions and of the walls at the far ends.
+
+    With effects it is a fraction of the smaller radius or of the room, in units of the lightest
+    disc's metric, so that the shell is no thicker than that anywhere (√2 of it for the separation
+    of two discs) and stays inside the box. The room is that to the largest radius or, for a hop,
+    the width of the gap between the discs when they pass each other as far apart as they can be.
+
+    Raises ``ValueError`` for an event without a shell and a ``fraction`` that is not between 0 and
+    1.
+    """
+    one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
+    fraction = proportion("fraction", fraction)
+    if scene.has_effects:
+        return fraction * _weighted_thickness(scene, event)
+    room = abs(_vanishing(scene, DECLARED[event]) - scene.radius)
+    sides = {"x": scene.width, "y": scene.height}
+    long, short = max(sides.values()), min(sides.values())
+    ahead = long if event == "disc_collision" else sides[AXIS[event]]
+    if long > 2 * short and ahead == long and DECLARED[event].kind != "hop":
+        room = long - 4 * scene.radius
+    return fraction * (min(scene.radius, room) if room > 0 else scene.radius)
+
+
+def _vanishing(scene, event):
+    """Return the radius at which the surface of an ``Event`` vanishes: w/4 and h/4 for hops."""
+    if event.kind != "hop":
+        return scene.largest_radius
+    return (scene.width if event.axis == "y" else scene.height) / 4
+
+
+def _weighted_thickness(scene, event):
+    """Return the length that ``shell_thickness`` takes a fraction of, with effects."""
+    kind = DECLARED[event].kind
+    if kind == "hop":
+        across = sum(scene.reach(axis) ** 2 for axis in scene.axes if axis != AXIS[event])
+        room = abs(math.sqrt(across) - scene.contact_distance)
+    else:
+        room = scene.largest_radius - scene.radius
+    smallest = min(scene.radii)
+    lightest = 1.0 if kind == "wall" else min(scene.masses)
+    return math.sqrt(lightest) * (min(smallest, room) if room > 0 else smallest)
+
+
+def sample_point(scene, quantities, samples, shell, seed):
+    """Estimate the volume and areas of a ``Scene`` by rejection sampling in the prism.
+
+    ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``samples`` is rounded up to
+    whole blocks of 2²⁰; ``shell`` sets the thickness of the shells (``shell_thickness``); ``seed``
+    is an integer ≥ 0. Returns a dict for a JSON file: radius, method, samples, and for each sampled
+    quantity its hits, its measure and ε, so that measure × hits / samples is the estimate. The
+    area of all walls takes no shell of its own: ``right_and_top`` is how many samples lie in both
+    shells.
+
+    For a scene with effects see ``weighted_point``. Raises ``ValueError`` for an unknown quantity
+    or a number out of range.
+    """
+    if a_scene(scene).has_effects:
+        return weighted_point(scene, quantities, samples, shell, seed)
+    wanted, epsilon = _shells(scene, quantities, shell)
+    blocks, seed = -(-whole("samples", samples) // BLOCK), whole("seed", seed, 0)
+    sigma = scene.contact_distance
+    ranges = {"x": scene.range_x, "y": scene.range_y}
+
+    def first_grain(axis, side, thick):
+        """Return the first grain that lies in the shell of a wall, or the last one."""
+        first = math.ceil((1.0 - thick / ranges[axis]) * 2.0**32 - 0.5)
+        return first if side > 0 else 2**32 - 1 - first
+
+    ends = _ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
+    counts = sample_blocks(
+        np.uint64(seed), 0, blocks, *ranges.values(), sigma, ends, True if any(epsilon) else None
+    )
+    prism = (scene.range_x * scene.range_y) ** 2
+    return _point(scene, "monte_carlo", wanted, epsilon, blocks * BLOCK, prism, counts)
+
+
+def _shells(scene, quantities, shell):
+    """Return (the set of "volume" and events to sample, ε for each event with a shell or 0).
+
+    These are ``SHELLS``, or all ``EVENTS`` in a scene with effects.
+    """
+    allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
+    for quantity in quantities:
+        one_of("quantity", quantity, allowed)
+    if not quantities:
+        raise ValueError("quantities must name at least one quantity, not none")
+    shell = proportion("shell", shell)
+    wanted = {quantity.removesuffix("_area") for quantity in quantities}
+    if "any_wall" in wanted and not scene.has_effects:
+        wanted |= {"right_wall", "top_wall"}
+    shells = EVENTS if scene.has_effects else SHELLS
+    return wanted, [shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in shells]
+
+
+def _point(scene, method, wanted, epsilon, samples, measure, counts):
+    """Return the dict for a JSON file; ``measure`` is the volume that the samples fill."""
+    found = {}
+    if "volume" in wanted:
+        found["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
+    # A sample looks at both sides of a hop, and at one disc and one of its walls.
+    share = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
+    for event, thickness, hits in zip(EVENTS, epsilon, counts[1:], strict=False):
+        if event in wanted:
+            found[f"{event}_area"] = {
+                "hits": int(hits),
+                "measure": share.get(DECLARED[event].kind, 1) * measure / thickness,
+                "epsilon": thickness,
+            }
+    point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": found}
+    if {"right_wall", "top_wall"} <= wanted and not scene.has_effects:
+        point["right_and_top"] = int(counts[SETS - 1])
+    return point
+
+
+@compiled
+def propose_blocks(seed, first, stop, draw, ends):
+    """Count the proposals of blocks ``first`` … ``stop`` − 1 that fall into each set.
+
+    The counts are those of ``sample_blocks``; ``draw`` is the ``Draw`` of the scene. Distances are
+    taken from the walls and from contact, as the proposals give them, so that shells keep their
+    thickness where the discs hardly fit: ``ends`` are those of |Δx|² − σ² for collisions and of −1
+    times the distance from the far wall.
+    """
+    totals = np.zeros(SETS, np.int64)
+    for block in range(first, stop):
+        state = open_stream(seed, block)
+        for _ in range(PROPOSALS):
+            accepted, slack_x, slack_y, u, excess = propose_separation(state, draw)
+            if not accepted:
+                continue
+            v = draw.range_y - slack_y
+            bits = next_bits(state)
+            # Disc 1 has a share of the room that is left, and the separation if it is the far one.
+            to_right = slack_x * uniform(state)
+            to_right += u if bits & np.uint64(1 << 62) else 0.0
+            to_top = slack_y * uniform(state)
+            to_top += v if bits & np.uint64(1 << 61) else 0.0
+            sets = sets_of(u * u, v * v, excess, -to_right, -to_top, ends)
+            for e in range(SETS):
+                totals[e] += (sets >> (8 * e)) & 255
+    return totals
+
+
+def conditioned_point(scene, quantities, samples, shell, seed):
+    """Estimate the volume and areas of a ``Scene`` by draws that keep to where the discs fit.
+
+    For radii where the prism is almost all overlap, up to the largest one: at least a quarter of
+    the proposals is accepted at any radius. A proposal is a sample of a set whose volume, twice
+    ``Draw.mass``, is known; so its point has the form of that of ``sample_point``, for the same
+    arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded up to
+    whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the better
+    choice wherever it accepts a few in a hundred. Raises ``ValueError`` as ``sample_point`` does.
+    """
+    if a_scene(scene).has_effects:
+        raise ValueError(f"scene must have no effects for conditioned draws, not {scene.effects}")
+    wanted, epsilon = _shells(scene, quantities, shell)
+    blocks, seed = -(-whole("samples", samples) // PROPOSALS), whole("seed", seed, 0)
+    draw, sigma = draw_constants(scene), scene.contact_distance
+    ranges = {"x": scene.range_x, "y": scene.range_y}
+    ends = _ends(
+        epsilon,
+        lambda thick: thick * (2.0 * sigma + thick),
+        lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],
+    )
+    counts = propose_blocks(np.uint64(seed), 0, blocks, draw, ends)
+    return _point(scene, "conditioned", wanted, epsilon, blocks * PROPOSALS, 2 * draw.mass, counts)
+
+
+# Scenes with effects ----------------------------------------------------------------------------
+
+
+# How a sample shows that it lies in a shell, as a function of the random state, the prism, the
+# place of disc 1, the separation, and how far the shell reaches. Where that is None it is not
+# compiled.
+
+
+def _weighted_hop(event):
+    k = "xy".index(event.axis)
+    return lambda state, prism, place, apart, end: abs(apart[k]) <= end
+
+
+def _weighted_collision(event):
+    return lambda state, prism, place, apart, end: (
+        apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2] <= end
+    )
+
+
+def _weighted_wall(event):
+    k = "xy".index(event.axis)
+    if event.side > 0:
+        return lambda state, prism, place, apart, end: prism.half_1[k] - place[k] <= end
+    return lambda state, prism, place, apart, end: prism.half_1[k] + place[k] <= end
+
+
+def _at_random_wall(state, prism, place, separation, end):
+    """Say whether a disc is in the shell of a wall, both of them picked at random."""
+    thickness, walled = end
+    pick = int(4 * len(walled) * uniform(state))
+    axis, first = walled[pick // 4], pick & 2 == 0
+    q = place[axis] if first else place[axis] - separation[axis]
+    half = prism.half_1[axis] if first else prism.half_2[axis]
+    distance = half - q if pick & 1 == 0 else half + q
+    return distance <= (thickness[0] if first else thickness[1])
+
+
+IN_WEIGHTED_SHELL = by_kind(
+    "sampling/montecarlo.py",
+    {
+        "hop": _weighted_hop,
+        "collision": _weighted_collision,
+        "wall": _weighted_wall,
+        "walls": lambda event: _at_random_wall,
+    },
+)
+
+
+def weighted_ends(scene, epsilon):
+    """Return how far the shells of a ``Scene`` reach for thicknesses ε, 0 where one is not wanted.
+
+    Both are in the order of ``EVENTS``. None in the place of all ends says that there are none.
+    """
+    if not any(epsilon):
+        return None
+    relative = math.sqrt(sum(1 / mass for mass in scene.masses))
+    walled = tuple("xyz".index(axis) for axis in scene.walled)
+
+    def outer(thick):
+        reach = scene.contact_distance + relative * thick
+        return reach * reach
+
+    makers = {
+        "hop": lambda thick: relative * thick,
+        "collision": outer,
+        "wall": lambda thick: thick,
+        "walls": lambda thick: (tuple(thick / math.sqrt(m) for m in scene.masses), walled),
+    }
+    kinds = (DECLARED[event].kind for event in EVENTS)
+    return tuple(
+        makers[kind](thick) if thick else None for kind, thick in zip(kinds, epsilon, strict=True)
+    )
+
+
+@optional(lambda state, share, power, weights: True)
+def counted(state, share, power, weights):
+    """Say whether a sample counts, with the probability ``share`` to the ``power``/2."""
+    return power_chance(state, share, power)
+
+
+def _counter_of_shells():
+    """Return a function that counts a sample in all shells: ``totals`` from 1 on."""
+    absent = optional(lambda state, prism, place, separation, end: False)
+    names = {f"within_{i}": absent(IN_WEIGHTED_SHELL[event]) for i, event in enumerate(EVENTS)}
+    lines = (
+        f"totals[{1 + i}] += within_{i}(state, prism, place, separation, ends[{i}])"
+        for i in range(len(EVENTS))
+    )
+    return written_out("totals, state, prism, place, separation, ends", lines, names)
+
+
+_count_each = _counter_of_shells()
+
+
+@optional(lambda totals, state, prism, place, separation, share, ends: None)
+def count_shells(totals, state, prism, place, separation, share, ends):
+    """Count a sample that counts for the volume in the shells, ``totals`` from 1 on.
+
+    Volume and area are weighted with powers of the kinetic share that differ by 1/2.
+    """
+    if counted(state, share, 1, prism.weights):
+        _count_each(totals, state, prism, place, separation, ends)
+
+
+@compiled
+def weighted_blocks(seed, first, stop, prism, ends):
+    """Count the samples of blocks ``first`` … ``stop`` − 1 that count for each set.
+
+    ``prism`` is the ``Prism`` of a scene with effects, ``ends`` are its ``weighted_ends``.
+    Returns int64 counts: volume, then ``EVENTS``.
+    """
+    totals = np.zeros(1 + len(EVENTS), np.int64)
+    for block in range(first, stop):
+        state = open_stream(seed, block)
+        for _ in range(BLOCK):
+            x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
+            if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
+                continue
+            share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
+            if counted(state, share, prism.components - 2, prism.weights):
+                totals[0] += 1
+                count_shells(totals, state, prism, (x1, y1, z1), (dx, dy, dz), share, ends)
+    return totals
+
+
+def weighted_point(scene, quantities, samples, shell, seed):
+    """Estimate the weighted volume and areas of a ``Scene`` with effects.
+
+    A sample of the prism in which the discs do not overlap counts for the volume with the
+    probability (1 − U/E)₊^(D/2 − 1), and for a shell it lies in with (1 − U/E)₊^((D − 1)/2). All
+    walls have an entry of their own: for each sample one disc and one wall are picked at random, so
+    that its measure is that of the prism times their number. Otherwise arguments, result and errors
+    are those of ``sample_point``; a sample takes some forty times as long.
+    """
+    wanted, epsilon = _shells(scene, quantities, shell)
+    blocks, seed = -(-whole("samples", samples) // BLOCK), whole("seed", seed, 0)
+    # Spins have no place in configuration space: one kernel less to compile.
+    prism = prism_of(scene)._replace(inertia=None)
+    found = weighted_blocks(np.uint64(seed), 0, blocks, prism, weighted_ends(scene, epsilon))
+    axes = range(len(scene.axes))
+    measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
+    return _point(scene, "monte_carlo", wanted, epsilon, blocks * BLOCK, measure, found)
+
+
+# The choice -------------------------------------------------------------------------------------
+
+
+def better_point(scene, quantities, samples, shell, seed):
+    """Estimate the volume and areas of a ``Scene`` by the sampler that suits it.
+
+    With effects that is ``weighted_point``. Without, it is ``sample_point`` where a sample of the
+    prism is free with a probability of at least 1/``DEARER``; else it is ``conditioned_point``,
+    with as many samples as take the same time. Arguments, result and errors are those of either.
+    """
+    draw_from, samples = plan(scene, samples)
+    return draw_from(scene, quantities, samples, shell, seed)
+
+
+def plan(scene, samples):
+    """Return (the sampler that suits a ``Scene``, the number of its samples for ``samples``)."""
+    in_prism = -(-whole("samples", samples) // BLOCK) * BLOCK
+    if a_scene(scene).has_effects:
+        return weighted_point, in_prism
+    free = exact.volume(scene) / (scene.range_x * scene.range_y) ** 2
+    if free >= 1 / DEARER:
+        return sample_point, in_prism
+    return conditioned_point, -(-samples // (DEARER * PROPOSALS)) * PROPOSALS
+
+
+#: What the work of a job is counted in: an entry of its result.
+WORK = "samples"
+
+
+def job(box, radius, areas, volume, samples, shell, seed):
+    """Return ``better_point`` for plain values: the job of one radius.
+
+    ``areas`` are events and ``volume`` says whether it is sampled too.
+    """
+    quantities = ["volume"] * volume + [f"{event}_area" for event in areas]
+    return better_point(box.scene(radius), quantities, samples, shell, seed)
+
+
+def compile_kernels(box=None, areas=(), volume=True):
+    """Compile the kernel that samples these quantities in a ``Box``; without one the plain ones."""
+    if box is not None:
+        quantities = ["volume"] * volume + [f"{event}_area" for event in areas]
+        better_point(box.tiny, quantities, 1, 0.1, 0)
+        return
+    scene = Box(1.5, 1.0).scene(0.2)
+    for quantities in (["volume"], ["volume", f"{SHELLS[-1]}_area"]):
+        sample_point(scene, quantities, 1, 0.1, 0)
+    conditioned_point(scene, ["volume"], 1, 0.1, 0)

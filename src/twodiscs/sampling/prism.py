@@ -1,0 +1,231 @@
+"""Draws of scenes with effects from the invariant measure, by rejection from the prism.
+
+The prism holds all places of both centres. The density of configurations is ∝ (E − U)^(D/2 − 1)
+where the discs do not overlap, with D velocity components, and velocities scaled by √mass are
+uniform on a sphere in D dimensions.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.separations import draw_in_disc
+from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
+
+
+class Prism(NamedTuple):
+    """What a draw by rejection needs to know of a scene; None for what is absent.
+
+    The centre of disc i lies within ±half_xi, half the side where the axis is periodic; ``period``
+    holds the sides of periodic axes, 0 between walls.
+    """
+
+    half_1: tuple  # of disc 1 along x, y, z; z is 0 in the plane
+    half_2: tuple
+    period: tuple
+    conserved: tuple  # whether the total momentum along x, y, z is 0
+    sigma: float
+    inverse_roots: tuple  # 1/√m of disc 1 and 2, and of the reduced mass
+    shares: tuple  # m2/M, m1/M
+    components: int  # D
+    weights: tuple | None  # of the potential: 2 g m1, 2 g m2
+    depth: bool | None
+    inertia: tuple | None  # 1/√(κ m) of disc 1 and 2
+
+
+def prism_of(scene):
+    """Return the ``Prism`` of a ``Scene``."""
+
+    def half(axis, radius):
+        if axis not in scene.axes:
+            return 0.0
+        return (scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)) / 2
+
+    m1, m2 = scene.masses
+    inertia = scene.moment_of_inertia
+    return Prism(
+        half_1=tuple(half(axis, scene.radii[0]) for axis in "xyz"),
+        half_2=tuple(half(axis, scene.radii[1]) for axis in "xyz"),
+        period=tuple(scene.side(axis) if axis in scene.periodic else 0.0 for axis in "xyz"),
+        conserved=tuple(axis in scene.conserved for axis in "xyz"),
+        sigma=scene.contact_distance,
+        inverse_roots=(1.0, 1 / math.sqrt(m2), math.sqrt(1 / m1 + 1 / m2)),
+        shares=(m2 / (m1 + m2), m1 / (m1 + m2)),
+        components=scene.velocity_components,
+        weights=(2 * scene.field * m1, 2 * scene.field * m2) if scene.field else None,
+        depth=None if scene.depth is None else True,
+        inertia=None
+        if inertia is None
+        else (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
+    )
+
+
+@compiled
+def nearest(separation, period):
+    """Return a ``separation`` to the nearest image; ``period`` 0 stands for walls."""
+    if period == 0.0:
+        return separation
+    if separation > 0.5 * period:
+        return separation - period
+    if separation < -0.5 * period:
+        return separation + period
+    return separation
+
+
+@optional(lambda y1, y2, half1, half2, weights: 1.0)
+def kinetic_share(y1, y2, half1, half2, weights):
+    """Return 1 − U/E, the share of the energy that is kinetic; negative where U exceeds E = 1/2."""
+    return 1.0 - weights[0] * (y1 + half1) - weights[1] * (y2 + half2)
+
+
+@compiled
+def power_chance(state, share, power):
+    """Say yes with the probability ``share`` to the ``power``/2, for 0 ≤ ``power``."""
+    if share <= 0.0:
+        return False
+    chance = 1.0
+    for _ in range(power):
+        chance *= share
+    draw = uniform(state)
+    return draw * draw < chance
+
+
+@optional(lambda state, prism, depth: (0.0, 0.0))
+def propose_deep(state, prism, depth):
+    """Return (z1, dz), in the plane twice 0."""
+    z1 = prism.half_1[2] * signed_uniform(state)
+    return z1, nearest(z1 - prism.half_2[2] * signed_uniform(state), prism.period[2])
+
+
+@compiled
+def propose_in_prism(state, prism):
+    """Return (x1, y1, z1, dx, dy, dz): a place of disc 1 and the separation, drawn in the prism.
+
+    Separations are to the nearest image on periodic axes. In the plane z1 and dz are 0.
+    """
+    x1, y1 = prism.half_1[0] * signed_uniform(state), prism.half_1[1] * signed_uniform(state)
+    dx = x1 - prism.half_2[0] * signed_uniform(state)
+    dy = y1 - prism.half_2[1] * signed_uniform(state)
+    z1, dz = propose_deep(state, prism, prism.depth)
+    return x1, y1, z1, nearest(dx, prism.period[0]), nearest(dy, prism.period[1]), dz
+
+
+@compiled
+def share_if_accepted(state, prism, y1, dx, dy, dz, power):
+    """Return the kinetic share of the energy if a proposal is accepted, and −1 if it is not.
+
+    Discs that do not overlap are accepted with the probability share^(``power``/2).
+    """
+    if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
+        return -1.0
+    share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
+    if prism.weights is None or power_chance(state, share, power):
+        return share
+    return -1.0
+
+
+@compiled
+def draw_in_prism(state, prism):
+    """Return (x1, y1, z1, dx, dy, dz, kinetic share) from the invariant measure."""
+    while True:
+        x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
+        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
+        if share >= 0.0:
+            return x1, y1, z1, dx, dy, dz, share
+
+
+@compiled
+def draw_on_surface(state, prism, axis):
+    """Return the same on the surface of a hop along ``axis`` (0 for x, 1 for y).
+
+    The density there is ∝ (E − U)^((D − 1)/2), as the flux through the surface is.
+    """
+    low = min(prism.half_1[axis], prism.half_2[axis])
+    while True:
+        x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
+        if axis == 0:
+            x1, dx = low * signed_uniform(state), 0.0
+        else:
+            y1, dy = low * signed_uniform(state), 0.0
+        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 1)
+        if share >= 0.0:
+            return x1, y1, z1, dx, dy, dz, share
+
+
+@compiled
+def draw_direction(state, n, direction):
+    """Fill ``direction`` with a unit vector, uniform in ``n`` ≤ 6 dimensions.
+
+    Pairs of components have squares whose sums are the spacings of sorted uniform numbers, and
+    directions of their own. In an odd dimension one component too many is left out.
+    """
+    low, high = 1.0, 1.0
+    if n > 2:
+        low = uniform(state)
+    if n > 4:
+        high = uniform(state)
+        low, high = min(low, high), max(low, high)
+    for pair in range((n + 1) // 2):
+        square = low if pair == 0 else (high - low if pair == 1 else 1.0 - high)
+        p, q, s = draw_in_disc(state)
+        scale = math.sqrt(square / s)
+        direction[2 * pair], direction[2 * pair + 1] = p * scale, q * scale
+    if n % 2 == 1:
+        square = 0.0
+        for i in range(n):
+            square += direction[i] * direction[i]
+        scale = 1.0 / math.sqrt(square)
+        for i in range(n):
+            direction[i] *= scale
+
+
+@compiled
+def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
+    """Fill ``velocity`` (u1, v1, w1, s1, u2, v2, w2, s2) from the invariant measure.
+
+    Scaled by roots of masses and moments of inertia, and along an axis with total momentum 0 of the
+    reduced mass, the components that there are lie on a sphere of radius ``speed``. With a
+    ``normal_axis`` (0 or 1; −1 for none) the relative velocity along it has the law of a flux
+    through the surface of a hop instead: for a normal component n its density is ∝ |n| (1 −
+    n²)^((D − 3)/2), so that √(1 − n²) is the largest of D − 1 uniform numbers.
+    """
+    n, rest, normal = prism.components, 1.0, 0.0
+    if normal_axis >= 0:
+        n -= 1
+        rest = largest_of(state, n)
+        normal = math.sqrt((1.0 - rest) * (1.0 + rest))
+        if next_bits(state) & np.uint64(1 << 61):
+            normal = -normal
+    draw_direction(state, n, direction)
+    root_1, root_2, root = prism.inverse_roots
+    used = 0
+    for axis in range(3):
+        if axis == 2 and prism.depth is None:
+            velocity[2], velocity[6] = 0.0, 0.0
+        elif prism.conserved[axis]:
+            relative = speed * rest * direction[used] * root
+            velocity[axis] = relative * prism.shares[0]
+            velocity[axis + 4] = -relative * prism.shares[1]
+            used += 1
+        elif axis == normal_axis:
+            # Unit vectors of the relative motion and of the centre of mass, in scaled velocities.
+            along_1, along_2 = math.sqrt(prism.shares[0]), math.sqrt(prism.shares[1])
+            common = rest * direction[used]
+            velocity[axis] = speed * root_1 * (normal * along_1 + common * along_2)
+            velocity[axis + 4] = speed * root_2 * (common * along_1 - normal * along_2)
+            used += 1
+        else:
+            velocity[axis] = speed * rest * direction[used] * root_1
+            velocity[axis + 4] = speed * rest * direction[used + 1] * root_2
+            used += 2
+    velocity[3], velocity[7] = 0.0, 0.0
+    add_spins(direction, used, speed * rest, velocity, prism.inertia)
+
+
+@optional(lambda direction, used, speed, velocity, inertia: None)
+def add_spins(direction, used, speed, velocity, inertia):
+    """Fill in the spins of rough discs from the components of ``direction`` that are not used."""
+    velocity[3] = speed * direction[used] * inertia[0]
+    velocity[7] = speed * direction[used + 1] * inertia[1]

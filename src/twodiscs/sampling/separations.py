@@ -1,0 +1,211 @@
+"""Draws of plain scenes from the invariant measure: configurations, velocities, hop crossings.
+
+Rejection from the whole prism dies out as the radius grows. Here the separations u = |x1 − x2| and
+v = |y1 − y2| are drawn instead; their density is (A − u)(B − v) outside the circle u² + v² = σ².
+Integrated over v it is g(u) = (A − u)(B − k)₊²/2 with k = √(σ² − u²)₊:
+
+* for u ≥ σ, g is a triangle and is drawn directly;
+* for u < σ, B − k has a bound that is a sum of positive powers of s = u − u₀ (u₀ = √(σ² − B²)₊):
+  (B − σ) + s²/σ where B ≥ σ, and s (2u₀ + s)/(B + k₁) where B < σ, with k₁ the smallest k. Each is
+  at most twice B − k, so that at least a quarter of the proposals is accepted, whatever the radius.
+
+The powers are drawn as order statistics of uniform numbers, so nothing here needs more than
++ − × / and √.
+"""
+
+import math
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.streams import (
+    largest_of,
+    next_bits,
+    second_largest_of,
+    signed_uniform,
+    uniform,
+)
+
+
+class Draw(NamedTuple):
+    """What a draw of separations needs to know of the scene; all lengths, weights without unit."""
+
+    half_x: float  # a
+    half_y: float  # b
+    range_y: float  # B
+    sigma: float  # σ
+    start: float  # u₀, where the arc enters the rectangle
+    stop: float  # u₁ = min(σ, A), where it leaves
+    span: float  # u₁ − u₀
+    beyond_x: float  # (A − σ)₊
+    beyond_y: float  # (B − σ)₊
+    least_k: float  # k₁ = √(σ² − u₁²)
+    weights: tuple  # cumulative probabilities of the seven parts of the proposal
+    mass: float  # integral of the proposal; the accepted share is V/2 over it
+
+
+def draw_constants(scene):
+    """Return the ``Draw`` of a ``Scene``.
+
+    The differences of lengths that cancel near a threshold or near the largest radius are rounded
+    once, from exact fractions.
+    """
+    w, h, r = Fraction(scene.width), Fraction(scene.height), Fraction(scene.radius)
+    range_x, range_y, sigma = float(w - 2 * r), float(h - 2 * r), float(2 * r)
+    beyond_x, beyond_y = max(float(w - 4 * r), 0.0), max(float(h - 4 * r), 0.0)
+    start = math.sqrt(max(float(h * (4 * r - h)), 0.0))
+    least_k = math.sqrt(max(float(w * (4 * r - w)), 0.0))
+    stop = min(sigma, range_x)
+    if beyond_y > 0:
+        span = stop
+    elif beyond_x > 0:
+        span = range_y * range_y / (sigma + start)
+    else:
+        room = (w - 2 * r) ** 2 + (h - 2 * r) ** 2 - (2 * r) ** 2
+        span = float(room) / (range_x + start)
+
+    # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s). Products, not powers,
+    # whose last digit depends on the math library, nor ``sum``, whose depends on Python's version.
+    if beyond_y > 0:
+        powers = {0: beyond_y * beyond_y, 2: 2 * beyond_y / sigma, 4: 1 / (sigma * sigma)}
+    else:
+        scale = 1 / ((range_y + least_k) * (range_y + least_k))
+        powers = {2: 4 * start * start * scale, 3: 4 * start * scale, 4: scale}
+    parts = [beyond_x * beyond_x / 2 * range_y * range_y]
+    for j, c in powers.items():
+        parts.append(c * beyond_x * math.prod([span] * (j + 1)) / (j + 1))
+        parts.append(c * math.prod([span] * (j + 2)) / ((j + 1) * (j + 2)))
+    total = math.fsum(parts)
+    cumulative = tuple(math.fsum(parts[: i + 1]) / total for i in range(len(parts)))
+    return Draw(
+        range_x / 2, range_y / 2, range_y, sigma, start, stop, span, beyond_x, beyond_y, least_k,
+        cumulative, total,
+    )  # fmt: skip
+
+
+@compiled
+def propose_separation(state, draw):
+    """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
+
+    The distances from the far corner, A − u and B − v, keep their relative accuracy where the discs
+    hardly fit, and so does the last value where they touch. A proposal is accepted with the
+    probability V/2 over ``draw.mass``, and then has the law of the invariant measure.
+    """
+    choice = uniform(state)
+    if choice < draw.weights[0]:
+        slack = draw.beyond_x * math.sqrt(uniform(state))
+        beyond = draw.beyond_x - slack
+        u = draw.sigma + beyond
+        slack_y = draw.range_y * math.sqrt(uniform(state))
+        v = draw.range_y - slack_y
+        return True, slack, slack_y, u, beyond * (u + draw.sigma) + v * v
+    part = 1
+    while part < 6 and choice >= draw.weights[part]:
+        part += 1
+    pair = (part - 1) // 2
+    power = 2 * pair if draw.beyond_y > 0.0 else 2 + pair
+    if part % 2 == 1:
+        s = draw.span * largest_of(state, power + 1)
+    else:
+        s = draw.span * second_largest_of(state, power + 2)
+    u = draw.start + s
+    z = draw.span - s
+    k = math.sqrt(draw.least_k * draw.least_k + z * (2.0 * draw.stop - z))
+    if draw.beyond_y > 0.0:
+        room = draw.beyond_y + u * u / (draw.sigma + k)
+        bound = draw.beyond_y + u * u / draw.sigma
+    else:
+        room = s * (2.0 * draw.start + s) / (draw.range_y + k)
+        bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)
+    if uniform(state) * (bound * bound) >= room * room:
+        return False, 0.0, 0.0, 0.0, 0.0
+    slack_y = room * math.sqrt(uniform(state))
+    # v = k + room − slack_y.
+    return True, draw.beyond_x + z, slack_y, u, (room - slack_y) * (2.0 * k + room - slack_y)
+
+
+@compiled
+def draw_separation(state, draw):
+    """Return (A − u, B − v, u) for separations u, v of the invariant measure."""
+    while True:
+        accepted, slack_x, slack_y, u, _ = propose_separation(state, draw)
+        if accepted:
+            return slack_x, slack_y, u
+
+
+@compiled
+def place(state, half, slack, order):
+    """Return coordinates (q1, q2) on [−half, half] whose distance is 2 half − ``slack``.
+
+    ``order`` ≥ 0 puts disc 1 above disc 2, otherwise below.
+    """
+    share = uniform(state)
+    low = slack * share - half
+    high = half - slack * (1.0 - share)
+    if order >= 0:
+        return high, low
+    return low, high
+
+
+@compiled
+def draw_configuration(state, draw, side_x, side_y):
+    """Return centres (x1, y1, x2, y2), uniform over the allowed configurations.
+
+    ``side_x`` > 0 asks for x1 > x2, < 0 for x1 < x2, 0 for either with equal chance; ``side_y``
+    likewise. Where a hop is blocked this chooses the ergodic component.
+    """
+    slack_x, slack_y, _ = draw_separation(state, draw)
+    bits = next_bits(state)
+    order_x = side_x if side_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
+    order_y = side_y if side_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
+    x1, x2 = place(state, draw.half_x, slack_x, order_x)
+    y1, y2 = place(state, draw.half_y, slack_y, order_y)
+    return x1, y1, x2, y2
+
+
+@compiled
+def draw_in_disc(state):
+    """Return (p, q, p² + q²) uniform in the unit disc without its centre."""
+    while True:
+        p, q = signed_uniform(state), signed_uniform(state)
+        square = p * p + q * q
+        if 0.0 < square < 1.0:
+            return p, q, square
+
+
+@compiled
+def draw_velocity(state):
+    """Return (u1, v1, u2, v2) uniform on the unit sphere, total energy 1/2.
+
+    Marsaglia, Ann. Math. Stat. 43, 645 (1972): two points in the disc, one of them rescaled.
+    """
+    p, q, square = draw_in_disc(state)
+    s, t, other = draw_in_disc(state)
+    scale = math.sqrt((1.0 - square) / other)
+    return p, q, s * scale, t * scale
+
+
+@compiled
+def draw_crossing(state, half_x, half_y, beyond_x):
+    """Return a state (x1, y1, x2, y2, u1, v1, u2, v2) on y1 = y2, weighted by the flux through it.
+
+    Positions are uniform on the surface (|x1 − x2| ≥ σ has slack (A − σ)√U). The component of the
+    velocity along the surface's normal, n = (v1 − v2)/√2, has density ∝ |n| √(1 − n²): then 1 − n²
+    is the square of the largest of three uniform numbers.
+    """
+    slack = beyond_x * math.sqrt(uniform(state))
+    bits = next_bits(state)
+    x1, x2 = place(state, half_x, slack, 1 if bits & np.uint64(1 << 62) else -1)
+    y = half_y * signed_uniform(state)
+    rest = largest_of(state, 3)
+    normal = math.sqrt((1.0 - rest) * (1.0 + rest))
+    if bits & np.uint64(1 << 61):
+        normal = -normal
+    # Uniform on the sphere of radius ``rest`` in the other three components (Marsaglia).
+    p, q, square = draw_in_disc(state)
+    scale = 2.0 * rest * math.sqrt(1.0 - square)
+    u1, u2, common = p * scale, q * scale, rest * (1.0 - 2.0 * square)
+    half = math.sqrt(0.5)
+    return x1, y, x2, y, u1, (common + normal) * half, u2, (common - normal) * half

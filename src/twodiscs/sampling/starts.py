@@ -1,0 +1,123 @@
+"""States of the invariant measure, and of that on the surface of a hop, for every scene.
+
+A state is a column of (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities. Balls append
+(z1, z2, w1, w2), rough discs (s1, s2), their spins as the speeds rω of their surfaces. An array of
+starts has ``COMPONENTS`` rows; those that a scene has no use for are zero.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.prism import draw_in_prism, draw_on_surface, draw_velocities, prism_of
+from twodiscs.sampling.separations import (
+    draw_configuration,
+    draw_constants,
+    draw_crossing,
+    draw_velocity,
+)
+from twodiscs.sampling.streams import open_stream
+
+#: Rows of an array of starts.
+COMPONENTS = 12
+
+
+def origins(scene):
+    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None."""
+    if scene.has_effects:
+        return None, prism_of(scene)
+    return draw_constants(scene), None
+
+
+@inlined
+def state_in(starts, i):
+    """Return the plain state in column ``i`` of ``starts``."""
+    return (
+        starts[0, i], starts[1, i], starts[2, i], starts[3, i],
+        starts[4, i], starts[5, i], starts[6, i], starts[7, i],
+    )  # fmt: skip
+
+
+@compiled
+def draw_starts(state, draw, side_x, side_y, starts):
+    """Fill the first 8 rows of ``starts`` with states of the invariant measure."""
+    for i in range(starts.shape[1]):
+        x1, y1, x2, y2 = draw_configuration(state, draw, side_x, side_y)
+        u1, v1, u2, v2 = draw_velocity(state)
+        starts[0, i], starts[1, i], starts[2, i], starts[3, i] = x1, y1, x2, y2
+        starts[4, i], starts[5, i], starts[6, i], starts[7, i] = u1, v1, u2, v2
+
+
+def _anywhere(state, prism, direction, velocity, surface):
+    place = draw_in_prism(state, prism)
+    draw_velocities(state, prism, math.sqrt(place[6]), -1, direction, velocity)
+    return place
+
+
+@optional(_anywhere)
+def draw_state(state, prism, direction, velocity, surface):
+    """Return a place as ``draw_in_prism`` does, or one on a ``surface``, and fill ``velocity``."""
+    place = draw_on_surface(state, prism, surface)
+    draw_velocities(state, prism, math.sqrt(place[6]), surface, direction, velocity)
+    return place
+
+
+@optional(lambda starts, i, k, a, b, present: None)
+def set_pair(starts, i, k, a, b, present):
+    """Set the entries ``k`` and ``k`` + 1 of column ``i``, unless they are absent."""
+    starts[k, i], starts[k + 1, i] = a, b
+
+
+@compiled
+def fill_start(state, prism, surface, starts, i):
+    """Write a state of the invariant measure to column ``i`` of ``starts``.
+
+    With a ``surface`` (0 for x1 = x2, 1 for y1 = y2; None for anywhere) it is one of the measure on
+    that surface, weighted by the flux through it.
+    """
+    direction, velocity = np.empty(6), np.empty(8)
+    x1, y1, z1, dx, dy, dz, _ = draw_state(state, prism, direction, velocity, surface)
+    starts[0, i], starts[1, i], starts[2, i], starts[3, i] = x1, y1, x1 - dx, y1 - dy
+    starts[4, i], starts[5, i] = velocity[0], velocity[1]
+    starts[6, i], starts[7, i] = velocity[4], velocity[5]
+    set_pair(starts, i, 8, z1, z1 - dz, prism.depth)
+    set_pair(starts, i, 10, velocity[2], velocity[6], prism.depth)
+    set_pair(starts, i, 8, velocity[3], velocity[7], prism.inertia)
+
+
+def _plain_starts(state, draw, sides, starts, prism):
+    draw_starts(state, draw, sides[0], sides[1], starts)
+
+
+@optional(_plain_starts)
+def draw_any_starts(state, draw, sides, starts, prism):
+    """Fill ``starts`` with states of the invariant measure, from ``prism`` unless it is None."""
+    for i in range(starts.shape[1]):
+        fill_start(state, prism, None, starts, i)
+
+
+def _plain_start(state, draw, surface, start, prism):
+    start[0, 0], start[1, 0], start[2, 0], start[3, 0], u1, v1, u2, v2 = draw_crossing(
+        state, draw.half_x, draw.half_y, draw.beyond_x
+    )
+    start[4, 0], start[5, 0], start[6, 0], start[7, 0] = u1, v1, u2, v2
+
+
+@optional(_plain_start)
+def start_on_surface(state, draw, surface, start, prism):
+    """Fill the column ``start`` (12, 1) with a state on the surface of a hop, by its flux."""
+    fill_start(state, prism, surface, start, 0)
+
+
+def states(scene, number, seed, block=0, sides=(0, 0)):
+    """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
+
+    They are the first ones of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
+    ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
+    ``draw_configuration``).
+    """
+    found = np.zeros((COMPONENTS, number))
+    draw, prism = origins(scene)
+    draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, found, prism)
+    return found

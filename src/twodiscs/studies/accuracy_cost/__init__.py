@@ -1,0 +1,1 @@
+"""What a digit costs by each method."""

@@ -1,0 +1,239 @@
+"""What a digit costs: error against processor time, for every method."""
+
+import math
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+
+from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SIZES,
+    SKY,
+    VERMILLION,
+    new_figure,
+)
+
+#: Inches: width of two columns, the height, margins and the gaps between the panels.
+WIDTH, HEIGHT = 7.0, 3.7
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.5, 0.1, 0.36, 0.2, 0.46
+
+#: The lower part of a panel that is split and the gap, in inches; the error there; the times.
+LOWER, BREAK = 1.25, 0.05
+SPLIT, TIMES = 3e-5, (1.5e-7, 2e-1)
+
+LEGEND = {"fontsize": 6.5, "handlelength": 1.8, "borderaxespad": 0.3}
+
+#: No error below this one can be told from rounding.
+ROUNDING = 2.0**-53
+
+#: Colour and marker of each method.
+LOOK = {
+    "rejection": (BLUE, "o"),
+    "conditioned": (GREEN, "^"),
+    "sobol": (ORANGE, "D"),
+    "shell": (PURPLE, "o"),
+    "balanced_shell": (PURPLE, "*"),
+    "surface": (GREEN, "^"),
+    "quadrature": (VERMILLION, "s"),
+    "exact": (BLACK, "*"),
+    "lockstep": (BLUE, "o"),
+    "single_precision": (SKY, "D"),
+    "scalar": (GREEN, "^"),
+    "time_step": (VERMILLION, "s"),
+}
+
+#: The error at which time steps and events are compared, and the line of an error that stays.
+LEVEL = 1e-3
+DOTTED = (0, (1, 1.5))
+
+#: Shades of one colour for several settings, the coarsest first.
+SHADES = (1.0, 0.75, 0.55, 0.4, 0.3)
+
+
+def draw(box, tables):
+    """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
+    rows = tables["accuracy_cost"]
+    figure = new_figure(HEIGHT, WIDTH)
+    for i, drawn in enumerate((_volume, _area)):
+        upper = _panel(figure, i, BOTTOM + LOWER + BREAK, TOP)
+        lower = _panel(figure, i, BOTTOM, HEIGHT - BOTTOM - LOWER)
+        drawn((upper, lower), rows)
+        _split(upper, lower)
+    _times(_panel(figure, 2, BOTTOM, TOP), rows)
+    figure.axes[0].set_ylabel("relative error")
+    for axes in figure.axes:
+        axes.xaxis.set_major_locator(LogLocator(numticks=12))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.yaxis.set_minor_formatter(NullFormatter())
+    return figure
+
+
+def _panel(figure, i, bottom, top):
+    """Return new logarithmic axes in column ``i``, with room ``bottom`` and ``top`` in inches."""
+    width = (WIDTH - LEFT - RIGHT - 2 * GAP) / 3
+    left = LEFT + i * (width + GAP)
+    place = left / WIDTH, bottom / HEIGHT, width / WIDTH, (HEIGHT - bottom - top) / HEIGHT
+    axes = figure.add_axes(place)
+    axes.set(xscale="log", yscale="log", xlabel="processor time (s)")
+    if top == TOP:
+        drawing.label(axes, f"({'abc'[i]})", (0, 1), (-24, 7), xycoords="axes fraction", ha="left")
+    return axes
+
+
+def _split(upper, lower):
+    """Make two panels one, whose lower part has more decades to the inch."""
+    upper.set(xlim=TIMES, ylim=(SPLIT, 1), xlabel="")
+    lower.set(xlim=TIMES, ylim=(2e-17, SPLIT))
+    upper.spines.bottom.set_visible(False)
+    lower.spines.top.set_visible(False)
+    upper.tick_params(labelbottom=False, bottom=False, which="both")
+    lower.tick_params(top=False, which="both")
+    upper.yaxis.set_major_locator(LogLocator(numticks=6))
+    lower.yaxis.set_major_locator(FixedLocator([1e-16, 1e-13, 1e-10, 1e-7]))
+    lower.yaxis.set_minor_locator(NullLocator())
+    lower.legend(loc="lower right", bbox_to_anchor=(1, 0.1), **LEGEND)
+
+
+def _of(rows, part, method, **where):
+    """Return {setting: rows} of a method, settings from the largest down."""
+    where |= {"part": part, "method": method}
+    found = {}
+    for row in rows:
+        if all(row[name] == value for name, value in where.items()):
+            found.setdefault(row["setting"], []).append(row)
+    return dict(sorted(found.items(), key=lambda item: -(item[0] or 0.0)))
+
+
+def _slope(row):
+    """Return the fitted slope of a row as text, its error in units of the last digit."""
+    if row["slope_stderr"] is None:
+        return ""
+    return f"${row['slope']:.2f}({max(1, round(100 * row['slope_stderr']))})$"
+
+
+def _points(axes, rows, method, label=None, shade=1.0, style="-", full=False):
+    """Draw the errors of one method: root mean square, with bars for the spread between runs."""
+    colour, marker = LOOK[method]
+    x = np.array([row["seconds"] for row in rows])
+    y = np.maximum([row["error"] for row in rows], ROUNDING)
+    filled = full or marker == "*"
+    axes.plot(
+        x, y, marker=marker, ms=6 if marker == "*" else SIZES[marker],
+        ls=style if len(rows) > 1 else "", lw=0.7, color=colour, alpha=shade, label=label,
+        mfc=colour if filled else "white", mew=0.0 if marker == "*" else 0.6,
+    )  # fmt: skip
+    if rows[0]["repetitions"] and len(rows) > 1 and method != "quadrature":
+        # The mean over R runs is known √R times better than one of them.
+        bars = [row["spread"] / math.sqrt(row["repetitions"]) for row in rows]
+        axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, alpha=shade, lw=0.6)
+
+
+def _rest(panels, rows, part):
+    """Draw quadrature with its numbers of nodes, and the exact evaluation."""
+    (nodes,) = _of(rows, part, "quadrature").values()
+    (exact,) = _of(rows, part, "exact").values()
+    colour, digits = LOOK["quadrature"][0], abs(nodes[0]["slope"])
+    for axes, (high, low) in zip(panels, ((1, SPLIT), (SPLIT, 0)), strict=True):
+        _points(axes, nodes, "quadrature", f"quadrature, {digits:.1f} digits a node")
+        _points(axes, exact, "exact", "exact evaluation")
+        for row in nodes:
+            if row["work"] in (2, 4, 6, 8) and low < max(row["error"], ROUNDING) < high:
+                at = row["seconds"], max(row["error"], ROUNDING)
+                drawing.label(axes, f"{row['work']}", at, (-6, 0), color=colour, fontsize=6.5)
+
+
+def _volume(panels, rows):
+    radii = sorted({row["radius"] for row in rows if row["part"] == "volume"})
+    for radius, style, full in zip(radii, ("-", (0, (4, 2))), (False, True), strict=False):
+        for method in ("rejection", "conditioned"):
+            (found,) = _of(rows, "volume", method, radius=radius).values()
+            label = f"{method}, $r={radius:g}$: {_slope(found[0])}"
+            for axes in panels:
+                _points(axes, found, method, label, style=style, full=full)
+    (found,) = _of(rows, "volume", "sobol").values()
+    for axes in panels:
+        _points(axes, found, "sobol", f"Sobol points: {_slope(found[0])}")
+    _rest(panels, rows, "volume")
+    _title(panels[0], f"volume, $r={radii[0]:g}$")
+
+
+def _area(panels, rows):
+    shells = _of(rows, "area", "shell")
+    for i, (shade, (thickness, found)) in enumerate(zip(SHADES, shells.items(), strict=False)):
+        for axes in panels:
+            _points(axes, found, "shell", None if i else "shells", shade)
+            axes.axhline(found[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
+        text = rf"$\varepsilon={thickness:.2g}$"
+        style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
+        drawing.label(panels[0], text, (7.5e-7, found[0]["floor"]), (0, 0.5), **style)
+    best = [row for found in _of(rows, "area", "balanced_shell").values() for row in found]
+    names = {"surface": "on the surface", "sobol": "the same, Sobol points"}
+    for axes in panels:
+        _points(axes, best, "balanced_shell", rf"best $\varepsilon$: {_slope(best[0])}")
+        for method, name in names.items():
+            (found,) = _of(rows, "area", method).values()
+            _points(axes, found, method, f"{name}: {_slope(found[0])}")
+    _rest(panels, rows, "area")
+    _title(panels[0], f"area of collisions, $r={best[0]['radius']:g}$")
+
+
+def _times(axes, rows):
+    quantity = "vertical_hop_time"
+    names = {
+        "scalar": "events, one by one",
+        "lockstep": "events, in lock step",
+        "single_precision": "in single precision",
+    }
+    for method, name in names.items():
+        (found,) = _of(rows, "time", method, quantity=quantity).values()
+        _points(axes, found, method, f"{name}: {_slope(found[0])}")
+    for shade, (step, found) in zip(
+        SHADES, _of(rows, "time", "time_step", quantity=quantity).items(), strict=False
+    ):
+        label = r"time steps $\Delta t$" if shade == SHADES[0] else None
+        _points(axes, found, "time_step", label, shade)
+        if found[0]["floor"]:
+            axes.axhline(found[0]["floor"], color=VERMILLION, lw=0.5, ls=DOTTED, alpha=shade)
+        at = found[-1]["seconds"], found[-1]["error"]
+        text = rf"$\Delta t=2^{{{round(math.log2(step))}}}$"
+        style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": VERMILLION}
+        drawing.label(axes, text, at, (5, 1), **style)
+    _gain(axes, rows, quantity)
+    axes.set(xlim=(4e-4, 200), ylim=(2e-5, 0.5))
+    axes.legend(loc="lower left", **LEGEND)
+    _title(axes, f"mean time of vertical hops, $r={found[0]['radius']:g}$")
+
+
+def _gain(axes, rows, quantity):
+    """Draw the least error of time steps at any Δt, and how far from it the lock step is."""
+    step, (floor,) = next(iter(_of(rows, "floor", "time_step", quantity=quantity).items()))
+    bias = floor["error"] / step
+    # The noise of a run falls like the root of the time simulated, ∝ seconds × Δt.
+    series = _of(rows, "time", "time_step", quantity=quantity).values()
+    runs = [row for found in series for row in found]
+    noise = [
+        (one["error"] ** 2 - one["bias"] ** 2) * one["seconds"] * one["setting"] for one in runs
+    ]
+    noise = np.median(noise)
+    seconds = np.geomspace(1e-3, 1e3)
+    # At a given time, (bias Δt)² + noise/(seconds Δt) is least for this Δt.
+    best = (noise / (2 * bias**2 * seconds)) ** (1 / 3)
+    error = np.sqrt((bias * best) ** 2 + noise / (seconds * best))
+    axes.plot(seconds, error, color=GREY, lw=0.8, ls=(0, (4, 2)), label=r"best $\Delta t$: $-1/3$")
+
+    (engine,) = _of(rows, "time", "lockstep", quantity=quantity).values()
+    price = np.median([one["error"] ** 2 * one["seconds"] for one in engine])
+    start, end = price / LEVEL**2, np.interp(-LEVEL, -error, seconds)
+    drawing.arrow(axes, (start, LEVEL), (end, LEVEL), "<|-|>", width=0.6, size=6)
+    middle = math.sqrt(start * end), LEVEL
+    drawing.label(axes, rf"$\times{end / start:.0f}$", middle, (0, 5), fontsize=7.5)
+
+
+def _title(axes, text):
+    drawing.label(axes, text, (0.5, 1), (0, 6), xycoords="axes fraction")

@@ -1,0 +1,1 @@
+"""How the times to the next hop are distributed."""

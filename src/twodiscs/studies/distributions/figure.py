@@ -1,0 +1,109 @@
+"""How the rate of hops depends on the time since the last one, and first passages."""
+
+import numpy as np
+
+from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.looks import name_of
+from twodiscs.figures.kit.style import BLACK, GREY, SERIES, SIZES, new_figure
+from twodiscs.model.box import Box
+from twodiscs.model.events import HOPS
+from twodiscs.theory import tails
+
+#: Inches: the panel of the rates, that of the first passages, the gap, the room above.
+RATES, PASSAGES, GAP, TOP = 2.0, 1.25, 0.42, 0.22
+
+#: The longest time shown, in mean times, and the largest relative error of a rate.
+LONGEST, LARGEST_ERROR = 12, 0.15
+
+#: Rates are shown for radii below so much of that at which the hop becomes blocked.
+FARTHEST = 0.83
+
+#: Ends of the dashes that mark exact densities at 0, in mean times.
+DASH = 0.0, 0.3
+
+#: Fits with a smaller p than this are no exponentials.
+SMALLEST_P = 1e-3
+
+
+def draw(box, tables):
+    """Draw the rows of distributions.csv on its first scene; ``box`` is not used."""
+    rows = tables["distributions"]
+    rows = [row for row in rows if row["scene"] == rows[0]["scene"]]
+    figure = new_figure(panels.BOTTOM + PASSAGES + GAP + RATES + TOP)
+    rates = panels.add_panel(figure, panels.BOTTOM + PASSAGES + GAP, RATES)
+    passages = panels.add_panel(figure, panels.BOTTOM, PASSAGES)
+    _rates(rates, rows)
+    _passages(passages, rows)
+    panels.letter(rates, "a")
+    panels.letter(passages, "b")
+    first = rows[0]
+    box = Box(first["width"], first["height"])
+    panels.name_box(rates, box, f",  (a) {name_of(first['event'])}")
+    return figure
+
+
+def _rates(axes, rows):
+    """Draw the hazard rates of the first radii, with the fitted rates and the limiting laws."""
+    event = rows[0]["event"]
+    box = Box(rows[0]["width"], rows[0]["height"])
+    limit = box.threshold(event)
+    radii = list(dict.fromkeys(row["radius"] for row in rows if row["event"] == event))
+    radii = [radius for radius in radii if radius < FARTHEST * limit]
+    for radius, (colour, marker) in zip(radii, SERIES, strict=False):
+        own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
+        mean = own[0]["exact_mean"]
+        shown = [
+            (row["first"] / mean, row["last"] / mean, row["estimate"] * mean, row["stderr"] * mean)
+            for row in own
+            if row["quantity"] == "hazard" and row["stderr"] < LARGEST_ERROR * row["estimate"]
+        ]
+        if not shown:
+            continue
+        first, last, value, error = np.array(shown).T
+        middle = (first + last) / 2
+        style = panels.open_symbol(colour, marker) | {"markersize": 0.8 * SIZES[marker]}
+        axes.errorbar(
+            middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
+        )
+        for row in own:
+            if row["quantity"] == "rate":
+                ends = row["first"] / mean, row["last"] / mean
+                fit = {"ls": "-" if row["p"] > SMALLEST_P else (0, (1, 1)), "zorder": 2}
+                axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
+        zero = mean * tails.density_at_zero(box.scene(radius), event)
+        axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    late = np.linspace(6, LONGEST, 40)
+    axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (1, 1.5)), label=r"$3\tau/t$")
+    axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
+    axes.set_ylabel(r"rate of hops $\times\,\tau$")
+    axes.legend(loc="upper right")
+
+
+def _passages(axes, rows):
+    """Draw mean first passages, over the mean interval, and what intervals make of them."""
+    for (colour, marker), hop in zip(SERIES, HOPS, strict=False):
+        own = [
+            row
+            for row in rows
+            if (row["quantity"], row["event"]) == ("first_passage", hop) and row["last"] is None
+        ]
+        if not own:
+            continue
+        radius, mean, value, error, other, spread = np.array(
+            [
+                [row[c] for c in ("radius", "exact_mean", "estimate", "stderr")]
+                + [row["reference"], row["reference_stderr"]]
+                for row in sorted(own, key=lambda row: row["radius"])
+            ]
+        ).T
+        style = panels.open_symbol(colour, marker)
+        axes.errorbar(
+            radius, value / mean, error / mean, ls="", label=name_of(hop), zorder=3, **style
+        )
+        style |= {"markerfacecolor": colour, "markersize": 0.4 * SIZES[marker]}
+        axes.errorbar(radius, other / mean, spread / mean, ls="", elinewidth=0.5, zorder=4, **style)
+    axes.plot([], [], ls="", marker=".", color=BLACK, label=r"$(1+\mathrm{CV}^2)/2$")
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    axes.set(xlabel="radius $r$", ylabel=r"first passage $\langle F\rangle/\tau$")
+    axes.legend(loc="upper left")

@@ -1,0 +1,291 @@
+"""How the times to the next hop are distributed, from a hop and from a random moment.
+
+Every interval T here has a start of its own, on the surface of the hop and weighted by the flux
+through it, so that intervals are independent draws of the time between hops, and counts of them
+are binomial without reserve. Every first passage F has a start of the invariant measure. Palm's
+relation P(F > t) = (1/τ) ∫_t^∞ P(T > s) ds joins the two: for every c
+
+    ⟨min(F, c)⟩ = ⟨T² − (T − c)₊²⟩/(2τ),    hence    ⟨F⟩ = ⟨T²⟩/(2τ) = τ (1 + CV²)/2.
+
+Where the tail of T is cubic (see ``theory.tails.tail_constant``) the variances of F and T² are
+infinite, and only the first form can be tested.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.comparison.estimates import Estimate, mean_of
+from twodiscs.comparison.scores import chi2_p, student_deviate
+from twodiscs.dynamics.ensemble import nearest_power_of_two
+from twodiscs.dynamics.law import law_of
+from twodiscs.model.box import Box
+from twodiscs.model.checks import length, one_of, whole
+from twodiscs.model.events import HOPS
+from twodiscs.model.radii import key, stream_seed
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.separations import (
+    draw_configuration,
+    draw_constants,
+    draw_crossing,
+    draw_velocity,
+)
+from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.tails.measure import wait
+from twodiscs.theory import exact, tails
+
+#: Independent blocks behind an error bar, and the bins of a histogram of intervals.
+BLOCKS, BINS = 128, 512
+
+#: Wall and disc events that intervals, and as many that first passages, of one radius may take; and
+#: no more of them than so many: counts of 4e6 intervals know the density at 0 to half a per cent.
+EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**23, 2**22, 2**19
+
+#: First passages are cut at this many mean times, where they are tested.
+CUT = 20
+
+#: The rate is fitted from so many mean times on, over so many bins of some τ/16 each.
+FIRST, SPAN = 4, 64
+
+#: A fit needs so many counts, and a bin of its test of so many on average.
+FEWEST, PER_BIN = 1000, 50
+
+#: Relative distances below the radius at which a hop becomes blocked.
+DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
+
+#: Widening of the bins of the hazard rate, and the fewest intervals in one.
+GROWTH, FEWEST_IN_BIN = 0.08, 100
+
+
+@compiled
+def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width, histogram):
+    """Return means of T, T², T² − (T − c)₊², F and min(F, c) in blocks ``first`` … ``stop`` − 1.
+
+    T is the time between vertical hops and F the time to the next one, c is ``cut``; a block has
+    ``intervals`` of the one and ``passages`` of the other. The result has the shape (stop − first,
+    5). Intervals are added to ``histogram`` (int64, bins of ``width``, a power of two, from 0; the
+    last entry takes what is longer).
+    """
+    found = np.zeros((stop - first, 5))
+    half_x, half_y = draw.half_x, draw.half_y
+    per_width, last_bin = 1.0 / width, histogram.size - 1
+    for block in range(first, stop):
+        state, sums = open_stream(seed, block), found[block - first]
+        for _ in range(intervals):
+            x1, y1, x2, y2, u1, v1, u2, v2 = draw_crossing(state, half_x, half_y, draw.beyond_x)
+            # The disc that gets above the other one is called the first.
+            if v1 > v2:
+                time = wait((x1, y1, x2, y2, u1, v1, u2, v2), law, True)
+            else:
+                time = wait((x2, y2, x1, y1, u2, v2, u1, v1), law, True)
+            histogram[min(np.int64(time * per_width), last_bin)] += 1
+            beyond = max(time - cut, 0.0)
+            sums[0] += time
+            sums[1] += time * time
+            sums[2] += time * time - beyond * beyond
+        for _ in range(passages):
+            start = draw_configuration(state, draw, 0, 0) + draw_velocity(state)
+            time = wait(start, law, True)
+            sums[3] += time
+            sums[4] += min(time, cut)
+        sums[:3] /= intervals
+        sums[3:] /= passages
+    return found
+
+
+# Laws fitted to counts ------------------------------------------------------------------------
+
+
+def _whole_counts(counts, fewest):
+    values = [whole("count", n, 0) for n in counts]
+    if len(values) < fewest:
+        raise ValueError(f"counts must be of at least {fewest} bins, not {len(values)}")
+    return np.array(values, float)
+
+
+def exponential_rate(counts, width):
+    """Fit an exponential law to the ``counts`` of successive bins of equal ``width``.
+
+    It is that of a maximum of the likelihood within the bins, whatever lies outside them. Returns
+    (rate, chi2, degrees): the rate as an ``Estimate`` with the error from Fisher's information, and
+    Pearson's χ² of the law with its degrees of freedom, from bins joined to ``PER_BIN`` counts on
+    average. Raises ``ValueError`` for fewer than ``FEWEST`` counts, and for counts that are not
+    those of at least three bins.
+    """
+    n = _whole_counts(counts, 3)
+    width = length("width", width)
+    total, bins = n.sum(), np.arange(n.size)
+    if total < FEWEST:
+        raise ValueError(f"counts must be at least {FEWEST} in all, not {int(total)}")
+    middle = (n.size - 1) / 2
+    goal, slope = (n @ bins) / total, 0.0
+    for _ in range(60):  # Newton; the law of the bin is ∝ exp(−slope × bin)
+        law = np.exp(-slope * (bins - middle))
+        law /= law.sum()
+        mean = law @ bins
+        variance = law @ (bins - mean) ** 2
+        step = (mean - goal) / variance
+        slope += math.copysign(min(abs(step), 4 / n.size), step)
+    together = 1
+    while 2 * together <= n.size // 4 and total * together < PER_BIN * n.size:
+        together *= 2
+    edges = np.arange(0, n.size, together)
+    seen, due = np.add.reduceat(n, edges), total * np.add.reduceat(law, edges)
+    chi2 = float(np.sum((seen - due) ** 2 / due))
+    error = 1 / math.sqrt(total * variance)
+    return Estimate(slope / width, error / width, int(total)), chi2, edges.size - 2
+
+
+def density_at_zero(counts, intervals, width):
+    """Return the density at 0 as an ``Estimate``: that of p(0) − a t² with the counts of two bins.
+
+    ``counts`` are those of the first bins of ``width`` from 0, out of so many independent
+    ``intervals``; the error is that of multinomial counts. There is no linear term: discs that
+    touch right after a hop are side by side and exchange velocities along x, which does not change
+    when they hop back. Raises ``ValueError`` for fewer than two bins and for counts beyond
+    ``intervals``.
+    """
+    n = _whole_counts(counts, 2)[:2]
+    intervals, width = whole("intervals", intervals), length("width", width)
+    if n.sum() > intervals:
+        raise ValueError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
+    weights = np.array([7, -1]) / 6
+    share = weights @ n / intervals
+    spread = weights**2 @ n / intervals - share**2
+    return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
+
+
+def hazard(counts, intervals, width):
+    """Yield (first, last, rate, error, count): how often the hop comes after a time without it.
+
+    The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with S the share of
+    ``intervals`` that last longer, and a binomial error. Bins are joined until as wide as
+    ``GROWTH`` times their place; the first one with fewer than ``FEWEST_IN_BIN`` counts ends it.
+    """
+    left, alive, waiting = 0, intervals, 0
+    for i, n in enumerate(counts):
+        waiting += int(n)
+        if i + 1 < (1 + GROWTH) * left:
+            continue
+        rest = alive - waiting
+        if waiting < FEWEST_IN_BIN or not rest:
+            return
+        time = (i + 1 - left) * width
+        error = math.sqrt(1 / rest - 1 / alive) / time
+        yield left * width, (i + 1) * width, math.log(alive / rest) / time, error, waiting
+        left, alive, waiting = i + 1, rest, 0
+
+
+# The table ------------------------------------------------------------------------------------
+
+
+def near_threshold(box, hop):
+    """Return radii that approach the one at which ``hop`` becomes blocked; none if it stays open.
+
+    They are ``DISTANCES`` below it, relative to it.
+    """
+    limit = box.threshold(one_of("hop", hop, HOPS))
+    if limit not in box.thresholds:
+        return []
+    return [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
+
+
+def measured(scene, hop, seed, events=EVENTS):
+    """Yield what is measured of the times to the next ``hop`` of a ``Scene``, as dicts.
+
+    These are rows of distributions.csv but for the columns that name scene and hop. ``events`` is
+    how many wall and disc events the intervals, and the first passages, take at most. Raises
+    ``ValueError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
+    range.
+    """
+    one_of("hop", hop, HOPS)
+    constant = tails.tail_constant(scene, hop)
+    if constant is None:
+        raise ValueError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
+    seed, events = whole("seed", seed, 0), whole("events", events)
+    mean = exact.mean_times(scene)[hop]
+    rate = exact.event_rate(scene)
+    affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
+    block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
+    passages = min(block, MOST_PASSAGES // BLOCKS)
+    width, cut = nearest_power_of_two(mean / 16), CUT * mean
+    upright = scene
+    if hop == "horizontal_hop":
+        upright = Box.of(scene).turned().scene(scene.radius)
+    draw, histogram = draw_constants(upright), np.zeros(BINS + 1, np.int64)
+    found = draw_passages(
+        np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(upright), draw, width, histogram,
+    )  # fmt: skip
+    intervals, passages = BLOCKS * block, BLOCKS * passages
+    time, square, cut_square, passage, cut_passage = mean_of(found)
+
+    yield _row("mean", intervals, time, mean) | {"z": _z(time.value - mean, time.stderr)}
+    scale = 1 / (2 * mean)
+    variation = Estimate(square.value / mean**2 - 1, square.stderr / mean**2, BLOCKS)
+    yield _row("squared_cv", intervals, variation, 1.0)
+    for last, times, squares in ((None, passage, square), (cut, cut_passage, cut_square)):
+        row = _row("first_passage", passages, times, scale * squares.value, last=last)
+        row["reference_stderr"] = scale * squares.stderr
+        if last or not constant:
+            deviation = times.value - row["reference"]
+            row["z"] = _z(deviation, math.hypot(times.stderr, row["reference_stderr"]))
+        yield row
+    counts = histogram[:-1]
+    if 4 * width <= draw.beyond_x:
+        zero = density_at_zero(counts[:2], intervals, width)
+        due = tails.density_at_zero(scene, hop)
+        row = _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width)
+        yield row | {"z": (zero.value - due) / zero.stderr}
+    first = math.ceil(FIRST * mean / width)
+    window = counts[first : first + SPAN]
+    if window.sum() >= FEWEST:
+        fit, chi2, degrees = exponential_rate(window, width)
+        ends = {"first": first * width, "last": (first + SPAN) * width}
+        test = {"chi2": chi2, "degrees": degrees, "p": chi2_p(chi2, degrees)}
+        row = _row("rate", fit.n, fit, 1 / mean, **ends) | test
+        yield row | {"z": (fit.value - 1 / mean) / fit.stderr}
+    for first, last, value, error, count in hazard(counts, intervals, width):
+        yield _row("hazard", count, Estimate(value, error, count), None, first=first, last=last)
+
+
+def rows(scenes, seed, events=EVENTS):
+    """Yield the rows of distributions.csv.
+
+    ``scenes`` are dicts of name, box, and event and radii of hops; of the first one the radii that
+    approach the blocking of its hops are added (``near_threshold``). Every case has a stream of its
+    own, from the root ``seed``, its scene, hop and radius. Raises ``ValueError`` as ``measured``
+    does.
+    """
+    for i, one in enumerate(scenes):
+        box = Box(**one["box"])
+        cases = [(one["event"], radius) for radius in one["radii"]]
+        if i == 0:
+            cases += [(hop, radius) for hop in HOPS for radius in near_threshold(box, hop)]
+        for hop, radius in dict.fromkeys(cases):
+            scene = box.scene(radius)
+            stream = stream_seed(seed, one["name"], "intervals", f"{hop} {key(radius)}")
+            start = {"scene": one["name"], "width": box.width, "height": box.height}
+            start |= {"radius": radius, "event": hop, "exact_mean": exact.mean_times(scene)[hop]}
+            for row in measured(scene, hop, stream, events):
+                yield start | row
+
+
+def _z(deviation, error):
+    return student_deviate(deviation / error, BLOCKS - 1)
+
+
+def _row(quantity, count, estimate, reference, first=None, last=None):
+    return {
+        "quantity": quantity,
+        "first": first,
+        "last": last,
+        "count": count,
+        "estimate": estimate.value,
+        "stderr": estimate.stderr,
+        "reference": reference,
+        "reference_stderr": None,
+        "z": None,
+        "chi2": None,
+        "degrees": None,
+        "p": None,
+    }

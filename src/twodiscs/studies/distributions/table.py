@@ -1,0 +1,59 @@
+"""The table of how the times to the next hop are distributed."""
+
+from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+
+SEE_QUANTITY = Column(float, "see quantity")
+AS_ESTIMATE = Column(float, "as estimate")
+
+
+class Distributions(Table):
+    """
+    One row a scene, radius and quantity: how the times to the next hop are distributed, from a hop
+    (intervals T) and from a random moment (first passages F). Every T and every F has a start of
+    its own.
+    """
+
+    scene: TEXT
+    width: LENGTH
+    height: LENGTH
+    radius: LENGTH
+    event: TEXT
+    """the hop"""
+    exact_mean: TIME
+    """exact mean interval τ"""
+    quantity: TEXT
+    """
+    mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ where last is c;
+    density_at_zero: p(0) of p(0) − at² in the first two bins of T; rate: exponential fitted to T by
+    maximum likelihood from four mean times on; hazard: rate of hops when there was none since the
+    last one, ln[P(T > first)/P(T > last)]/(last − first)
+    """
+    first: TIME
+    """where the bins or the fit begin"""
+    last: TIME
+    """where they end; for first_passage the cut c"""
+    count: COUNT
+    """intervals or first passages; those within the fit or bin"""
+    estimate: SEE_QUANTITY
+    """estimate, a time, 1/time or number"""
+    stderr: AS_ESTIMATE
+    """its standard error"""
+    reference: AS_ESTIMATE
+    """
+    mean: τ; squared_cv: 1, that of an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + CV²)/2, or
+    ⟨T² − (T − c)₊²⟩/(2τ) where cut, as measured; density_at_zero: exact; rate: 1/τ, which it would
+    be if intervals were exponential
+    """
+    reference_stderr: AS_ESTIMATE
+    """its standard error where it is measured"""
+    z: NUMBER
+    """
+    (estimate − reference)/error; of a rate, how far intervals are from exponential at all times;
+    empty where a cubic tail leaves F and T² without a variance: see the row with the cut
+    """
+    chi2: NUMBER
+    """Pearson's χ² of the exponential law within its window"""
+    degrees: COUNT
+    """its degrees of freedom"""
+    p: NUMBER
+    """probability of a larger χ² if the law is exponential there"""

@@ -1,0 +1,1 @@
+"""What each effect does to the mean times, and what it costs."""

@@ -1,0 +1,142 @@
+"""How each effect moves the mean times, and what it costs to simulate."""
+
+import ast
+
+import numpy as np
+
+from twodiscs.figures.kit import curves, drawing, panels
+from twodiscs.figures.kit.limits import limits
+from twodiscs.figures.kit.looks import name_of
+from twodiscs.figures.kit.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+)
+from twodiscs.model.box import Box
+from twodiscs.theory.exact import mean_times
+
+#: Inches: the width of two columns, that of a panel of times, of the panel of costs and of the room
+#: for its names; margins, gaps, the panels of the curves and of the residuals, the legend.
+WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
+LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
+MAIN, LOWER, LEGEND = 1.95, 0.75, 0.36
+
+#: The events whose mean times are shown, a panel each.
+NAMES_OF = {"any_wall": "wall hits"}
+SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
+
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+MARKERS = ("o", "s", "^", "D", "v", "P")
+
+#: Ratios that are shown; beyond are the ends of the ranges of radii.
+SHOWN = (0.22, 22)
+
+
+def draw(box, tables):
+    """Draw the rows of effects.csv and effects_cost.csv, which name their boxes; not ``box``."""
+    rows = [row for row in tables["effects"] if row["quantity"] != "never_met_share"]
+    looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
+    boxes = {row["scene"]: _box(row) for row in rows}
+    plain = Box(rows[0]["width"], rows[0]["height"])
+    found = limits(plain)
+    others = [radius for radius, _ in found]
+    exact = {name: curves.exact(one, others) for name, one in boxes.items()}
+
+    figure = new_figure(BOTTOM + LOWER + JOINT + MAIN + TOP + LEGEND, WIDTH)
+    for i, event in enumerate(SHOWN_EVENTS):
+        left = LEFT + i * (ACROSS + GAP)
+        main = _panel(figure, left, BOTTOM + LOWER + JOINT, ACROSS, MAIN)
+        lower = _panel(figure, left, BOTTOM, ACROSS, LOWER)
+        for name, look in looks.items():
+            own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
+            radii, values = exact[name]
+            ratio = values[f"{event}_time"] / _plain_times(plain, radii, event)
+            main.plot(radii, ratio, color=look[0], zorder=5)
+            panels.estimates(main, list(map(_relative, own)), *look)
+            panels.residuals(lower, own, *look)
+        main.axhline(1, color=GREY, lw=0.5, zorder=0)
+        main.set(yscale="log", ylim=SHOWN)
+        main.tick_params(which="both", labelbottom=False, labelleft=i == 0)
+        lower.set(xlabel="radius $r$")
+        lower.tick_params(labelleft=i == 0)
+        panels.mark(main, lower, found)
+        panels.label_decades(main.yaxis, 10)
+        _title(main, "abc"[i], NAMES_OF.get(event, name_of(event)))
+        if i == 0:
+            main.set_ylabel(r"mean time / that of plain discs")
+            lower.set_ylabel("residual $z$")
+    _costs(figure, tables["effects_cost"], looks)
+    _legend(figure, boxes, looks)
+    return figure
+
+
+def _look(i):
+    """Return the colour and marker of scene ``i``, others for each."""
+    n = len(COLOURS)
+    return COLOURS[i % n], MARKERS[(i + i // n) % n]
+
+
+def _box(row):
+    """Return the ``Box`` that a row is about."""
+    return Box(row["width"], row["height"], ast.literal_eval(row["effects"]))
+
+
+def _plain_times(box, radii, event):
+    """Return the mean times of plain discs in a ``Box``, NaN where there is none."""
+    times = [
+        mean_times(box.scene(float(r)))[event] if r > 0 and box.fits(float(r)) else None
+        for r in radii
+    ]
+    return np.array([np.nan if time is None else time for time in times])
+
+
+def _relative(row):
+    """Return a row whose estimate and error are in units of the time of plain discs."""
+    unit = row["plain"]
+    return row | {
+        name: row[name] / unit if row[name] is not None and unit else None
+        for name in ("estimate", "stderr")
+    }
+
+
+def _panel(figure, left, bottom, width, height):
+    across, up = figure.get_size_inches()
+    return figure.add_axes((left / across, bottom / up, width / across, height / up))
+
+
+def _title(axes, letter, text):
+    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
+    drawing.label(axes, f"({letter})  {text}", (0, 1), (0, 15), **corner)
+
+
+def _costs(figure, rows, looks):
+    """Draw the time per event of each scene in units of that of the plain one."""
+    left = LEFT + len(SHOWN_EVENTS) * (ACROSS + GAP) + NAMES
+    axes = _panel(figure, left, BOTTOM, COST, LOWER + JOINT + MAIN)
+    shown = [row for row in rows if row["variant"] != "plain"]
+    for i, row in enumerate(shown):
+        colour, marker = looks.get(row["variant"], (BLACK, "o"))
+        axes.plot([1, 1 / row["ratio"]], [i, i], color=colour)
+        axes.plot(1 / row["ratio"], i, **panels.open_symbol(colour, marker))
+    axes.axvline(1, color=GREY, lw=0.5, zorder=0)
+    names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in shown]
+    axes.set_yticks(range(len(shown)), names)
+    longest = max(1 / row["ratio"] for row in rows)
+    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, 1.12 * longest), xlabel="relative to plain")
+    axes.tick_params(axis="y", length=0)
+    _title(axes, "d", "time per event")
+
+
+def _legend(figure, boxes, looks):
+    handles = [
+        figure.axes[0].plot([], [], **panels.open_symbol(*look), ls="-")[0]
+        for look in looks.values()
+    ]
+    names = [f"{name}: {', '.join(panels.effects(box))}" for name, box in boxes.items()]
+    figure.legend(handles, names, loc="upper center", ncols=3, columnspacing=2.0)

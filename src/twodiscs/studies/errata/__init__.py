@@ -1,0 +1,1 @@
+"""Which formulas of the source are right, and what decides it."""

@@ -1,0 +1,1 @@
+"""How each method behaves where arithmetic has it hard."""

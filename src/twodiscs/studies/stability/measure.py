@@ -1,0 +1,664 @@
+"""Where arithmetic has it hard, measured: theory, draws, events, long runs, reversal, error bars.
+
+Everything is derived from the sides of a box, so anyone can repeat it for another one. The hard
+radii are a tiny one, both sides of h/4 and w/4, where a hop becomes blocked, and some just below
+the largest. Each function yields rows of stability.csv; all numbers follow from the seed alone.
+
+References are computed with mpmath, from the very doubles that the methods are given.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from mpmath import mp, mpf
+
+from twodiscs.comparison import estimates, scores
+from twodiscs.comparison.estimates import Line, mean_of
+from twodiscs.comparison.rows import area_rows, volume_rows
+from twodiscs.dynamics import counting
+from twodiscs.dynamics.ensemble import new_rows, put_state, state_at
+from twodiscs.dynamics.law import (
+    after_event,
+    contact_quotient,
+    law_of,
+    next_event,
+    wall_quotient,
+)
+from twodiscs.model.checks import LARGEST_INTEGER, whole
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.radii import shortest_decimal
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.starts import state_in, states
+from twodiscs.studies.stability.table import Stability
+from twodiscs.theory import exact, laws
+from twodiscs.theory.reference import DIGITS, exact_numbers
+
+#: Spacing of doubles at 1.
+EPSILON = 2.0**-52
+
+#: What is asked for: relative errors of exact numbers, accepted share of the proposals, errors of
+#: predicted times in units of ``EPSILON`` × conditioning.
+THEORY_BOUND, ACCEPTED_BOUND, TIME_BOUND = 1e-13, 0.2, 8.0
+
+#: |E − 1/2|; gap between the discs and excess beyond a centre's range, in units of the rounding of
+#: the box (``box_units``).
+ENERGY_BOUND, GAP_BOUND, EXCESS_BOUND = 1e-11, -1e-14, 1e-15
+
+#: Range of the share of 95 % intervals that cover the exact value.
+COVERAGE_BOUNDS = 0.92, 0.98
+
+#: Deviates beyond this are wrong.
+LARGEST_Z = 5.0
+
+#: Proposals for a measured share, and for an estimate of volume and areas.
+SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
+
+#: Thickness of the shells around surfaces, as in ``montecarlo.shell_thickness``.
+SHELL = 0.02
+
+#: Lanes of a long run, and events of each between two looks at whether it advances.
+LANES, WINDOW = 64, 2**16
+
+#: A lane that needs less than this fraction of the mean time for the events of a window is stuck.
+STUCK = 0.01
+
+#: Trajectories that are reversed, and the error of return up to which they retrace their path: half
+#: of the digits are then lost.
+REVERSED, RETRACED = 4000, 2.0**-26
+
+#: The longest path that is reversed; where a smaller exponent allows more nothing is said.
+LONGEST = 2000
+
+#: Lengths of reversed paths over the predicted one. From ``FITTED`` to 1 the error of return is far
+#: above a rounding and far below the size of the box, and grows like an exponential.
+SHARES, FITTED = tuple(i / 10 for i in range(1, 13)), 0.4
+
+#: Five binary digits more or less than a rounding to begin with.
+ROUNDINGS = 2.0**5
+
+#: Size of the separation whose growth is measured: its square is a rounding. Events in which it
+#: forgets how it began, and events of a first measurement, which says how long the paths will be.
+SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
+
+#: Independent repetitions of a measurement, each with as many replicas as share a stream.
+REPETITIONS = 1600
+
+
+def row(part, quantity, case, value, **more):
+    """Return a row of stability.csv; ``more`` are other columns, which are empty otherwise.
+
+    It has ``passed`` if the value is within ``low`` and ``high`` and |z| ≤ 5, as far as they are
+    given; without any of them, or without a value, nothing is said.
+    """
+    columns = Stability.empty(part=part, quantity=quantity, case=case, value=value) | more
+    low, high, z = columns["low"], columns["high"], columns["z"]
+    if value is not None and any(asked is not None for asked in (low, high, z)):
+        columns["passed"] = (
+            (low is None or value >= low)
+            and (high is None or value <= high)
+            and (z is None or abs(z) <= LARGEST_Z)
+        )
+    return columns
+
+
+def other_seed(seed, i):
+    """Return the ``i``-th seed after ``seed``, for measurements that are to be independent."""
+    return (seed + i) % (LARGEST_INTEGER + 1)
+
+
+# Radii ------------------------------------------------------------------------------------------
+
+
+def limits(box):
+    """Return {name: radius} of the radii at which something ends: "h/4", "w/4", "largest radius".
+
+    Only those that the plain ``Box`` has; where both hops end at once the name is "h/4".
+    """
+    names = {box.threshold(hop): name for hop, name in zip(HOPS, ("w/4", "h/4"), strict=True)}
+    found = {names[radius]: radius for radius in box.thresholds}
+    return dict(sorted(found.items())) | {"largest radius": box.largest_radius}
+
+
+def beside(box, distances):
+    """Yield (name, distance, radius) for all ``limits`` and signed relative ``distances`` from it.
+
+    Radii that do not fit are left out.
+    """
+    for name, limit in limits(box).items():
+        for distance in distances:
+            radius = limit * (1 + distance)
+            if box.fits(radius):
+                yield name, distance, radius
+
+
+def hard_radii(box):
+    """Return a list of (name, distance, radius): an ordinary radius first, then the hard ones.
+
+    ``distance`` is relative to the limit that the name stands for, None where it stands for none.
+    """
+    short = box.shortest
+    near = [
+        found
+        for found in beside(box, (-1e-3, -1e-6, -1e-9, 1e-9))
+        if found[0] == "largest radius" or abs(found[1]) == 1e-9
+    ]
+    return [("ordinary", None, short / 5), ("tiny", None, short * 1e-9), *near]
+
+
+def ordinary_radii(box):
+    """Return ascending radii away from all limits: three while both hops are open, then one each.
+
+    For the box 1.5 × 1 they are 0.05, 0.2, 0.24, 0.3 and 0.38.
+    """
+    ends = [0.0, *limits(box).values()]
+    ends = sorted(ends)
+    places = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
+    places += [(*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)]
+    found = []
+    for low, high, share in places:
+        radius = low + share * (high - low)
+        found.append(shortest_decimal(radius, 0.1 * (high - low) * share))
+    return found
+
+
+# Theory -----------------------------------------------------------------------------------------
+
+
+def relative_error(values, true_values):
+    """Return the largest |value/true − 1|; a true zero (or none at all) must be met exactly."""
+    worst = 0.0
+    with mp.workdps(DIGITS):
+        for name, value in values.items():
+            true = true_values.get(name)
+            if not true:
+                worst = max(worst, math.inf if value else 0.0)
+            else:
+                worst = max(worst, float(abs(mpf(value) - true) / abs(true)))
+    return worst
+
+
+def theory_rows(box):
+    """Yield the errors of the exact numbers beside every limit, and those of the closed forms."""
+    distances = [10.0**-k for k in range(1, 15)]
+    for case, distance, radius in beside(box, [-d for d in distances] + distances):
+        if case == "largest radius" and abs(distance) < 1e-12:
+            continue
+        scene = box.scene(radius)
+        volume, areas, times = exact_numbers(scene)
+        closed = laws.closed_form(scene)
+        for quantity, method, values, true in (
+            ("volume", "stable", {"volume": exact.volume(scene)}, volume),
+            ("areas", "stable", exact.areas(scene), areas),
+            ("mean_times", "stable", exact.mean_times(scene), times),
+            ("volume", "closed-form", {"volume": closed["volume"]}, volume),
+            ("areas", "closed-form", closed["areas"], areas),
+        ):
+            yield row(
+                "theory", quantity, case, relative_error(values, true), method=method,
+                radius=radius, distance=distance,
+                high=THEORY_BOUND if method == "stable" else None,
+            )  # fmt: skip
+
+
+# Sampling ---------------------------------------------------------------------------------------
+
+
+def sampling_rows(box, seed):
+    """Yield the accepted share of rejection from the prism and of the draws that are used."""
+    radii = [("ordinary", None, radius) for radius in ordinary_radii(box)]
+    radii += hard_radii(box)[1:2]
+    radii += beside(box, [-(10.0**-k) for k in range(1, 13)])
+    for i, (case, distance, radius) in enumerate(radii):
+        scene = box.scene(radius)
+        draw, volume = draw_constants(scene), exact.volume(scene)
+        prism = volume / (scene.range_x * scene.range_y) ** 2
+        due = min(volume / 2 / draw.mass, 1.0)
+        point = montecarlo.conditioned_point(
+            scene, ["volume"], SHARE_PROPOSALS, SHELL, other_seed(seed, i)
+        )
+        hits, samples = point["quantities"]["volume"]["hits"], point["samples"]
+        yield row(
+            "sampling", "accepted_share", case, prism, method="prism", radius=radius,
+            distance=distance,
+        )  # fmt: skip
+        yield row(
+            "sampling", "accepted_share", case, hits / samples, method="conditioned", radius=radius,
+            distance=distance, count=samples, exact=due, low=ACCEPTED_BOUND,
+            z=scores.binomial_z(hits, samples, due)[0],
+        )  # fmt: skip
+
+
+def estimate_rows(box, seed):
+    """Yield volume and areas estimated at all radii, by draws that keep to where the discs fit."""
+    radii = [("ordinary", None, radius) for radius in ordinary_radii(box)]
+    radii += hard_radii(box)[1:]
+    for i, (case, distance, radius) in enumerate(radii):
+        scene = box.scene(radius)
+        true = {(radius, "volume"): exact.volume(scene)}
+        true |= {(radius, f"{event}_area"): area for event, area in exact.areas(scene).items()}
+        point = montecarlo.conditioned_point(
+            scene,
+            [quantity for _, quantity in true],
+            ESTIMATE_PROPOSALS,
+            SHELL,
+            other_seed(seed, i),
+        )
+        found = volume_rows(true, [point]) + area_rows(scene, true, [point])
+        for seen in found:
+            yield row(
+                "estimates", seen["quantity"], case, seen["estimate"], method="conditioned",
+                radius=radius, distance=distance, count=seen["samples"], exact=seen["expectation"],
+                stderr=seen["stderr"], z=seen["z"], status=seen["status"],
+            )  # fmt: skip
+
+
+# Times of events --------------------------------------------------------------------------------
+
+
+def exact_contact(dx, dy, du, dv, sigma):
+    """Return (time to contact, its conditioning) to 50 digits, or (None, None) without a contact.
+
+    The conditioning is Σ |p ∂t/∂p| over the five inputs: how far the time moves, to first order, if
+    each of them is wrong by one relative unit.
+    """
+    with mp.workdps(50):
+        dx, dy, du, dv, sigma = map(mpf, (dx, dy, du, dv, sigma))
+        a, b, c = du**2 + dv**2, dx * du + dy * dv, dx**2 + dy**2 - sigma**2
+        discriminant = b**2 - a * c
+        if b >= 0 or discriminant <= 0:
+            return None, None
+        root = mp.sqrt(discriminant)
+        time = c / (root - b)
+        along_x, along_y = dx + du * time, dy + dv * time
+        slopes = dx * along_x, dy * along_y, du * time * along_x, dv * time * along_y, sigma**2
+        return time, sum(map(abs, slopes)) / root
+
+
+def contact_error(dx, dy, du, dv, sigma):
+    """Return the error of the predicted time to contact over ``EPSILON`` × conditioning.
+
+    None where roundings of the inputs decide between hit and miss; infinite for a contact that is
+    missed, or predicted where there is none.
+    """
+    gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
+    impact, graze = abs(dx * dv - dy * du), sigma * math.hypot(du, dv)
+    if abs(impact - graze) <= 8 * EPSILON * (abs(dx * dv) + abs(dy * du) + graze):
+        return None
+    true, conditioning = exact_contact(dx, dy, du, dv, sigma)
+    hit = bool(approach and speed > 0)
+    if true is None or not hit:
+        return 0.0 if hit == (true is not None) else math.inf
+    return float(abs(mpf(max(gap / speed, 0.0)) - true) / (EPSILON * conditioning))
+
+
+def wall_error(position, velocity, limit):
+    """Return the relative error of the predicted time to a wall over ``EPSILON``."""
+    gap, speed = wall_quotient(position, velocity, limit)
+    with mp.workdps(50):
+        true = (mpf(math.copysign(limit, velocity)) - mpf(position)) / mpf(velocity)
+        return float(abs(mpf(gap) / mpf(speed) - true) / (EPSILON * true))
+
+
+def approaches(sigma, generator, cases):
+    """Return {name: list of (dx, dy, du, dv)} of discs that approach, where that is hard to see."""
+
+    def draw(distance, impact, speed=(-3, 0)):
+        """Discs at ``distance`` (σ) whose closest approach is ``impact`` (σ)."""
+        angle = generator.uniform(0, 2 * math.pi, cases)
+        fast = 10 ** generator.uniform(*speed, cases)
+        along = np.sqrt(distance**2 - impact**2)
+        c, s = np.cos(angle), np.sin(angle)
+        columns = (
+            -sigma * (along * c + impact * s),
+            sigma * (impact * c - along * s),
+            fast * c,
+            fast * s,
+        )
+        return [tuple(map(float, found)) for found in zip(*columns, strict=True)]
+
+    def power(low, high):
+        return 10 ** generator.uniform(low, high, cases)
+
+    anywhere = generator.uniform(-0.9, 0.9, cases)
+    return {
+        "from anywhere": draw(1 + power(-3, 1), anywhere),
+        "head-on": draw(1 + power(-3, 1), 0.0 * anywhere),
+        "grazing": draw(1 + power(-1, 1), 1 - power(-15, -2)),
+        "almost in contact": draw(1 + power(-15, -8), anywhere),
+        "almost at relative rest": draw(1 + power(-3, 1), anywhere, speed=(-12, -6)),
+        "from very far": draw(power(3, 9), anywhere),
+    }
+
+
+def time_rows(box, seed, cases=400):
+    """Yield the worst errors of predicted contacts and wall hits."""
+    generator = np.random.default_rng(seed)
+    radius = ordinary_radii(box)[1]
+    for case, found in approaches(2 * radius, generator, cases).items():
+        errors = [contact_error(*state, 2 * radius) for state in found]
+        known = [error for error in errors if error is not None]
+        yield row("times", "contact_time", case, max(known), count=len(known), high=TIME_BOUND)
+
+    half = box.width / 2 - radius
+    for case, powers in (("from anywhere", (-12, 0)), ("velocity almost 0", (-323, -307))):
+        positions = half * generator.uniform(-1, 1, cases)
+        velocities = generator.choice([-1, 1], cases) * 10 ** generator.uniform(*powers, cases)
+        errors = [
+            wall_error(float(position), float(velocity), half)
+            for position, velocity in zip(positions, velocities, strict=True)
+        ]
+        yield row("times", "wall_time", case, max(errors), count=cases, high=TIME_BOUND)
+
+
+# Long runs --------------------------------------------------------------------------------------
+
+
+@compiled
+def audit(starts, windows, window, law, shortest):
+    """Run the lanes that begin at ``starts`` (8, lanes) for ``windows`` × ``window`` events each.
+
+    Returns for each lane, over the states after all of its events: the smallest |Δx|², the largest
+    |2E − 1|, the largest |x| and |y| of a centre, and whether it was lost: not finite any more, or
+    through with the events of a window in less than the time ``shortest``.
+    """
+    lanes = starts.shape[1]
+    rows = new_rows(lanes, law)
+    for i in range(lanes):
+        put_state(rows, i, starts[:, i], law)
+    times, codes, elapsed = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    nearest, energy = np.full(lanes, np.inf), np.zeros(lanes)
+    far_x, far_y = np.zeros(lanes), np.zeros(lanes)
+    lost = np.zeros(lanes, np.bool_)
+    for _ in range(windows):
+        elapsed[:] = 0.0
+        for _ in range(window):
+            for i in range(lanes):
+                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
+            for i in range(lanes):
+                elapsed[i] += times[i]
+                state = after_event(state_at(rows, i, law), times[i], codes[i], law)
+                put_state(rows, i, state, law)
+                x, y, z, w, p, q, r, s = state
+                square = (x - z) * (x - z) + (y - w) * (y - w)
+                nearest[i] = square if square < nearest[i] else nearest[i]
+                error = abs(p * p + q * q + r * r + s * s - 1.0)
+                energy[i] = error if error > energy[i] else energy[i]
+                far = abs(x) if abs(x) > abs(z) else abs(z)
+                far_x[i] = far if far > far_x[i] else far_x[i]
+                far = abs(y) if abs(y) > abs(w) else abs(w)
+                far_y[i] = far if far > far_y[i] else far_y[i]
+        for i in range(lanes):
+            total = elapsed[i]
+            for component in state_at(rows, i, law):
+                total += component
+            lost[i] |= not (np.isfinite(total) and elapsed[i] >= shortest)
+    return nearest, energy, far_x, far_y, lost
+
+
+def box_units(scene):
+    """Return the powers of two at or below width and height, the scale of rounding in the box."""
+    return tuple(2.0 ** (math.frexp(side)[1] - 1) for side in (scene.width, scene.height))
+
+
+def run(scene, number, seed):
+    """Simulate at least ``number`` events and return what was seen, as a dict.
+
+    Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, of |Δx| − σ, and excess, the
+    largest of a centre beyond its range, both in ``box_units``; lanes_lost.
+    """
+    per_lane = -(-whole("number", number) // LANES)
+    windows = -(-per_lane // WINDOW)
+    window = -(-per_lane // windows)
+    law = law_of(scene)
+    nearest, energy, far_x, far_y, lost = audit(
+        states(scene, LANES, seed), windows, window, law,
+        STUCK * window / exact.event_rate(scene),
+    )  # fmt: skip
+    unit_x, unit_y = box_units(scene)
+    excess = max(
+        (float(far_x.max()) - law.half_x1) / unit_x, (float(far_y.max()) - law.half_y1) / unit_y
+    )
+    return {
+        "events": windows * window * LANES,
+        "energy_error": float(energy.max()) / 2,
+        "smallest_gap": (math.sqrt(nearest.min()) - law.sigma) / max(unit_x, unit_y),
+        "excess": excess,
+        "lanes_lost": int(np.count_nonzero(lost)),
+    }
+
+
+def dynamics_rows(box, seed, ordinary, hard):
+    """Yield what runs of ``ordinary`` events, and of ``hard`` events at hard radii, have seen."""
+    bounds = {
+        "energy_error": {"high": ENERGY_BOUND},
+        "smallest_gap": {"low": GAP_BOUND},
+        "excess": {"high": EXCESS_BOUND},
+        "lanes_lost": {"high": 0.0},
+    }
+    for i, (case, distance, radius) in enumerate(hard_radii(box)):
+        number = ordinary if case == "ordinary" else hard
+        seen = run(box.scene(radius), number, other_seed(seed, i))
+        for quantity, bound in bounds.items():
+            yield row(
+                "dynamics", quantity, case, float(seen[quantity]), radius=radius,
+                distance=distance, count=seen["events"], **bound,
+            )  # fmt: skip
+
+
+# Reversal ---------------------------------------------------------------------------------------
+
+
+@compiled
+def advance(state, law):
+    """Return the state after the next event, and the time and code of that event."""
+    time, code = next_event(state, np.inf, law)
+    return after_event(state, time, code, law), time, code
+
+
+@compiled
+def separation(state, other, law):
+    """Return the distance of two states: positions over the half-ranges, velocities as they are."""
+    dx1, dy1, dx2, dy2, du1, dv1, du2, dv2 = (
+        state[0] - other[0], state[1] - other[1], state[2] - other[2], state[3] - other[3],
+        state[4] - other[4], state[5] - other[5], state[6] - other[6], state[7] - other[7],
+    )  # fmt: skip
+    x = (dx1 * dx1 + dx2 * dx2) / (law.half_x1 * law.half_x1)
+    y = (dy1 * dy1 + dy2 * dy2) / (law.half_y1 * law.half_y1)
+    return math.sqrt(x + y + du1 * du1 + dv1 * dv1 + du2 * du2 + dv2 * dv2)
+
+
+@compiled
+def turned_back(state):
+    """Return the state with all velocities reversed."""
+    x1, y1, x2, y2, u1, v1, u2, v2 = state
+    return x1, y1, x2, y2, -u1, -v1, -u2, -v2
+
+
+@compiled
+def return_errors(starts, number, law):
+    """Follow each start for ``number`` events, reverse, come back, and return how far off it ends.
+
+    The way back has as many events, the first of them at once, and then the flight that led to the
+    first event of the way out.
+    """
+    errors = np.empty(starts.shape[1])
+    for i in range(errors.size):
+        start = state_in(starts, i)
+        state, first, _ = advance(start, law)
+        for _ in range(number - 1):
+            state, _, _ = advance(state, law)
+        state = turned_back(state)
+        for _ in range(number):
+            state, _, _ = advance(state, law)
+        x1, y1, x2, y2, u1, v1, u2, v2 = state
+        end = (
+            x1 + u1 * first, y1 + v1 * first, x2 + u2 * first, y2 + v2 * first, u1, v1, u2, v2
+        )  # fmt: skip
+        errors[i] = separation(turned_back(end), start, law)
+    return errors
+
+
+@compiled
+def growth(starts, forgotten, measured, small, law):
+    """Return by which factor a ``small`` separation from each start grows, NaN if the two part.
+
+    It grows for ``forgotten`` events first, then for the ``measured`` ones. After every event the
+    neighbour is put back to the distance ``small``, along the line that joins the two (Benettin,
+    Galgani and Strelcyn, Phys. Rev. A 14, 2338 (1976)). Both are compared after the same event;
+    where their events differ they have parted.
+    """
+    factors = np.empty(starts.shape[1])
+    for i in range(factors.size):
+        state = state_in(starts, i)
+        x1, y1, x2, y2, u1, v1, u2, v2 = state
+        x, y = small * law.half_x1, small * law.half_y1
+        other = (
+            x1 - 0.3 * x, y1 + 0.4 * y, x2 + 0.2 * x, y2 - 0.3 * y,
+            u1 + 0.5 * small, v1 - 0.4 * small, u2 - 0.3 * small, v2 + 0.4 * small,
+        )  # fmt: skip
+        factors[i] = 1.0
+        for k in range(forgotten + measured):
+            state, _, code = advance(state, law)
+            other, _, same = advance(other, law)
+            if code != same:
+                factors[i] = np.nan
+                break
+            distance = separation(state, other, law)
+            if k >= forgotten:
+                factors[i] *= distance / small
+            back = small / distance
+            x1, y1, x2, y2, u1, v1, u2, v2 = state
+            p1, q1, p2, q2, r1, s1, r2, s2 = other
+            other = (
+                x1 + (p1 - x1) * back, y1 + (q1 - y1) * back,
+                x2 + (p2 - x2) * back, y2 + (q2 - y2) * back,
+                u1 + (r1 - u1) * back, v1 + (s1 - v1) * back,
+                u2 + (r2 - u2) * back, v2 + (s2 - v2) * back,
+            )  # fmt: skip
+    return factors
+
+
+def _pair(estimate):
+    return estimate.value, estimate.stderr
+
+
+def reversal_rows(box, seed):
+    """Yield how far reversed velocities retrace the path, and how far the exponent lets them.
+
+    Errors begin at a rounding, 2⁻⁵³, and grow like exp(λn) with the number n of events, λ being the
+    exponent per event: they reach ``RETRACED`` after ln(``RETRACED`` · 2⁵³)/λ. The number measured
+    passes if that takes roundings of no more than ``ROUNDINGS`` · 2⁻⁵³, in a long box times the
+    ratio of its sides, and no less than 2⁻⁵³/``ROUNDINGS``. Errors of return are geometric means
+    over ``REVERSED`` independent trajectories. The exponent is that of the same events of such
+    trajectories, found from the growth of a separation: trajectories that start from the invariant
+    measure may need long to forget where, and their first events are no fair sample of all.
+    """
+    digits = math.log(RETRACED / 2.0**-53)
+    long = max(box.sides) / min(box.sides)
+    for radius in ordinary_radii(box):
+        scene = box.scene(radius)
+        law = law_of(scene)
+
+        def exponent(forgotten, measured, scene=scene, law=law):
+            starts = states(scene, REVERSED, seed)
+            factors = growth(starts, forgotten, measured, SEPARATION, law)
+            return mean_of(np.log(factors[np.isfinite(factors)]) / measured)
+
+        expected = exponent(FORGOTTEN, PILOT).value
+        if expected < digits / LONGEST:
+            yield row("reversal", "events_retraced", "return", None, radius=radius, status="long")
+            continue
+        expected = digits / expected
+        first = round(FITTED * expected)
+        rate, rate_error = _pair(exponent(first, round(expected) - first))
+        predicted = digits / rate
+        yield row(
+            "reversal", "exponent", "separation", rate, radius=radius, stderr=rate_error,
+            count=REVERSED,
+        )  # fmt: skip
+
+        numbers = sorted({max(1, round(share * expected)) for share in SHARES})
+        errors = []
+        for block, number in enumerate(numbers, start=1):
+            starts = states(scene, REVERSED, seed, block)
+            # A way back without any rounding is possible; it counts as an eighth of one.
+            off = np.maximum(return_errors(starts, number, law), 2.0**-56)
+            errors.append(_pair(mean_of(np.log(off))))
+            value = math.exp(errors[-1][0])
+            yield row(
+                "reversal", "return_error", "return", value, radius=radius, count=number,
+                stderr=value * errors[-1][1],
+            )  # fmt: skip
+
+        fitted = [i for i, n in enumerate(numbers) if first <= n <= round(expected)]
+        line = Line([numbers[i] for i in fitted], *zip(*(errors[i] for i in fitted), strict=True))
+        slope, slope_error = _pair(line.slope)
+        yield row(
+            "reversal", "exponent", "return", slope, radius=radius, exact=rate, stderr=slope_error,
+            count=REVERSED, z=(slope - rate) / math.hypot(slope_error, rate_error),
+        )  # fmt: skip
+        yield row(
+            "reversal", "events_retraced", "return",
+            float(np.interp(math.log(RETRACED), [value for value, _ in errors], numbers)),
+            radius=radius, count=REVERSED, exact=predicted,
+            low=predicted - math.log(ROUNDINGS * long) / rate,
+            high=predicted + math.log(ROUNDINGS) / rate,
+        )  # fmt: skip
+
+
+# Error bars -------------------------------------------------------------------------------------
+
+
+def coverage_rows(box, seed, repetitions=REPETITIONS):
+    """Yield how often the 95 % interval of a mean time covers the exact one, event by event.
+
+    A repetition is one block of ``dynamics.run_blocks``. Where most of them have too few events for
+    an interval (``statistics.is_honest``), that is all that is said.
+    """
+    low, high = COVERAGE_BOUNDS
+    for radius in ordinary_radii(box):
+        scene = box.scene(radius)
+        duration, times = counting.replica_duration(scene), exact.mean_times(scene)
+        blocks = [
+            counting.run_blocks(scene, EVENTS, seed, block, block + 1, duration)
+            for block in range(repetitions)
+        ]
+        for e, event in enumerate(EVENTS):
+            if times[event] is None:
+                continue
+            moments = [
+                (int(sums[e]), int(products[e, e]), int(eligible[e]))
+                for sums, products, eligible in blocks
+            ]
+            if sum(estimates.is_honest(*m) for m in moments) < repetitions / 2:
+                yield row(
+                    "coverage", event, "ordinary", None, radius=radius, count=repetitions,
+                    status="too-few",
+                )  # fmt: skip
+                continue
+            intervals = [estimates.mean_time(*m, duration) for m in moments]
+            covered = sum(i is not None and i.covers(times[event]) for i in intervals)
+            yield row(
+                "coverage", event, "ordinary", covered / repetitions, radius=radius,
+                count=repetitions, exact=0.95, stderr=math.sqrt(0.95 * 0.05 / repetitions),
+                low=low, high=high, status="counted",
+            )  # fmt: skip
+
+
+def rows(box, seed, ordinary, hard):
+    """Return all rows of stability.csv for a plain ``Box``.
+
+    ``ordinary`` and ``hard`` are events of the long runs.
+    """
+    return [
+        *theory_rows(box),
+        *sampling_rows(box, seed),
+        *estimate_rows(box, seed),
+        *time_rows(box, seed),
+        *dynamics_rows(box, seed, ordinary, hard),
+        *reversal_rows(box, seed),
+        *coverage_rows(box, seed),
+    ]

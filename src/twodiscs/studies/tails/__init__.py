@@ -1,0 +1,1 @@
+"""How probable long intervals between events are."""

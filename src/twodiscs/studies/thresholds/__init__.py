@@ -1,0 +1,1 @@
+"""Power laws of mean times where an event dies out."""

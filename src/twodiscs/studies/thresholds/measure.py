@@ -1,0 +1,131 @@
+"""Power laws of the mean times where an event dies out, fitted to what was simulated.
+
+Near a limiting radius r_c a mean time goes like C δ^p with δ = r_c − r: hops that become blocked
+before the discs jam diverge with p = −2, what is left vanishes with p = 1 below the largest radius
+(``theory.laws.threshold_time``). Straight lines are fitted to ln τ against ln δ with the weights of
+the measured errors, in two forms: ``plain``, to the times as they are, and ``reduced``, to times
+over the regular factor τ_exact/(C δ^p), which tends to 1. A plain exponent says how far the law
+itself holds at the radii at hand, and the same fit to the exact curve says what it should come to;
+a reduced one is p, and its coefficient C, wherever it is measured.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.comparison.estimates import Line
+from twodiscs.comparison.scores import chi2_p
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS
+from twodiscs.theory.laws import leading_law
+
+#: Fits take radii this close to the limit, relative to it, and no other limit in between.
+WIDTH = 0.2
+
+#: A line through fewer points is not fitted.
+FEWEST = 3
+
+
+#: What a fit takes of the rows of a table.
+COLUMNS = ("radius", "estimate", "stderr", "exact")
+
+
+def fits(law, quantity, radii, times, errors, exact):
+    """Yield the fits to ``times`` at ``radii`` as rows of thresholds.csv, without scene and event.
+
+    ``errors`` are standard errors of the times, ``exact`` the exact mean times. The mean time
+    itself is compared with what the exact curve gives; the first passage has no exact curve.
+    Coefficients are those at the exact power, and of mean times alone. Yields nothing for fewer
+    than three points.
+    """
+    if len(radii) < FEWEST:
+        return
+    radii, times, errors, exact = (np.array(v, float) for v in (radii, times, errors, exact))
+    x, y, relative = np.log(law.limit - radii), np.log(times), errors / times
+    regular = np.log(exact / law(radii))
+    for form, factor in (("plain", np.zeros(len(x))), ("reduced", regular)):
+        curve = np.log(exact) - factor
+        yield from _fit(law, quantity, form, x, y - factor, relative, curve)
+
+
+def _fit(law, quantity, form, x, y, errors, curve):
+    """Yield the rows of one fit."""
+    deltas = np.exp(x)
+    fit = {"quantity": quantity, "form": form, "limit_radius": law.limit, "points": len(x)}
+    fit |= {"nearest": float(deltas.min()), "farthest": float(deltas.max())}
+    line = Line(x, y, errors)
+    slope, error, chi2 = line.slope.value, line.slope.stderr, line.chi2
+    due = Line(x, curve, errors).slope.value
+    if quantity != "mean_time":
+        yield fit | _row("exponent", slope, error, None, law.power, chi2, len(x) - 2)
+        return
+    yield fit | _row("exponent", slope, error, due, law.power, chi2, len(x) - 2)
+    weights = 1 / errors**2
+    constant, due = (weights @ (v - law.power * x) / weights.sum() for v in (y, curve))
+    chi2 = weights @ (y - constant - law.power * x) ** 2
+    value, error = math.exp(constant), math.exp(constant) / math.sqrt(weights.sum())
+    due = math.exp(due)
+    yield fit | _row("coefficient", value, error, due, law.coefficient, chi2, len(x) - 1)
+
+
+def _row(parameter, value, error, curve, law, chi2, degrees):
+    return {
+        "parameter": parameter,
+        "estimate": float(value),
+        "stderr": float(error),
+        "curve": None if curve is None else float(curve),
+        "law": float(law),
+        "z": None if curve is None else float((value - curve) / error),
+        "chi2": float(chi2),
+        "degrees": degrees,
+        "p": chi2_p(chi2, degrees),
+    }
+
+
+def start(box, law):
+    """Return the radius from which on times are fitted by the ``law`` of a ``Box``."""
+    others = [limit for limit in box.thresholds if limit < law.limit]
+    return max([(1 - WIDTH) * law.limit, *others])
+
+
+def near(box, law, rows):
+    """Return those of ``rows`` near enough to the limit of the ``law``, with an honest error."""
+    low = start(box, law)
+    return [row for row in rows if low < row["radius"] < law.limit and row["stderr"]]
+
+
+def passages(distributions, name, event):
+    """Return the rows of distributions.csv on the mean first passages of a scene, not cut."""
+    wanted = name, event, "first_passage", None
+    return [
+        row
+        for row in distributions
+        if (row["scene"], row["event"], row["quantity"], row["last"]) == wanted
+    ]
+
+
+def rows(tables, scenes):
+    """Yield the rows of thresholds.csv.
+
+    ``scenes`` is {name: parameters of its box}. ``tables`` has the rows of distributions, for the
+    first passages, and those of <name>/mean_times of every scene that measured them.
+    """
+    for name, parameters in scenes.items():
+        box = Box(**parameters)
+        start = {"scene": name, "width": box.width, "height": box.height}
+        for event in EVENTS:
+            law = leading_law(box, event)
+            if law is None:
+                continue
+            times = tables.get(f"{name}/mean_times", [])
+            found = {"mean_time": [row for row in times if row["event"] == event]}
+            if law.power < 0:
+                found["first_passage"] = [
+                    row | {"exact": row["exact_mean"]}
+                    for row in passages(tables["distributions"], name, event)
+                ]
+            for quantity, seen in found.items():
+                kept = near(box, law, seen)
+                values = [[row[c] for row in kept] for c in COLUMNS]
+                for row in fits(law, quantity, *values):
+                    yield start | {"event": event} | row

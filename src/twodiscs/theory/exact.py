@@ -1,0 +1,129 @@
+"""Exact volume, areas, rates and mean times of every scene: the face of the theory.
+
+Speeds are uniform on the unit sphere in four dimensions, so the mean time between events of an
+ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
+(Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes that call for effects have other constants and
+weights: they are handed over to ``weighted``, which needs NumPy and is imported only then.
+"""
+
+import math
+from functools import lru_cache
+
+from twodiscs.model.checks import length, one_of
+from twodiscs.model.events import DECLARED, EVENTS, SHELLS
+from twodiscs.model.scene import a_scene
+from twodiscs.theory import plain
+
+
+@lru_cache(maxsize=1024)
+def measures(scene):
+    """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are remembered."""
+    if scene.has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.volume(scene), weighted.areas(scene)
+    return plain.exact(scene)
+
+
+def volume(scene):
+    """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
+
+    Within a few roundings of the exact value for every box and radius. In a field it is weighted
+    with the invariant density (see ``weighted``). Raises ``ValueError`` for anything that is not a
+    ``Scene``.
+    """
+    return measures(a_scene(scene))[0]
+
+
+def areas(scene):
+    """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
+
+    Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
+    or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
+    balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``weighted``). Accuracy
+    and errors as for ``volume``.
+    """
+    return dict(measures(a_scene(scene))[1])
+
+
+def rate(scene, event):
+    """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
+
+    This is the mean over the whole configuration space. A trajectory that can reach the right (top)
+    wall at all hits it twice as often where it is confined to one side of the other disc:
+    ``mean_times``. Raises ``ValueError`` for anything that is not a ``Scene`` or one of
+    ``EVENTS``.
+    """
+    if a_scene(scene).has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.rate(scene, event)
+    volume, areas = measures(scene)
+    sides = DECLARED[one_of("event", event, EVENTS)].sides
+    return sides * areas[event] / (1.5 * math.pi * volume)
+
+
+def event_rate(scene):
+    """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
+
+    Raises ``ValueError`` for anything that is not a ``Scene``.
+    """
+    return rate(scene, "any_wall") + rate(scene, "disc_collision")
+
+
+def mean_times(scene):
+    """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
+
+    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the
+    event is impossible. Wall times are those of disc 1 on the trajectories that can reach the wall:
+    half of configuration space where ``Scene.confined``. Accuracy and errors as for ``volume``.
+    """
+    return {
+        event: (0.5 if scene.needed_side(event) else 1) / rate(scene, event) if area else None
+        for event, area in areas(scene).items()
+    }
+
+
+def exact(scene):
+    """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
+
+    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Raises
+    ``ValueError`` for anything that is not a ``Scene``.
+    """
+    return {
+        "regime": a_scene(scene).regime,
+        "ergodic_components": scene.ergodic_components,
+        "largest_radius": scene.largest_radius,
+        "volume": volume(scene),
+        "areas": areas(scene),
+        "mean_times": mean_times(scene),
+    }
+
+
+def shell_expectation(scene, event, epsilon):
+    """Return what a shell of thickness ``epsilon`` around the surface of ``event`` estimates.
+
+    That is the exact volume of the shell over ε, or over 2ε for hops, in length³; it tends to the
+    area of the surface as ε → 0. Distances g in configuration space from the surface:
+
+        vertical hop     |g| ≤ ε, g = (y1 − y2)/√2         horizontal hop   likewise in x
+        disc collision   0 ≤ g ≤ ε, g = (distance − σ)/√2
+        right wall       0 ≤ g ≤ ε, g = a − x1             top wall         0 ≤ g ≤ ε, g = b − y1
+
+    Just beyond the radius where a hop becomes blocked its shell is not empty yet, though its area
+    is 0. Shells of scenes with effects, whose discs may differ in mass, are in
+    ``weighted.shell_expectation``. Raises ``ValueError`` for anything that is not a ``Scene``, for
+    an ``epsilon`` that is not a length up to the radius, and for ``any_wall``, which has no shell
+    of its own in a plain scene.
+    """
+    if a_scene(scene).has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.shell_expectation(scene, event, epsilon)
+    one_of("event", event, SHELLS)
+    epsilon = length("epsilon", epsilon)
+    if epsilon > scene.radius:
+        raise ValueError(
+            f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
+        )
+    return plain.shell_expectation(scene, event, epsilon)

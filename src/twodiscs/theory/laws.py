@@ -1,0 +1,170 @@
+"""Closed forms of volume and areas, and the laws of mean times near the limits, of plain scenes."""
+
+import math
+from typing import NamedTuple
+
+from twodiscs.model.checks import one_of
+from twodiscs.model.events import DECLARED, EVENTS
+from twodiscs.model.scene import Scene, a_scene
+from twodiscs.theory.exact import volume
+from twodiscs.theory.plain import Arc
+
+#: The events of the box turned by a quarter.
+TURNED = {
+    name: next(
+        (
+            other.name
+            for other in DECLARED.values()
+            if (other.kind, other.side) == (event.kind, event.side) and other.axis != event.axis
+        ),
+        name,
+    )
+    for name, event in DECLARED.items()
+}
+
+
+def a_plain_scene(scene):
+    """Return ``scene``; raise ``ValueError`` unless it is a ``Scene`` without effects."""
+    if a_scene(scene).has_effects:
+        raise ValueError(
+            "scene must be plain for closed forms, limits and distributions, but it has "
+            f"{', '.join(scene.effects)}"
+        )
+    return scene
+
+
+def closed_form(scene):
+    """Return {"volume": V, "areas": {event: area}} from closed forms, in plain doubles.
+
+    For reading, for comparisons and to show how they fail: just above a threshold they can lose
+    half of the digits or more, and near the largest radius, at r = (1 − δ) r_max, all of them (the
+    volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for
+    anything that is not a plain ``Scene``.
+    """
+    r = a_plain_scene(scene).radius
+    a, b = scene.range_x / 2, scene.range_y / 2
+    # Of the quarter circle, the angle within [0, a] × [0, b].
+    angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
+
+    def side(a, b):
+        """Return the terms of V, A_coll and the two wall areas that say whether discs can pass."""
+        if a >= r:
+            return 64 / 3 * a * r**3 - 8 * r**4, r * r - 2 * a * r, 16 / 3 * r**3, 0.0
+        k = math.sqrt(r * r - a * a)
+        cubic = 8 / 3 * k * (2 * r * r + a * a)
+        return (
+            16 * (a * r) ** 2 - 8 / 3 * a**4 - 4 * b * cubic,
+            2 * b * k - a * a,
+            8 * a * r * r - 8 / 3 * a**3 - 8 * a * b * k,
+            -cubic,
+        )
+
+    (v_x, c_x, own_x, other_x), (v_y, c_y, own_y, other_y) = side(a, b), side(b, a)
+    right = 8 * a * b * b - 8 * b * r * r * angle + own_x + other_y
+    top = 8 * a * a * b - 8 * a * r * r * angle + own_y + other_x
+    return {
+        "volume": 16 * (a * b) ** 2 - 32 * a * b * r * r * angle + 8 * r**4 + v_x + v_y,
+        "areas": {
+            "vertical_hop": 8 * math.sqrt(2) * b * max(a - r, 0.0) ** 2,
+            "horizontal_hop": 8 * math.sqrt(2) * a * max(b - r, 0.0) ** 2,
+            "disc_collision": 16 * math.sqrt(2) * r * (2 * a * b * angle - r * r + c_x + c_y),
+            "right_wall": right,
+            "top_wall": top,
+            "any_wall": 4 * (right + top),
+        },
+    }
+
+
+def small_radius_time(box, event, radius=0.0):
+    """Return the mean time between events for small discs, to first order in ``radius``.
+
+    With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
+    wall, and infinite for disc collisions, which go like 3wh/(8√2 r). Raises ``ValueError`` for a
+    ``Box`` with effects, a radius (other than 0) that does not fit, and an event not in ``EVENTS``.
+    """
+    a_plain_scene(box.tiny)
+    w, h, r = box.width, box.height, 0.0
+    if isinstance(radius, bool) or radius != 0:
+        r = box.scene(radius).radius
+    found = DECLARED[one_of("event", event, EVENTS)]
+    # The side along the axis of the event, and the other one.
+    along, across = (w, h) if found.axis == "x" else (h, w)
+    one_sided = 1.5 * math.pi
+    if found.kind == "collision":
+        if r == 0:
+            return math.inf
+        return 3 / (8 * math.sqrt(2)) * (w * h / r - (2 - 4 / math.pi) * (w + h))
+    if found.kind == "hop":
+        return one_sided / math.sqrt(8) * (along + (4 * along / across - 2) * r)
+    if found.kind == "wall":
+        return one_sided * (along - 2 * r)
+    return one_sided / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
+
+
+def threshold_time(scene, event):
+    """Return the leading law of a mean time where its event dies out; None where it is impossible.
+
+    A hop that becomes blocked before the discs jam gets rare like (w/4 − r)⁻² (vertical) or
+    (h/4 − r)⁻² (horizontal). All other times follow from the room left below the largest radius
+    r_max: they vanish like r_max − r, except that if one side is more than twice the other those of
+    disc collisions and of the walls at the far ends stay finite. Raises ``ValueError`` for anything
+    that is not a plain ``Scene`` or one of ``EVENTS``.
+    """
+    w, h, r = a_plain_scene(scene).width, scene.height, scene.radius
+    found = DECLARED[one_of("event", event, EVENTS)]
+    if not scene.is_possible(event):
+        return None
+    one_sided = 1.5 * math.pi
+    if found.kind == "hop":
+        along, across = (w, h) if found.axis == "y" else (h, w)
+        arc = Arc.of(Scene(along, across, r))
+        if along >= 2 * across:  # open to the end
+            return one_sided / math.sqrt(8) * arc.range_y
+        critical = volume(Scene(along, across, along / 4))
+        return one_sided / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
+    if h > w:
+        return threshold_time(Scene(h, w, r), TURNED[event])
+
+    arc = Arc.of(scene)
+    if w >= 2 * h:
+        # The arc is straight on the scale of the room left: V = x² y², x = A − σ, y = B.
+        x, y = arc.beyond_x, arc.range_y
+        collision, walls = x / math.sqrt(8), {"x": x / 2, "y": y}
+        any_wall = x * y / (x + y) / 4
+    else:
+        # Between the arc and the far corner a triangle is left: V ∝ S⁴/(AB)² and its derivatives,
+        # with S = A² + B² − σ² = 4 (r_max − r)(r₊ − r) and 2 (r₊ − r_max) = 2 √(2wh).
+        range_x, range_y, sigma = arc.exact
+        root = math.sqrt(2 * w * h)
+        left = float(range_x**2 + range_y**2 - sigma**2) / (2 * (w + h + root - 2 * r))
+        last_x, last_y = root - h, w * (2 * h - w) / (root + w)
+        collision = root * left / (math.sqrt(8) * (w + h - root))
+        walls = {"x": root * left / (2 * last_x), "y": root * left / (2 * last_y)}
+        any_wall = root * left / (4 * (last_x + last_y))
+    times = {"collision": collision, "wall": walls.get(found.axis), "walls": any_wall}
+    return one_sided * times[found.kind]
+
+
+class Law(NamedTuple):
+    """C δ^p with δ the distance below a limiting radius: the leading law of a mean time."""
+
+    limit: float
+    power: int
+    coefficient: float
+
+    def __call__(self, radius):
+        return self.coefficient * (self.limit - radius) ** self.power
+
+
+def leading_law(box, event):
+    """Return the ``Law`` of a mean time in a plain ``Box``, or None where it stays finite.
+
+    Raises ``ValueError`` for a box with effects, and an event that is not one of ``EVENTS``.
+    """
+    limit = box.threshold(one_of("event", event, EVENTS))
+    near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
+    times = [threshold_time(scene, event) for scene in (near, far)]
+    power = round(math.log2(times[1] / times[0]))
+    if not power:
+        return None
+    return Law(limit, power, times[0] / (limit - near.radius) ** power)

@@ -1,0 +1,78 @@
+"""Exact laws of the distribution of times between events: at time zero, and of long intervals."""
+
+import math
+
+from twodiscs.model.checks import one_of
+from twodiscs.model.events import HOPS
+from twodiscs.theory.exact import areas
+from twodiscs.theory.laws import a_plain_scene
+from twodiscs.theory.plain import Arc
+
+
+def density_at_zero(scene, hop):
+    """Return the density at 0⁺ of the interval between hops of one kind, in 1/time.
+
+    It is None where the hop is blocked.
+
+    An interval t → 0 is a hop, one bounce and the hop back. At a vertical hop both centres are at a
+    distance d from the wall that their mean y moves to, uniform on [0, B] and independent of the
+    velocities. The disc that is ahead bounces, and they meet again after t = 2d/|v1 + v2|, so that
+    the density of t at 0 is the mean of |v1 + v2|/(2B), weighted by the flux ∝ |v1 − v2|. The
+    components n, m = (v1 ∓ v2)/√2 are uniform in the unit disc, so that ⟨|n m|⟩/⟨|n|⟩ is
+    (1/2π)/(4/3π) and
+
+        p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
+
+    No other way back is as short: a collision of the discs only drives them further to the sides to
+    which they hopped. Raises ``ValueError`` for anything that is not a plain ``Scene`` or
+    one of ``HOPS``.
+    """
+    one_of("hop", hop, HOPS)
+    if not a_plain_scene(scene).is_possible(hop):
+        return None
+    side = scene.range_y if hop == "vertical_hop" else scene.range_x
+    return 3 * math.sqrt(2) / (16 * side)
+
+
+def tail_constant(scene, event):
+    """Return C of the tail P(T > t) → C/t³ of the time between events, in time³.
+
+    ``event`` is a disc collision or a hop. C is 0.0 where no neutral motion is left, and the tail
+    falls faster than any power as far as is known; it is None where the event is impossible.
+
+    Discs that move along x but for slow drifts v1, v2 pass clear of each other as long as
+    |y1 − y2| ≥ σ. With wall hits unfolded, the slacks between discs and walls move on a straight
+    line in the square |p| + |q| ≤ B − σ, and do not leave it within t for a drift in an area
+    2 (B − σ)²/t². For both orders of the discs, a density 1/π of (v1, v2) at 0 and likewise along y
+    the invariant measure has
+
+        P(no collision within t) → 2 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / (π V t²),
+
+    and Palm's relation P(T > t) = −τ d/dt P(none within t) gives
+
+        C = 6 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / A_coll,    3 A² (B − σ)₊⁴ / A_hop,v,
+
+    and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
+
+    Proved is, for collisions, that P(none within t) is at least this to leading order, and that no
+    other family of directions of two or more dimensions avoids them: with wall hits unfolded
+    flights are straight lines on a torus of four dimensions, on which the centres coincide on the
+    four planes x1 = ±x2, y1 = ±y2; a plane of directions that is transversal to one of these meets
+    it, and only (u1, u2) and (v1, v2) are transversal to none. Argued, not proved, is that what is
+    left (neighbourhoods of periodic motions, of the order t⁻³ each in P(none within t)) adds up to
+    less, and, for hops, that what comes before and after the drift, with disc collisions, is
+    forgotten exponentially fast. Raises ``ValueError`` for anything that is not a plain ``Scene``,
+    and for a wall.
+    """
+    one_of("event", event, (*HOPS, "disc_collision"))
+    arc, area = Arc.of(a_plain_scene(scene)), areas(scene)[event]
+    if not scene.is_possible(event):
+        return None
+    along_x = arc.range_x**2 * arc.beyond_y**4
+    along_y = arc.range_y**2 * arc.beyond_x**4
+    motions = {
+        "disc_collision": 6 * (along_x + along_y),
+        "vertical_hop": 3 * along_x,
+        "horizontal_hop": 3 * along_y,
+    }
+    return motions[event] / area

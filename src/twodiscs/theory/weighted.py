@@ -1,0 +1,486 @@
+"""Exact volumes, areas and mean times of every scene, whatever effects it calls for.
+
+Velocities times √mass (spins times √moment of inertia) are uniform on a sphere in D dimensions, D
+the number of components less the momenta that are conserved and 0. At total energy E = 1/2 and
+potential energy U the invariant density of configurations is ∝ (1 − U/E)^(D/2 − 1), the speed
+√(1 − U/E). With the mean c_D of a component of the uniform unit vector, an event at g = 0 happens
+at the one-sided rate (c_D/2) A/V, where
+
+    V = ∫ (1 − U/E)₊^(D/2 − 1) dq                A = ∫ (1 − U/E)₊^((D−1)/2) δ(g) √(∇gᵀ M⁻¹ ∇g) dq
+    c_D = Γ(D/2) / (√π Γ((D + 1)/2))
+
+are integrals over both centres: c_4/2 = 2/(3π), Chernov's constant (J. Stat. Phys. 88, 1 (1997)).
+Momenta that are conserved do not count, for ∇g has no part along them. Without a field V is the
+volume of configuration space; V and A are in powers of the length, masses in that of disc 1.
+
+Of an axis only the separation t of the centres matters. For either order of the discs its density
+f(t), the integral over their common motion, is elementary: U is linear along it (``Branch``). V is
+the integral of Π f over Σ t² ≥ σ², A for disc collisions one over Σ t² = σ²; for a hop t is 0 along
+its axis, for a wall the disc stays there. These are done an axis at a time, over the angle θ of
+t = ρ cos θ, where ρ² is what the axes before leave of σ². What remains of the range of an axis is
+never found as a difference: the room Σ reach² − σ² is rounded once and passed on from axis to axis.
+So the sums are accurate up to the largest radius.
+"""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.model.checks import length, one_of, whole
+from twodiscs.model.events import AXIS, DECLARED, EVENTS
+from twodiscs.model.scene import ENERGY, a_scene
+from twodiscs.theory.quadrature import double_exponential, gauss_legendre
+
+
+def constant(components):
+    """Return c_D: the mean of |n·s| for a unit vector s uniform in D ``components``.
+
+    2/π, 4/(3π), 16/(15π) in two, four and six dimensions. Raises ``ValueError`` unless D is an
+    integer ≥ 1.
+    """
+    half = whole("components", components) / 2
+    return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)
+
+
+# Quadrature ---------------------------------------------------------------------------------------
+
+
+def _rule(triples):
+    """Return nodes and weights of a rule on [0, 1] as arrays."""
+    return np.array([t for t, _, _ in triples]), np.array([weight for _, _, weight in triples])
+
+
+#: Exact for the densities of an axis without field, linear in pieces.
+LINEAR = _rule(gauss_legendre(2))
+
+#: Exact to rounding for a piece of the arc between two such axes, a trigonometric polynomial.
+SMOOTH = _rule(gauss_legendre(16))
+
+#: For half-integer powers: of the energy left in a field, or where a sphere touches a plane.
+SINGULAR = _rule(double_exponential(1 / 16))
+
+
+def _nodes(cuts, rule):
+    """Return nodes and weights between successive ``cuts``, along two new last axes."""
+    nodes, weights = rule
+    widths = np.diff(cuts)[..., None]
+    return cuts[..., :-1, None] + widths * nodes, widths * weights
+
+
+# One axis -----------------------------------------------------------------------------------------
+
+
+class Interval(NamedTuple):
+    """Where the centre of a disc may be along an axis; exact lengths from the lower wall."""
+
+    low: Fraction
+    high: Fraction
+    rest: Fraction  # where its potential energy is 0
+    slope: Fraction  # U/E per length, 0 without a field along the axis
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Density of the separation t of two centres along an axis, for one order of the discs.
+
+    f(t) = ∫ (1 − U/E)₊^p over their common motion, for t from ``start`` to ``reach``, exact lengths
+    ≥ 0; ``kinks`` are the places between where f is not analytic. It is a function of the slack
+    z = reach − t: the interval open to the common motion has the length min(flat, near + z, far −
+    z), and at its lower end 1 − U/E is min(first + upper z, second − lower z), falling by upper +
+    lower per length. If flat is 0 one of the discs is held, and f is (1 − U/E)₊^p there.
+    """
+
+    reach: Fraction
+    start: Fraction
+    kinks: tuple
+    lengths: tuple  # flat, near, far
+    energies: tuple  # first, upper, second, lower
+    power: float
+
+    @property
+    def curved(self):
+        """Whether f is more than linear in pieces."""
+        return bool(self.energies[1])
+
+    @property
+    def slacks(self):
+        """The slacks of the reach, of the kinks and of the start, in this order."""
+        return np.array([float(self.reach - t) for t in (self.reach, *self.kinks, self.start)])
+
+    @property
+    def marks(self):
+        """The separations where integrals over other axes are not analytic in what this leaves."""
+        return {Fraction(0), self.reach, self.start, *self.kinks}
+
+    def density(self, z):
+        """Return f at slacks ``z``, an array of lengths in [0, reach − start]."""
+        first, upper, second, lower = self.energies
+        flat, near, far = self.lengths
+        open_length = np.minimum(np.minimum(flat, near + z), far - z)
+        if not self.curved:
+            return open_length if flat else np.ones_like(z)
+        bottom = np.maximum(np.minimum(first + upper * z, second - lower * z), 0.0)
+        alpha = np.sqrt(bottom)
+        order = round(2 * self.power) + 2
+        if not flat:
+            return alpha ** (order - 2)
+        # ∫ (bottom − slope q)₊^p dq = (α^order − β^order)/((p + 1) slope), and α² − β² is slope
+        # times the length with energy left: a sum of positive terms, for any slope.
+        slope = upper + lower
+        beta = np.sqrt(np.maximum(bottom - slope * open_length, 0.0))
+        total = sum(alpha ** (order - 1 - j) * beta**j for j in range(order))
+        within = np.minimum(open_length, bottom / slope)
+        return within * total / ((self.power + 1) * np.maximum(alpha + beta, 1e-300))
+
+    def beyond(self, square, room):
+        """Return ∫ f over t² ≥ ``square``, with ``room`` = reach² − square, arrays of one shape."""
+        end = np.maximum(room, 0.0) / (float(self.reach) + np.sqrt(square))
+        slacks = self.slacks
+        cuts = np.minimum(slacks, np.minimum(end, slacks[-1])[..., None])
+        z, weights = _nodes(cuts, SINGULAR if self.curved else LINEAR)
+        return np.sum(weights * self.density(z), axis=(-2, -1))
+
+
+def _branch(upper, lower, power, farthest=None):
+    """Return the ``Branch`` with one ``Interval`` above another; None if nothing is left of it.
+
+    ``farthest`` is a separation to cut it off at.
+    """
+
+    def energy(q):
+        """Return 1 − U/E with both centres at ``q``."""
+        return 1 - upper.slope * (q - upper.rest) - lower.slope * (q - lower.rest)
+
+    # The lower end of the common motion is where one disc is at its low end, the upper one, where
+    # one is at its high end; there U rises or falls with t.
+    reach, start = upper.high - lower.low, max(Fraction(0), upper.low - lower.high)
+    kinks = {upper.low - lower.low, upper.high - lower.high}
+    if upper.slope:
+        reach = min(reach, energy(lower.low) / upper.slope)
+        start = max(start, -energy(upper.low) / lower.slope)
+        kinks |= {-energy(upper.high) / lower.slope, energy(lower.high) / upper.slope}
+    if farthest is not None:
+        reach = min(reach, farthest)
+    if start >= reach:
+        return None
+    flat = min(upper.high - upper.low, lower.high - lower.low)
+    lengths = flat, upper.high - lower.low - reach, reach + lower.high - upper.low
+    first = energy(lower.low) - upper.slope * reach
+    second = energy(upper.low) + lower.slope * reach
+    return Branch(
+        reach,
+        start,
+        tuple(sorted((t for t in kinks if start < t < reach), reverse=True)),
+        tuple(map(float, lengths)),
+        tuple(map(float, (first, upper.slope, second, lower.slope))),
+        power,
+    )
+
+
+def _walled(one, two, power, farthest=None):
+    """Return {``Branch``: how often} of an axis between walls, from the two ``Interval``s."""
+    found = (_branch(one, two, power, farthest), _branch(two, one, power, farthest))
+    return Counter(branch for branch in found if branch)
+
+
+def _periodic(side, farthest=None):
+    """Return {``Branch``: how often} of a periodic axis, where the nearest image counts."""
+    side = Fraction(side)
+    reach = side / 2 if farthest is None else min(side / 2, farthest)
+    lengths = float(side), float(side), float(2 * side)
+    return Counter({Branch(reach, Fraction(0), (), lengths, (1.0, 0.0, 1.0, 0.0), 0.0): 2})
+
+
+# All axes -----------------------------------------------------------------------------------------
+
+
+def _outside(branches, square, room, surface, less=None):
+    """Return ∫ Π f over Σ t² ≥ ``square``, or −∂/∂√square of it for a ``surface``.
+
+    ``room`` is Σ reach² − square; both are arrays of one shape, and so is what is returned.
+    ``less`` returns square − c of an exact c, where that is known better than from ``square``.
+    """
+    first, *rest = branches
+    square = np.maximum(square, 1e-300)
+    reach, rho = float(first.reach), np.sqrt(square)
+    if not rest:
+        if not surface:
+            return first.beyond(square, room)
+        return first.density(np.maximum(room, 0.0) / (reach + rho))
+
+    # From (t0, k0) on the arc t² + k² = ρ², where k is left to the other axes, downwards.
+    others = float(sum(branch.reach**2 for branch in rest))
+    if less:
+        excess = -less(first.reach**2)
+    else:
+        excess = np.where(room < reach**2, room - others, reach**2 - square)
+    z0 = np.maximum(excess, 0.0) / (reach + rho)
+    t0, k0_square = np.minimum(reach, rho)[..., None], np.maximum(-excess, 0.0)[..., None]
+    k0, room0 = np.sqrt(k0_square), np.minimum(room, others)[..., None]
+
+    # The integrand is not analytic where t is a mark of its own axis or k² is a sum of squares of
+    # marks of the others, of which the last is that of their reaches. With y = t0 − t, neither y
+    # nor t is found as a difference where it is small, for k² − k0² = y (t0 + t).
+    sums = _sums(rest)
+    k_square = np.array([float(c) for c in sums])
+    missing = np.array([float(sums[-1] - c) for c in sums])
+    t_square = np.stack([less(c) if less else square - float(c) for c in sums], axis=-1)
+    rise = np.where(k_square < room0, k_square - k0_square, room0 - missing)
+    touches = np.sqrt(np.clip(t_square, 0.0, t0**2))
+    falls = np.clip(rise, 0.0, t0**2) / (t0 + touches)
+    marks = np.array([float(t) for t in (first.reach, *first.kinks, first.start)])
+    below = np.where(marks < reach / 2, t0 - marks, first.slacks - z0[..., None])
+    end = np.minimum(falls[..., -1:], below[..., -1:]), np.maximum(touches[..., -1:], marks[-1:])
+    t = np.concatenate((touches, np.broadcast_to(marks, below.shape)), axis=-1)
+    t = -np.sort(-np.clip(t, np.minimum(end[1], t0), t0), axis=-1)
+    y = np.concatenate((falls, below), axis=-1)
+    y = np.sort(np.clip(y, 0.0, np.maximum(end[0], 0.0)), axis=-1)
+
+    # The same as angles from where the arc begins.
+    k = np.sqrt(k0_square + y * (t0 + t))
+    sine = y * (t0 + t) / np.maximum(t0 * k + t * k0, 1e-300)
+    angles = np.arctan2(sine, (t0 * t + k0 * k) / square[..., None])
+    angles = angles if square.ndim else np.unique(angles)
+    angle, weights = _nodes(angles, SINGULAR if first.curved or len(rest) > 1 else SMOOTH)
+    t0, k0, rho, room0 = (part[..., None] for part in (t0, k0, rho[..., None], room0))
+    begin = np.arctan2(k0, t0)
+    y = 2 * rho * np.sin(angle / 2) * np.sin(begin + angle / 2)
+    k = rho * np.sin(begin + angle)
+    inner = _outside(rest, k * k, room0 - y * (2 * t0 - y), surface)
+    density = first.density(z0[..., None, None] + y)
+    total = np.sum(weights * (rho if surface else k) * density * inner, axis=(-2, -1))
+    if not surface and np.any(excess > 0):
+        free = math.prod(b.beyond(np.array(0.0), np.array(float(b.reach**2))) for b in rest)
+        total = total + free * first.beyond(square, excess)
+    return total
+
+
+def _sums(branches):
+    """Return the sums of squares of marks, one of each branch, in ascending order."""
+    return sorted({sum(t * t for t in marks) for marks in product(*(b.marks for b in branches))})
+
+
+def _at_distance(branches, sigma, surface, further=0.0):
+    """Return ``_outside`` of the square of an exact ``sigma``, or of σ ``further`` away."""
+    rise = further * (2 * float(sigma) + further)
+
+    def less(c):
+        """Return the square less an exact ``c``."""
+        return np.array(float(sigma**2 - c) + rise)
+
+    room = -less(sum(branch.reach**2 for branch in branches))
+    return float(_outside(branches, less(0), room, surface, less)) if room > 0 else 0.0
+
+
+@lru_cache(maxsize=1024)
+def _beyond_contact(branches, sigma):
+    """Return ∫ Π f over Σ t² ≥ σ², for a tuple of ``Branch``es and an exact σ."""
+    return _at_distance(branches, sigma, False)
+
+
+@lru_cache(maxsize=1024)
+def _near_contact(branches, sigma, thickness):
+    """Return ∫ Π f over σ² ≤ Σ t² ≤ (σ + thickness)², over the thickness; at 0 thickness, too."""
+    if not thickness:
+        return _at_distance(branches, sigma, True)
+    inner, outer = (_beyond_contact(branches, d) for d in (sigma, sigma + thickness))
+    if inner - outer > 1e-3 * inner:
+        return (inner - outer) / float(thickness)
+    # The difference would cancel. Cuts are where the growing sphere touches an edge or a corner.
+    touches = [float(c - sigma**2) / (float(sigma) + math.sqrt(c)) for c in _sums(branches)]
+    cuts = np.unique(np.clip([0.0, *touches, float(thickness)], 0.0, min(touches[-1], thickness)))
+    nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR)), strict=True)
+    total = math.fsum(weight * _at_distance(branches, sigma, True, x) for x, weight in nodes)
+    return total / float(thickness)
+
+
+def _sum_of_orders(axes, integral, *arguments):
+    """Return the sum of an integral over all orders of the discs along ``axes``.
+
+    ``axes`` are {``Branch``: how often} of one axis each, y with its field before the others.
+    """
+    return math.fsum(
+        math.prod(often) * integral(branches, *arguments)
+        for branches, often in (
+            zip(*choice, strict=True) for choice in product(*(axis.items() for axis in axes))
+        )
+    )
+
+
+class _Space:
+    """The configuration space of a ``Scene`` with the weight (1 − U/E)₊^p."""
+
+    def __init__(self, scene, power):
+        self.scene, self.power = scene, power
+        self.sigma = sum(scene.exact_radii)
+        self.order = sorted(scene.axes, key="yxz".index)
+
+    def intervals(self, axis):
+        """Return the ``Interval``s of both discs between the walls of ``axis``."""
+        side = Fraction(self.scene.side(axis))
+        field = Fraction(self.scene.field) / Fraction(ENERGY) if axis == "y" else Fraction(0)
+        return [
+            Interval(r, side - r, r, field * Fraction(m))
+            for r, m in zip(self.scene.exact_radii, self.scene.masses, strict=True)
+        ]
+
+    def axis(self, axis, farthest=None):
+        """Return {``Branch``: how often} of ``axis``."""
+        if axis in self.scene.walled:
+            return _walled(*self.intervals(axis), self.power, farthest)
+        return _periodic(self.scene.side(axis), farthest)
+
+    def axes(self, **replaced):
+        """Return {``Branch``: how often} of all axes, but for those that are ``replaced``."""
+        return [replaced[a] if a in replaced else self.axis(a) for a in self.order]
+
+    def beyond(self, **replaced):
+        """Return the measure of the configurations without overlap."""
+        return _sum_of_orders(self.axes(**replaced), _beyond_contact, self.sigma)
+
+    def contact(self, thickness=0):
+        """Return the measure of those at a distance of σ to σ + ``thickness``, per length."""
+        return _sum_of_orders(self.axes(), _near_contact, self.sigma, Fraction(thickness))
+
+    def passing(self, axis):
+        """Return the measure of the configurations that are level along ``axis``, per length."""
+        level = _branch(*self.intervals(axis), self.power)
+        if level is None or level.start > 0:
+            return 0.0
+        others = [self.axis(other) for other in self.order if other != axis]
+        density = float(level.density(np.array(float(level.reach))))
+        return density * _sum_of_orders(others, _beyond_contact, self.sigma)
+
+    def wall(self, axis, disc, high, thickness=0):
+        """Return the measure with ``disc`` 0 or 1 at a wall, or within ``thickness`` of it."""
+        both = self.intervals(axis)
+        own = both[disc]
+        if high:
+            own = own._replace(low=max(own.low, own.high - thickness))
+        else:
+            own = own._replace(high=min(own.high, own.low + thickness))
+        both[disc] = own
+        return self.beyond(**{axis: _walled(*both, self.power)})
+
+
+def _walls(scene, event):
+    """Return the (axis, disc, whether the far wall) that count for the wall ``event``."""
+    found = DECLARED[event]
+    if found.kind == "walls":
+        return list(product(scene.walled, (0, 1), (False, True)))
+    return [(found.axis, 0, found.side > 0)]
+
+
+def _relative(scene):
+    """Return √(1/m1 + 1/m2), the length of the gradient of a separation."""
+    m1, m2 = scene.masses
+    return math.sqrt(1 / m1 + 1 / m2)
+
+
+@lru_cache(maxsize=1024)
+def _volume(scene):
+    """Return V."""
+    return _Space(scene, scene.velocity_components / 2 - 1).beyond()
+
+
+def _area(space, event):
+    """Return A of one event."""
+    scene, kind = space.scene, DECLARED[event].kind
+    if not scene.is_possible(event):
+        return 0.0
+    if kind == "hop":
+        return _relative(scene) * space.passing(AXIS[event])
+    if kind == "collision":
+        return _relative(scene) * space.contact()
+    return math.fsum(
+        space.wall(axis, disc, high) / math.sqrt(scene.masses[disc])
+        for axis, disc, high in _walls(scene, event)
+    )
+
+
+@lru_cache(maxsize=1024)
+def _areas(scene):
+    """Return {event: A}."""
+    space = _Space(scene, (scene.velocity_components - 1) / 2)
+    return {event: _area(space, event) for event in EVENTS}
+
+
+# What is exact ------------------------------------------------------------------------------------
+
+
+def volume(scene):
+    """Return the weighted volume V of a ``Scene``, in length⁴ (length⁶ for balls).
+
+    Without a field it is the volume of configuration space. Raises ``ValueError`` for anything that
+    is not a ``Scene``.
+    """
+    return _volume(a_scene(scene))
+
+
+def areas(scene):
+    """Return {event: weighted area A} of a ``Scene``, keys ``EVENTS`` in their order.
+
+    In length³ (length⁵ for balls) over the square root of a mass; exactly 0.0 where the event is
+    impossible or has no place. ``any_wall`` sums over both discs and all walls. Raises
+    ``ValueError`` for anything that is not a ``Scene``.
+    """
+    return dict(_areas(a_scene(scene)))
+
+
+def rate(scene, event):
+    """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
+
+    It is c_D A/V for hops and half of that for other events. Raises ``ValueError`` for anything
+    that is not a ``Scene`` or one of ``EVENTS``.
+    """
+    area = areas(scene)[one_of("event", event, EVENTS)]
+    sides = DECLARED[event].sides
+    return sides / 2 * constant(scene.velocity_components) * area / volume(scene) if area else 0.0
+
+
+# Shells -------------------------------------------------------------------------------------------
+
+
+def shell_expectation(scene, event, epsilon):
+    """Return what a shell of thickness ``epsilon`` around the surface of ``event`` estimates.
+
+    That is the integral of (1 − U/E)₊^((D−1)/2) over the shell, over ε, or over 2ε for hops; it
+    tends to the area as ε → 0. Distances from the surface are in the metric of the masses, in which
+    its normal has unit length; with k = √(1/m1 + 1/m2):
+
+        vertical hop     |y1 − y2| ≤ k ε                  horizontal hop   likewise in x
+        disc collision   0 ≤ distance − σ ≤ k ε
+        right wall       0 ≤ (distance of disc 1 from its place at the wall) ≤ ε/√m1
+        top wall         likewise
+        any wall         the sum of the shells of both discs at all walls, ε/√m each
+
+    Raises ``ValueError`` for anything that is not a ``Scene``, for an event that has
+    no place in it, and for an ``epsilon`` that is not a length up to the radius.
+    """
+    one_of("event", event, a_scene(scene).events)
+    epsilon = length("epsilon", epsilon)
+    if epsilon > scene.radius:
+        raise ValueError(
+            f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
+        )
+    space = _Space(scene, (scene.velocity_components - 1) / 2)
+    thickness = Fraction(epsilon) * Fraction(_relative(scene))
+    kind = DECLARED[event].kind
+    if kind == "hop":
+        near = space.axis(AXIS[event], farthest=thickness)
+        return space.beyond(**{AXIS[event]: near}) / (2 * epsilon)
+    if kind == "collision":
+        return _relative(scene) * space.contact(thickness)
+    return (
+        math.fsum(
+            space.wall(axis, disc, high, Fraction(epsilon / math.sqrt(scene.masses[disc])))
+            for axis, disc, high in _walls(scene, event)
+        )
+        / epsilon
+    )

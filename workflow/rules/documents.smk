@@ -1,0 +1,199 @@
+# What is made of all results: the manuscript, the report, fingerprints and the comparison with what is
+# expected; and what is measured of this machine, a forecast and the speed of the engines.
+from twodiscs.pipeline.results.manifest import is_reproducible
+
+PAPER = {
+    name: str(HERE / "paper" / name)
+    for name in ("paper.typ", "results.typ", "references.bib")
+}
+
+
+def shared_tables():
+    """Return the names of the tables that belong to no scene, those of all studies."""
+    return [
+        table.name()
+        for study in STUDIES.values()
+        if study.shared
+        for table in study.tables
+    ]
+
+
+def manuscript_job():
+    """Return what the manuscript needs beside the tables and figures that it reads.
+
+    The hash is that of the configuration with every default filled in.
+    """
+    return {
+        "configuration": blake2b(
+            repr(CONFIGURATION).encode(), digest_size=8
+        ).hexdigest(),
+        "figures": list(STUDY_FIGURES),
+        "results": RESULTS,
+        "scenes": [
+            {
+                "figures": list(figure_files(scene)),
+                "height": scene.box.height,
+                "name": scene.name,
+                "tables": list(scene.tables),
+                "width": scene.box.width,
+            }
+            for scene in CONFIGURATION.plain
+        ],
+        "tables": shared_tables(),
+    }
+
+
+if MAIN:
+
+    rule paper:
+        input:
+            template=PAPER["paper.typ"],
+            others=[PAPER["results.typ"], PAPER["references.bib"]],
+            figures=[files[0] for files in figure_files(MAIN).values()],
+            tables=[
+                path
+                for scene in CONFIGURATION.plain
+                for path in table_files(scene).values()
+            ],
+            shared=[f"{RESULTS}/{name}.csv" for name in shared_tables()],
+            drawn=[f"{RESULTS}/figures/{name}.pdf" for name in STUDY_FIGURES],
+        output:
+            pdf=report(
+                f"{RESULTS}/paper.pdf",
+                caption="../report/paper.rst",
+                category="Manuscript",
+                labels={"document": "manuscript"},
+            ),
+        log:
+            log_of("paper"),
+        benchmark:
+            benchmark_of("paper")
+        params:
+            contents=as_json(manuscript_job()),
+            code=code("pipeline.documents.manuscript"),
+        shell:
+            "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"
+            " --parameters {params.contents:q} --output {output.pdf:q} > {log:q} 2>&1"
+
+
+# Snakemake's own report. It is written by a second Snakemake while the first one still runs: that one
+# takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
+# the whole configuration, however that was put together.
+
+
+report: "../report/workflow.rst"
+
+
+rule report:
+    input:
+        results=[
+            rules.check.output,
+            [
+                study_files(name) if name in STUDIES else rules.paper.output
+                for name in CONFIGURATION.shared
+                if name != "report"
+            ],
+            [list(table_files(scene).values()) for scene in SCENES.values()],
+            [list(figure_files(scene).values()) for scene in SCENES.values()],
+            rules.animation.input,
+        ],
+        texts=sorted(map(str, HERE.glob("workflow/report/*.rst"))),
+        style=str(HERE / "workflow/report/style.css"),
+    output:
+        html=f"{RESULTS}/report.html",
+        configuration=f"{RESULTS}/configuration.json",
+    log:
+        log_of("report"),
+    benchmark:
+        benchmark_of("report")
+    params:
+        configuration=json.dumps(config, indent=1, sort_keys=True),
+        snakefile=str(HERE / "Snakefile"),
+    shell:
+        "printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
+        " snakemake --snakefile {params.snakefile:q} --report {output.html:q}"
+        " --report-stylesheet {input.style:q} --nolock --workflow-profile none"
+        " --configfile {output.configuration:q} -- {input.results:q} > {log:q} 2>&1"
+
+
+rule manifest:
+    input:
+        files=[path for path in rules.report.input.results if is_reproducible(path)],
+    output:
+        manifest=f"{RESULTS}/manifest.sha256",
+    log:
+        log_of("manifest"),
+    benchmark:
+        benchmark_of("manifest")
+    params:
+        code=code("pipeline.results.manifest"),
+    shell:
+        "python -m twodiscs.pipeline.results.manifest {input.files:q} --output {output.manifest:q}"
+        " > {log:q} 2>&1"
+
+
+# It builds nothing: it has no input that could be out of date, and no output, so that it is done
+# whenever it is asked for.
+
+
+rule:
+    name:
+        "verify"
+    log:
+        log_of("verify"),
+    params:
+        configuration=as_json(config),
+        expected=str(HERE / "paper/expected"),
+        results=RESULTS,
+    shell:
+        "python -m twodiscs.pipeline.results.verify --results {params.results:q}"
+        " --expected {params.expected:q} --configuration {params.configuration:q} 2> {log:q}"
+
+
+# What the configuration is going to take on this machine, said before it is paid for. A forecast is of
+# the moment: it is made anew whenever it is asked for and never otherwise, so it is no output that
+# Snakemake would keep up to date. cost.csv compares what jobs took with the last one there is.
+
+
+rule:
+    name:
+        "forecast"
+    input:
+        compiled=sorted(
+            {
+                compiled(scene, stage)
+                for scene in SCENES.values()
+                for stage in STAGES
+                if scene.keys[stage]
+            }
+        ),
+    log:
+        log_of("forecast"),
+    threads: 64  # all that there are
+    params:
+        configuration=as_json(config),
+        table=f"{RESULTS}/forecast.csv",
+    shell:
+        "python -m twodiscs.pipeline.forecast --configuration {params.configuration:q}"
+        " --cores {threads} --output {params.table:q} 2> {log:q}"
+
+
+# How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
+
+
+rule:
+    name:
+        "benchmark"
+    input:
+        scenes=rules.effects_cost.input.scenes,
+    output:
+        table=ensure(f"{RESULTS}/benchmark.csv", non_empty=True),
+    log:
+        log_of("benchmark"),
+    benchmark:
+        benchmark_of("benchmark")
+    threads: 64  # all that there are
+    params:
+        code=code("benchmark"),
+    shell:
+        "python -m twodiscs.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

@@ -1,0 +1,108 @@
+# What is found at each radius: exact values, Monte Carlo, molecular dynamics. The radii follow from the
+# configuration alone, so they are known before any job runs.
+
+
+rule grid:
+    output:
+        table=ensure(f"{RESULTS}/{{scene}}/grid.csv", non_empty=True),
+    log:
+        log_of("{scene}/grid"),
+    benchmark:
+        benchmark_of("{scene}/grid")
+    params:
+        job=lambda w: as_json(SCENES[w.scene].grid_job()),
+        code=code("comparison.exact_rows"),
+    shell:
+        "{JOB} table comparison.exact_rows --function grid_rows --parameters {params.job:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
+rule theory:
+    output:
+        table=ensure(f"{RESULTS}/{{scene}}/theory.csv", non_empty=True),
+    log:
+        log_of("{scene}/theory"),
+    benchmark:
+        benchmark_of("{scene}/theory")
+    params:
+        job=lambda w: as_json(SCENES[w.scene].theory_job()),
+        code=code("comparison.exact_rows"),
+    shell:
+        "{JOB} table comparison.exact_rows --function theory_rows --parameters {params.job:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
+# Kernels are compiled once, before the jobs that share them start side by side: those of the box without
+# effects for every choice of what is watched, those of a scene with effects for what it watches.
+
+
+rule compile:
+    output:
+        stamp=f"{RESULTS}/.compiled/{{kernels}}",
+    log:
+        log_of("compile-{kernels}"),
+    benchmark:
+        benchmark_of("compile-{kernels}")
+    wildcard_constraints:
+        kernels="|".join(KERNELS),
+    params:
+        modules=lambda w: ",".join(KERNELS[w.kernels]),
+        code=lambda w: code(*KERNELS[w.kernels]),
+    shell:
+        "{JOB} kernels {params.modules} --output {output.stamp:q} > {log:q} 2>&1"
+
+
+rule compile_effects:
+    output:
+        stamp=f"{RESULTS}/.compiled/{{scene}}/{{stage}}",
+    log:
+        log_of("{scene}/compile-{stage}"),
+    benchmark:
+        benchmark_of("{scene}/compile-{stage}")
+    wildcard_constraints:
+        stage="|".join(STAGES),
+    params:
+        job=lambda w: as_json(SCENES[w.scene].kernels(w.stage)),
+        module=lambda w: STAGES[w.stage],
+        code=lambda w: code(STAGES[w.stage]),
+    shell:
+        "{JOB} kernels {params.module} --parameters {params.job:q} --output {output.stamp:q}"
+        " > {log:q} 2>&1"
+
+
+for stage, module in STAGES.items():
+
+    rule:
+        name:
+            stage
+        input:
+            compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
+        output:
+            point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
+            cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",
+        log:
+            log_of(f"{{scene}}/{stage}-{{key}}"),
+        benchmark:
+            benchmark_of(f"{{scene}}/{stage}-{{key}}")
+        params:
+            job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),
+            module=module,
+            code=code(module),
+        shell:
+            "{JOB} point {params.module} --parameters {params.job:q}"
+            " --output {output.point:q} --cost {output.cost:q} > {log:q} 2>&1"
+
+
+rule trajectory:
+    output:
+        table=ensure(f"{RESULTS}/{{scene}}/trajectory.csv", non_empty=True),
+    log:
+        log_of("{scene}/trajectory"),
+    benchmark:
+        benchmark_of("{scene}/trajectory")
+    params:
+        job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
+        code=code("dynamics.trajectory"),
+    shell:
+        "{JOB} table dynamics.trajectory --parameters {params.job:q} --output {output.table:q}"
+        " > {log:q} 2>&1"

@@ -1,0 +1,141 @@
+# The studies: one rule makes the table of each that needs no more. What each effect does is counted a scene
+# of config/scenes at a time, as that is built alone; what it costs is in seconds.
+
+EFFECTS = {path.stem: str(path) for path in sorted(HERE.glob("config/scenes/*.yaml"))}
+EFFECT_POINTS = [f"{RESULTS}/points/effects/{name}.json" for name in EFFECTS]
+
+# Those that the scenes allow; the errata say more in the report.
+ALLOWED = {
+    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
+}
+GENERIC = [name for name in ALLOWED if name != "effects"]
+CAPTIONS = {"errata": "../report/errata.rst"}
+
+
+def study_tables(study):
+    """Return {name: path} of the tables that a study reads."""
+    return {
+        name: f"{RESULTS}/{scene}/{table}.csv" if scene else f"{RESULTS}/{table}.csv"
+        for name, (scene, table) in study.reads(CONFIGURATION).items()
+    }
+
+
+for name in GENERIC:
+
+    rule:
+        name:
+            f"{name}_table"
+        input:
+            tables=study_tables(STUDIES[name]).values(),
+            compiled=[
+                f"{RESULTS}/.compiled/{kernels}" for kernels in STUDIES[name].kernels
+            ],
+        output:
+            table=report(
+                ensure(study_file(STUDIES[name]), non_empty=True),
+                caption=CAPTIONS.get(name, "../report/shared_table.rst"),
+                category="Tables",
+                subcategory="all scenes",
+                labels={
+                    "table": name,
+                    "what a row says": STUDIES[name].tables[0].meaning(),
+                },
+            ),
+        log:
+            log_of(f"{name}_table"),
+        benchmark:
+            benchmark_of(f"{name}_table")
+        params:
+            job=as_json(STUDIES[name].parameters(CONFIGURATION)),
+            module=STUDIES[name].code,
+            function=STUDIES[name].function,
+            tables=named_tables(study_tables(STUDIES[name])),
+            code=code(STUDIES[name].code),
+        shell:
+            "{JOB} table {params.module} --function {params.function} --parameters {params.job:q}"
+            " --table {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
+
+
+rule effects_point:
+    input:
+        scene=lambda w: EFFECTS[w.file],
+        schema=str(HERE / "src/twodiscs/pipeline/configuration/schema.yaml"),
+    output:
+        point=f"{RESULTS}/points/effects/{{file}}.json",
+    log:
+        log_of("effects-{file}"),
+    benchmark:
+        benchmark_of("effects-{file}")
+    wildcard_constraints:
+        file="|".join(EFFECTS),
+    params:
+        seed=CONFIGURATION.seed,
+        code=code("studies.effects.measure", "pipeline.configuration.scene_file"),
+    shell:
+        "python -m twodiscs.pipeline.configuration.scene_file {input.scene:q} --seed {params.seed}"
+        " > {output.point:q}.parameters 2> {log:q}"
+        " && {JOB} point studies.effects.measure --parameters @{output.point:q}.parameters"
+        " --output {output.point:q} > {log:q} 2>&1"
+        " && rm {output.point:q}.parameters"
+
+
+rule effects_table:
+    input:
+        points=EFFECT_POINTS,
+    output:
+        table=report(
+            ensure(f"{RESULTS}/effects.csv", non_empty=True),
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels={
+                "table": "effects",
+                "what a row says": STUDIES["effects"].tables[0].meaning(),
+            },
+        ),
+    log:
+        log_of("effects_table"),
+    benchmark:
+        benchmark_of("effects_table")
+    params:
+        code=code("studies.effects.measure"),
+    shell:
+        "{JOB} table studies.effects.measure --parameters '{{}}' --points {input.points:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
+rule effects_cost:
+    input:
+        scenes=list(EFFECTS.values()),
+        # By then the kernels are compiled.
+        compiled=[f"{RESULTS}/.compiled/dynamics", *EFFECT_POINTS],
+    output:
+        table=report(
+            ensure(f"{RESULTS}/effects_cost.csv", non_empty=True),
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels={
+                "table": "effects_cost",
+                "what a row says": STUDIES["effects"].tables[1].meaning(),
+            },
+        ),
+    log:
+        log_of("effects_cost"),
+    benchmark:
+        benchmark_of("effects_cost")
+    params:
+        code=code("benchmark"),
+    shell:
+        "python -m twodiscs.benchmark --table effects_cost --scenes {input.scenes:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
+# A study's name is a target: its tables and figures.
+for name in ALLOWED:
+
+    rule:
+        name:
+            name
+        input:
+            study_files(name),
