@@ -6,8 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs import theory
-from twodiscs.scene import EVENTS, HOPS, Scene
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact
 
 BOX = {"width": 1.5, "height": 1.0}
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
@@ -22,7 +23,7 @@ def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
     rows = []
     for scene in scenes(radii):
-        exact = theory.exact(scene)
+        exact = exact.exact(scene)
         values = {"volume": exact["volume"]}
         values |= {f"{event}_area": exact["areas"][event] for event in EVENTS}
         values |= {f"{event}_time": exact["mean_times"][event] for event in EVENTS}
@@ -38,17 +39,17 @@ class Laws:
 
     def __init__(self, scene, shell=0.02):
         self.scene, self.shell = scene, shell
-        self.times = {e: t for e, t in theory.mean_times(scene).items() if t is not None}
+        self.times = {e: t for e, t in exact.mean_times(scene).items() if t is not None}
 
     @cached_property
     def parts(self):
         """{quantity: (probability of a hit, measure, ε)} in a plain scene."""
         scene, epsilon = self.scene, self.shell * self.scene.radius
         prism = (scene.range_x * scene.range_y) ** 2
-        parts = {"volume": (theory.volume(scene) / prism, prism, None)}
+        parts = {"volume": (exact.volume(scene) / prism, prism, None)}
         for event in SHELLS:
             measure = prism / (epsilon * (2 if event in HOPS else 1))
-            expectation = theory.shell_expectation(scene, event, epsilon)
+            expectation = exact.shell_expectation(scene, event, epsilon)
             parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
         return parts
 
@@ -139,7 +140,7 @@ def store(folder, points):
 
 def command(monkeypatch, module, *arguments):
     """Run the command line of ``module`` in this process and return its exit status."""
-    from twodiscs.cli.arguments import run
+    from twodiscs.pipeline.arguments import run
 
     monkeypatch.setattr("sys.argv", ["command", *map(str, arguments)])
     try:

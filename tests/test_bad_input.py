@@ -9,9 +9,16 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs import config, dynamics, grid, montecarlo, scene, statistics, tables, theory
-from twodiscs.cli import arguments
-from twodiscs.scene import EVENTS, Scene, largest_radius
+from twodiscs.comparison import estimates, scores, tables
+from twodiscs.dynamics import counting, intervals, trajectory
+from twodiscs.model import box, checks, radii
+from twodiscs.model.box import largest_radius
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.pipeline import arguments
+from twodiscs.pipeline.configuration import load
+from twodiscs.sampling import montecarlo
+from twodiscs.theory import exact, laws
 
 PAPER = Scene(1.5, 1.0, 0.2)
 NAN, INF = math.nan, math.inf
@@ -28,7 +35,7 @@ POSITIVE = [*REALS, 0.0, -1.0]
 
 
 def normal(low, high):
-    return statistics.Estimate(low, high, 10)
+    return estimates.Estimate(low, high, 10)
 
 
 #: Function, arguments that are right, and for each argument what is wrong.
@@ -37,27 +44,27 @@ CALLS = [
      {"width": LENGTHS, "height": LENGTHS, "radius": RADII}),
     (PAPER.with_radius, {"radius": 0.1}, {"radius": RADII}),
     (PAPER.is_possible, {"event": "any_wall"}, {"event": NAMES}),
-    (scene.length, {"name": "side", "value": 1.0}, {"value": LENGTHS}),
+    (checks.length, {"name": "side", "value": 1.0}, {"value": LENGTHS}),
     (largest_radius, {"width": 1.5, "height": 1.0}, {"width": LENGTHS, "height": LENGTHS}),
-    (scene.fits, {"width": 1.5, "height": 1.0, "radius": 0.2},
+    (box.fits, {"width": 1.5, "height": 1.0, "radius": 0.2},
      {"width": LENGTHS, "height": LENGTHS, "radius": LENGTHS}),
-    (grid.key, {"radius": 0.2}, {"radius": LENGTHS}),
-    (grid.thresholds, {"width": 1.5, "height": 1.0}, {"width": LENGTHS, "height": LENGTHS}),
-    (grid.radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8},
+    (radii.key, {"radius": 0.2}, {"radius": LENGTHS}),
+    (box.thresholds, {"width": 1.5, "height": 1.0}, {"width": LENGTHS, "height": LENGTHS}),
+    (radii.radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8},
      {"width": LENGTHS, "height": LENGTHS, "smallest": [*RADII, 0.25], "count": COUNTS}),
-    (grid.stream_seed, {"root": 1, "scene": "paper", "method": "dynamics", "key": "0.2"},
+    (radii.stream_seed, {"root": 1, "scene": "paper", "method": "dynamics", "key": "0.2"},
      {"root": [-1, 1.5, NAN, "1", True, None], "method": NAMES}),
-    (theory.volume, {"scene": PAPER}, {"scene": SCENES}),
-    (theory.areas, {"scene": PAPER}, {"scene": SCENES}),
-    (theory.mean_times, {"scene": PAPER}, {"scene": SCENES}),
-    (theory.exact, {"scene": PAPER}, {"scene": SCENES}),
-    (theory.closed_form, {"scene": PAPER}, {"scene": SCENES}),
-    (theory.rate, {"scene": PAPER, "event": "any_wall"}, {"scene": SCENES, "event": NAMES}),
-    (theory.threshold_time, {"scene": PAPER, "event": "any_wall"},
+    (exact.volume, {"scene": PAPER}, {"scene": SCENES}),
+    (exact.areas, {"scene": PAPER}, {"scene": SCENES}),
+    (exact.mean_times, {"scene": PAPER}, {"scene": SCENES}),
+    (exact.exact, {"scene": PAPER}, {"scene": SCENES}),
+    (laws.closed_form, {"scene": PAPER}, {"scene": SCENES}),
+    (exact.rate, {"scene": PAPER, "event": "any_wall"}, {"scene": SCENES, "event": NAMES}),
+    (laws.threshold_time, {"scene": PAPER, "event": "any_wall"},
      {"scene": SCENES, "event": NAMES}),
-    (theory.shell_expectation, {"scene": PAPER, "event": "top_wall", "epsilon": 0.01},
+    (exact.shell_expectation, {"scene": PAPER, "event": "top_wall", "epsilon": 0.01},
      {"scene": SCENES, "event": [*NAMES, "any_wall"], "epsilon": [*LENGTHS, 0.21]}),
-    (theory.small_radius_time,
+    (laws.small_radius_time,
      {"width": 1.5, "height": 1.0, "event": "any_wall", "radius": 0.1},
      {"width": LENGTHS, "height": LENGTHS, "event": NAMES,
       "radius": [r for r in RADII if isinstance(r, bool) or r != 0]}),
@@ -71,41 +78,41 @@ CALLS = [
       "shell": SHARES, "seed": SEEDS}),
     (montecarlo.shell_thickness, {"scene": PAPER, "event": "top_wall", "fraction": 0.02},
      {"scene": SCENES, "event": NAMES, "fraction": SHARES}),
-    (dynamics.count_events, {"scene": PAPER, "target": {"any_wall": 0.1}, "budget": 1, "seed": 1},
+    (counting.count_events, {"scene": PAPER, "target": {"any_wall": 0.1}, "budget": 1, "seed": 1},
      {"scene": SCENES, "budget": COUNTS, "seed": SEEDS,
       "target": [{}, None, "any_wall", 0.1, {"hop": 0.1}, {None: 0.1},
                   *({"any_wall": share} for share in SHARES)]}),
-    (dynamics.hop_intervals,
+    (intervals.hop_intervals,
      {"scene": PAPER, "event": "vertical_hop", "intervals": 1, "seed": 1},
      {"scene": SCENES, "event": [*NAMES, "any_wall"], "intervals": COUNTS, "seed": SEEDS}),
-    (dynamics.trajectory, {"scene": PAPER, "seed": 1}, {"scene": SCENES, "seed": SEEDS}),
-    (dynamics.replica_duration, {"scene": PAPER}, {"scene": SCENES}),
-    (statistics.Estimate, {"value": 1.0, "stderr": 0.1, "n": 10},
+    (trajectory.trajectory, {"scene": PAPER, "seed": 1}, {"scene": SCENES, "seed": SEEDS}),
+    (counting.replica_duration, {"scene": PAPER}, {"scene": SCENES}),
+    (estimates.Estimate, {"value": 1.0, "stderr": 0.1, "n": 10},
      {"value": REALS, "stderr": [*REALS, -0.1], "n": COUNTS}),
-    (statistics.normal_quantile, {"confidence": 0.95}, {"confidence": SHARES}),
-    (statistics.student_deviate, {"t": 1.0, "degrees": 10}, {"t": REALS, "degrees": COUNTS}),
-    (statistics.binomial_estimate, {"hits": 1, "samples": 10, "measure": 1.0},
+    (estimates.normal_quantile, {"confidence": 0.95}, {"confidence": SHARES}),
+    (scores.student_deviate, {"t": 1.0, "degrees": 10}, {"t": REALS, "degrees": COUNTS}),
+    (estimates.binomial_estimate, {"hits": 1, "samples": 10, "measure": 1.0},
      {"hits": [-1, 11, 1.5, NAN, "1", True, None], "samples": COUNTS, "measure": POSITIVE}),
-    (statistics.binomial_z, {"hits": 1, "samples": 10, "probability": 0.1},
+    (scores.binomial_z, {"hits": 1, "samples": 10, "probability": 0.1},
      {"hits": [-1, 11, 1.5, NAN, "1", True, None], "samples": COUNTS,
       "probability": [*REALS, -0.1, 1.1]}),
-    (statistics.effective_count, {"total": 10, "squares": 20, "replicas": 10},
+    (estimates.effective_count, {"total": 10, "squares": 20, "replicas": 10},
      {"total": [-1, 1.5, "1", NAN, 21], "squares": [-1, 1.5, "1", 9], "replicas": COUNTS}),
-    (statistics.mean_time, {"total": 10, "squares": 20, "replicas": 10, "duration": 1.0},
+    (estimates.mean_time, {"total": 10, "squares": 20, "replicas": 10, "duration": 1.0},
      {"total": [-1, 1.5, "1", NAN, 21], "squares": [-1, 1.5, "1", 9], "replicas": [*COUNTS, 1],
       "duration": POSITIVE}),
-    (statistics.mean_time_z,
+    (scores.mean_time_z,
      {"total": 10, "squares": 20, "replicas": 10, "duration": 1.0, "exact": 1.0},
      {"total": [-1, 1.5, "1", NAN], "replicas": COUNTS, "duration": POSITIVE,
       "exact": [x for x in POSITIVE if x is not None]}),
-    (statistics.mean_time_bound, {"replicas": 10, "duration": 1.0, "confidence": 0.95},
+    (estimates.mean_time_bound, {"replicas": 10, "duration": 1.0, "confidence": 0.95},
      {"replicas": COUNTS, "duration": POSITIVE, "confidence": SHARES}),
-    (statistics.bonferroni_bound, {"comparisons": 10, "alarm": 0.1},
+    (scores.bonferroni_bound, {"comparisons": 10, "alarm": 0.1},
      {"comparisons": COUNTS, "alarm": SHARES}),
-    (statistics.coverage, {"estimates": [normal(1.0, 0.1)], "exact": 1.0, "confidence": 0.95},
+    (estimates.coverage, {"estimates": [normal(1.0, 0.1)], "exact": 1.0, "confidence": 0.95},
      {"estimates": [[]], "confidence": SHARES}),
-    (statistics.z_mean, {"z": [1.0]}, {"z": [[], [NAN], ["1"], [None]]}),
-    (statistics.z_spread, {"z": [1.0]}, {"z": [[], [NAN], ["1"], [None]]}),
+    (scores.z_mean, {"z": [1.0]}, {"z": [[], [NAN], ["1"], [None]]}),
+    (scores.z_spread, {"z": [1.0]}, {"z": [[], [NAN], ["1"], [None]]}),
 ]  # fmt: skip
 
 SWEEP = [
@@ -132,13 +139,13 @@ def test_what_is_wrong_is_refused(function, good, name, value):
 
 
 def test_swapped_arguments_are_refused():
-    for function in (theory.rate, theory.threshold_time):
+    for function in (exact.rate, laws.threshold_time):
         with pytest.raises(ValueError, match="scene must be a Scene, not 'any_wall'"):
             function("any_wall", PAPER)
     with pytest.raises(ValueError, match="scene must be a Scene"):
         montecarlo.sample_point(["volume"], PAPER, 1, 0.02, 1)
     with pytest.raises(ValueError, match="scene must be a Scene"):
-        dynamics.count_events({"any_wall": 0.1}, PAPER, 10, 1)
+        counting.count_events({"any_wall": 0.1}, PAPER, 10, 1)
     with pytest.raises(ValueError, match="does not fit"):
         Scene(0.2, 1.0, 1.5)
 
@@ -165,7 +172,7 @@ def test_the_largest_radius_itself_is_one_too_many():
 @pytest.mark.parametrize("mapping", [None, [], "paper", 1, {}, {"scenes": []}, {"scenes": [{}]}])
 def test_a_configuration_that_makes_no_sense(mapping):
     with pytest.raises(ValueError, match=r"\w"):
-        config.load(mapping)
+        load.load(mapping)
 
 
 def test_tables_that_make_no_sense(tmp_path):
@@ -280,4 +287,4 @@ def test_exact_numbers_of_nonsense_are_refused(words):
 
 
 def test_every_event_has_an_exact_answer():
-    assert set(theory.mean_times(PAPER)) == set(EVENTS)
+    assert set(exact.mean_times(PAPER)) == set(EVENTS)

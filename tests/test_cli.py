@@ -6,9 +6,12 @@ import sys
 
 import pytest
 
-from twodiscs import scene, theory
-from twodiscs.cli import arguments, main
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.cli import main
+from twodiscs.model import effects
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.pipeline import arguments
+from twodiscs.theory import exact
 
 BOX = ["--width", "1.5", "--height", "1"]
 
@@ -35,7 +38,7 @@ def test_json_holds_every_digit(monkeypatch, capsys):
         "areas",
         "mean_times",
     }
-    assert numbers == theory.exact(Scene(1.5, 1, 0.3))
+    assert numbers == exact.exact(Scene(1.5, 1, 0.3))
     assert list(numbers["areas"]) == list(numbers["mean_times"]) == list(EVENTS)
     assert numbers["regime"] == "vertical-hops"
     assert numbers["mean_times"]["horizontal_hop"] is None
@@ -44,7 +47,7 @@ def test_json_holds_every_digit(monkeypatch, capsys):
 def test_the_table_holds_every_digit(monkeypatch, capsys):
     status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.3")
     assert status in (None, 0)
-    numbers = theory.exact(Scene(1.5, 1, 0.3))
+    numbers = exact.exact(Scene(1.5, 1, 0.3))
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line}
     assert rows["volume"] == [repr(numbers["volume"])]
     for event in EVENTS:
@@ -98,11 +101,11 @@ EFFECTS = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
 
 
 def test_effects_are_options(monkeypatch, capsys):
-    assert main.EFFECTS.keys() == scene.EFFECTS.keys()
+    assert main.EFFECTS.keys() == effects.EFFECTS.keys()
     words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]
     status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words, "--json")
     assert status in (None, 0)
-    assert json.loads(out) == theory.exact(Scene(1.5, 1, 0.1, **EFFECTS))
+    assert json.loads(out) == exact.exact(Scene(1.5, 1, 0.1, **EFFECTS))
     _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words)
     assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in EFFECTS.items())
     _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--depth", "1.2")

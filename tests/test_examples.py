@@ -20,9 +20,10 @@ import yaml
 from workflow.checkout import REPOSITORY, fresh
 
 import twodiscs
-from twodiscs import config, tables
 from twodiscs.cli import check, dynamics, main, montecarlo, theory
 from twodiscs.cli import tables as table
+from twodiscs.comparison import tables
+from twodiscs.pipeline.configuration import load
 
 PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
 NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
@@ -83,7 +84,7 @@ def scenes(name):
 
 def with_examples(path):
     """Return the configuration at ``path`` with the scenes of all pages."""
-    mapping = config.read(path)
+    mapping = load.read(path)
     mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
     return mapping
 
@@ -250,7 +251,7 @@ def agreement(folder, scene):
 def test_table_of_agreement_is_that_of_the_expected_results():
     if not (EXPECTED / "configuration.json").exists():
         pytest.skip("paper/expected holds no results")
-    found = [agreement(EXPECTED, scene) for scene in config.load(config.read(DEFAULT)).scenes]
+    found = [agreement(EXPECTED, scene) for scene in load.load(load.read(DEFAULT)).scenes]
     (shown,) = re.findall(r"^\| box \|.*\n\|[-|]+\n((?:\|.*\n)+)", page("README.md"), re.MULTILINE)
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()
@@ -263,7 +264,7 @@ def test_table_of_agreement_is_that_of_the_expected_results():
 def test_scenes_are_understood():
     names = [scene["name"] for name in NAMES for scene in scenes(name)]
     assert {"square", "double", "corridor", "look"} <= set(names)
-    assert [scene.name for scene in config.load(with_examples(DEFAULT)).scenes][-len(names) :] == (
+    assert [scene.name for scene in load.load(with_examples(DEFAULT)).scenes][-len(names) :] == (
         names
     )
 
@@ -294,7 +295,7 @@ def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, 
 def checked(tmp_path_factory):
     """Run the jobs of the scene ``look``; return the path of its check.csv."""
     folder = tmp_path_factory.mktemp("look")
-    scene = config.load(with_examples(DEFAULT)).scene("look")
+    scene = load.load(with_examples(DEFAULT)).scene("look")
 
     def job(module, output, *words):
         with pytest.MonkeyPatch.context() as patch:

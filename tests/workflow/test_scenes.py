@@ -4,11 +4,11 @@ import pytest
 import yaml
 from checkout import REPOSITORY
 
-from twodiscs import config
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.pipeline.configuration import load
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
-BLOCKS = {path.stem: config.read(path) for path in FILES}
+BLOCKS = {path.stem: load.read(path) for path in FILES}
 
 #: Rules whose jobs run kernels that are worth compiling beforehand.
 KERNELS = {"monte_carlo", "dynamics", "intervals"}
@@ -100,7 +100,7 @@ def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
     found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
     assert shared == ALWAYS - {"compile"}  # nothing without effects is compiled
-    for request in config.load({"scenes": scenes}).scenes:
+    for request in load.load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
         assert figures == CALLED[request.name]
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
@@ -118,7 +118,7 @@ def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
 @pytest.mark.parametrize("name", BLOCKS)
 def test_a_file_is_a_quick_look_at_one_scene(name):
     block = BLOCKS[name]
-    (request,) = config.load(block).scenes
+    (request,) = load.load(block).scenes
     assert request.name == name
     assert request.effects
     assert block["results"] == f"results/scenes/{name}"

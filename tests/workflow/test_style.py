@@ -6,7 +6,7 @@ import sys
 
 from checkout import REPOSITORY
 
-from twodiscs import tables
+from twodiscs.comparison import tables
 from twodiscs.figures.catalogue import FIGURES
 
 

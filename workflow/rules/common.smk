@@ -48,8 +48,8 @@ def code(*modules):
 
 
 def as_json(value):
-    """Return what a job depends on as one JSON object; the same value gives the same text."""
-    return json.dumps(value, sort_keys=True)
+    """Return what a job depends on as one JSON object, its keys sorted."""
+    return json.dumps(dict(sorted(value.items())))
 
 
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):

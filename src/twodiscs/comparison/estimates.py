@@ -88,16 +88,17 @@ def normal_quantile(confidence):
 def mean_of(values):
     """Return the mean of independent ``values`` as an ``Estimate``, along the first axis of them.
 
-    The error is that of their spread. For an array of more axes it is a list of as many estimates,
-    nested alike. Raises ``ValueError`` for fewer than two values.
+    The error is that of their spread. For values in two dimensions it is a list of estimates, one
+    for each column. Raises ``ValueError`` for fewer than two values.
     """
     values = np.asarray(values, float)
     n = len(values)
     if n < 2:
         raise ValueError(f"values must be at least two, not {n}")
-    if values.ndim > 1:
-        return [mean_of(column) for column in np.moveaxis(values, 1, 0)]
-    return Estimate(math.fsum(values) / n, float(np.std(values, ddof=1)) / math.sqrt(n), n)
+    means, errors = values.mean(axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(n)
+    if values.ndim == 1:
+        return Estimate(float(means), float(errors), n)
+    return [Estimate(float(m), float(e), n) for m, e in zip(means, errors, strict=True)]
 
 
 class Line:

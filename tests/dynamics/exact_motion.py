@@ -1,0 +1,76 @@
+"""Motion of two discs in 50 digits, by textbook formulas, for comparison with the event law."""
+
+import math
+from collections import Counter
+from itertools import islice
+
+import mpmath
+from mpmath import mpf
+
+from twodiscs.dynamics.trajectory import follow
+from twodiscs.theory import exact
+
+WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")
+
+
+def exact_path(scene, state):
+    """Yield (time, name) of all that happens, hops included, for ever.
+
+    ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
+    taken for exactly what they are. Names are those of ``dynamics.follow``. Of events at the same
+    time, walls come first. Call it under ``mpmath.workdps``.
+    """
+    x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]
+    limits = [mpf(scene.range_x / 2), mpf(scene.range_y / 2)] * 2
+    sigma, now = mpf(scene.contact_distance), mpf(0)
+    while True:
+        times = {}
+        for i, name in enumerate(WALLS):
+            if v[i]:
+                times[name] = (limits[i] - x[i] if v[i] > 0 else -limits[i] - x[i]) / v[i]
+        dx, dy, du, dv = x[0] - x[2], x[1] - x[3], v[0] - v[2], v[1] - v[3]
+        a, b, c = du**2 + dv**2, dx * du + dy * dv, dx**2 + dy**2 - sigma**2
+        if b < 0 and b**2 > a * c:
+            times["disc_collision"] = max((-b - mpmath.sqrt(b**2 - a * c)) / a, mpf(0))
+        name = min(times, key=times.get)
+        time = times[name]
+        hops = []
+        for hop, gap, speed in (("vertical_hop", dy, dv), ("horizontal_hop", dx, du)):
+            if (gap < 0) != (gap + speed * time < 0):
+                hops.append((-gap / speed, hop))
+        yield from ((now + until, hop) for until, hop in sorted(hops))
+        now += time
+        x = [q + u * time for q, u in zip(x, v, strict=True)]
+        if name == "disc_collision":
+            dx, dy = x[0] - x[2], x[1] - x[3]
+            exchange = (dx * du + dy * dv) / (dx**2 + dy**2)
+            for i, kick in enumerate((-dx, -dy, dx, dy)):
+                v[i] += exchange * kick
+        else:
+            v[WALLS.index(name)] *= -1
+        yield now, name
+
+
+def compare(scene, state, number):
+    """Compare ``number`` events with the exact ones; return on how many they agree.
+
+    They must be the same at the same times: none missed, none twice. Errors grow exponentially, and
+    the comparison ends where the clocks are a hundredth of the mean time between events apart.
+    Events within 1e-10 of it from one another may come in either order.
+    """
+    unit = 1 / exact.event_rate(scene)
+    with mpmath.workdps(50):
+        exact = list(islice(exact_path(scene, state), number))
+        found = [(row[0], row[5]) for row in islice(follow(scene, state, math.inf), number + 1)][1:]
+        begin = 0
+        while begin < number:
+            end = begin + 1
+            while end < number and exact[end][0] - exact[end - 1][0] <= 1e-10 * unit:
+                end += 1
+            late = [abs(t - s) for (t, _), (s, _) in zip(exact, found, strict=True)]
+            if max(late[begin:end]) > 0.01 * unit:
+                break
+            names = [Counter(name for _, name in path[begin:end]) for path in (exact, found)]
+            assert names[0] == names[1], (begin, exact[begin:end], found[begin:end])
+            begin = end
+        return begin

@@ -1,0 +1,202 @@
+"""Whole trajectories where arithmetic has it hard, event by event against 50 digits."""
+
+import math
+from itertools import islice
+
+import numpy as np
+import pytest
+from exact_motion import compare
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.trajectory import follow
+from twodiscs.model.box import largest_radius
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_velocity
+from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.stability.measure import advance, box_units, hard_radii
+
+PAPER = Scene(1.5, 1.0, 0.2)
+BOXES = [(1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1e-6, 1e6), (1e6, 1e-6)]
+
+
+def invariant_state(scene, seed):
+    stream = open_stream(np.uint64(seed), 0)
+    return (*draw_configuration(stream, draw_constants(scene), 0, 0), *draw_velocity(stream))
+
+
+@pytest.mark.parametrize("box", BOXES)
+def test_every_hard_radius_of_every_box(box):
+    for case, distance, radius in hard_radii(*box):
+        scene = Scene(*box, radius)
+        for seed in range(2):
+            assert compare(scene, invariant_state(scene, seed), 60) >= 40, (case, distance, seed)
+
+
+def unit_speed(*velocities):
+    """Return the velocities, scaled to the energy 1/2."""
+    speed = math.hypot(*velocities)
+    return tuple(v / speed for v in velocities)
+
+
+@pytest.mark.parametrize("radius", [1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("miss", [0.0, 0.5, 0.999999, 1.000001])
+def test_tiny_discs_aimed_at_each_other(radius, miss):
+    """From afar, an impact parameter of ``miss`` contact distances decides between hit and miss."""
+    scene = PAPER.with_radius(radius)
+    state = (-0.5, miss * 2 * radius, 0.5, 0.0, *unit_speed(1.0, 0.0, -1.0, 0.0))
+    names = [row[5] for row in follow(scene, state, 1.0)]
+    assert names.count("disc_collision") == (miss < 1)
+    assert compare(scene, state, 4) >= 2 if miss else compare(scene, state, 8) == 8
+
+
+@pytest.mark.parametrize("ulps", [-4, -1, 0, 1, 4])
+def test_grazing_by_some_roundings(ulps):
+    """The impact parameter is σ to some roundings; hit or miss, the motion goes on the same way.
+
+    At a graze of ulps the deflection is some √ε, so both outcomes agree to 1e-7 for a while; what
+    must not happen is a second collision, or discs that overlap.
+    """
+    impact = 0.4 * (1 + ulps * 2.0**-52)
+    state = (-0.5, impact / 2, 0.5, -impact / 2, *unit_speed(1.0, 0.0, -1.0, 0.0))
+    rows = list(follow(PAPER, state, 1.2))
+    names = [row[5] for row in rows]
+    assert names.count("disc_collision") <= 1
+    assert names.count("horizontal_hop") == 1
+    assert names.count("vertical_hop") == 0
+    for row in rows:
+        assert math.hypot(row[1] - row[3], row[2] - row[4]) >= 0.4 - 1e-14
+
+
+@pytest.mark.parametrize("state", [
+    # no relative velocity
+    (-0.3, 0.1, 0.3, -0.1, 0.6, 0.3741657386773941, 0.6, 0.3741657386773941),
+    # one disc at rest, the other one on its way to it, or past it
+    (-0.4, 0.05, 0.2, 0.0, 1.0, 0.0, 0.0, 0.0),
+    (0.2, 0.0, -0.4, -0.25, 0.0, 0.0, 0.8, 0.6),
+    # components exactly zero, of either sign, and denormal ones
+    (-0.3, 0.1, 0.3, -0.1, 0.0, 0.8, -0.0, -0.6),
+    (-0.3, 0.1, 0.3, -0.1, 5e-324, 0.8, -1e-310, 0.6),
+    (-0.3, 0.1, 0.3, -0.1, 1e-300, 0.8, -2.0**-1022, -0.6),
+    # almost parallel
+    (-0.3, 0.1, 0.3, -0.1, 0.6, 0.3741657386773941, 0.6 - 1e-13, 0.3741657386773941),
+    # in contact, on the way in and on the way out
+    (-0.2, 0.0, 0.2, 0.0, 0.8, 0.1, -0.5, 0.3),
+    (-0.2, 0.0, 0.2, 0.0, -0.8, 0.1, 0.5, 0.3),
+    # a rounding short of contact, and a rounding beyond it
+    (-0.2, 0.0, 0.2 + 2.0**-54, 0.0, 0.8, 0.1, -0.5, 0.3),
+    (-0.2, 0.0, 0.2 - 2.0**-54, 0.0, 0.8, 0.1, -0.5, 0.3),
+    # both in corners, at the walls
+    (0.55, 0.3, -0.55, -0.3, 0.7, 0.1, -0.2, -0.3),
+    (0.55, 0.3, -0.55, -0.3, -0.7, -0.1, 0.2, 0.35),
+    # one disc at rest on its walls, or sliding along one, while the other one comes and goes
+    (-0.55, 0.3, -0.55, -0.3, 0.0, 0.0, 0.7, 0.7),
+    (-0.55, -0.3, 0.55, 0.3, 0.7, 0.6, 0.0, 0.0),
+    (0.55, 0.1, -0.2, -0.1, 0.0, 0.6, 0.5, 0.3),
+    (-0.2, -0.1, 0.2, 0.3, 0.5, 0.3, -0.6, 0.0),
+    # discs on opposite walls, moving along them
+    (0.55, 0.1, -0.55, -0.1, 0.0, 0.8, 0.0, -0.6),
+])  # fmt: skip
+def test_states_that_are_hard(state):
+    assert compare(PAPER, (*state[:4], *unit_speed(*state[4:])), 40) >= 15
+
+
+def test_corner_hit_exactly_by_both_discs():
+    """Both run into opposite corners at the same time: four events at once, and the way back."""
+    box = Scene(1.5, 1.0, 0.125)
+    state = (0.625 - 0.25, 0.375 - 0.25, -0.625 + 0.25, -0.375 + 0.25, 0.5, 0.5, -0.5, -0.5)
+    rows = list(follow(box, state, 1.0))
+    assert [row[0] for row in rows] == [0.0, 0.5, 0.5, 0.5, 0.5, 1.0]
+    assert sorted(row[5] for row in rows[1:-1]) == ["wall_x1", "wall_x2", "wall_y1", "wall_y2"]
+    assert rows[-1][1:5] == state[:4]
+
+
+@pytest.mark.parametrize("height", [1e6, 1e-6])
+def test_collisions_in_a_box_of_extreme_shape(height):
+    """Discs close together along a box of 1e-6 × 1e6, between very many hits on its long walls."""
+    scene = Scene(1 / height, height, 2e-7)
+    half_x, half_y = scene.range_x / 2, scene.range_y / 2
+    across, along = (half_x, half_y) if half_x < half_y else (half_y, half_x)
+    place = {"across": (0.3 * across, -0.4 * across), "along": (4e-7, -4e-7)}
+    speed = {"across": (0.3, -0.5), "along": (-0.4, 0.5)}
+    order = ("across", "along") if half_x < half_y else ("along", "across")
+    x, y = (place[axis] for axis in order)
+    u, v = (speed[axis] for axis in order)
+    state = (x[0], y[0], x[1], y[1], *unit_speed(u[0], v[0], u[1], v[1]))
+    names = [row[5] for row in follow(scene, state, 4e-6)]
+    assert names.count("disc_collision") >= 1
+    assert along > 1e5
+    assert compare(scene, state, 40) >= 12
+
+
+def test_discs_smaller_than_the_spacing_of_coordinates():
+    """Centres that coincide have no line of centres: no division by zero, no energy lost."""
+    scene = Scene(1e-6, 1e6, 1e-15)
+    half_x, half_y = scene.range_x / 2, scene.range_y / 2
+    for velocities in ((0.0, 0.0, 0.0, 1.0), (0.0, -1e-160, 0.0, 1.0)):
+        state = (-half_x, 0.0, -half_x, -half_y, *velocities)
+        for _ in range(20):
+            state, time, _ = advance(state, law_of(scene))
+            assert 0 <= time < math.inf
+            assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
+
+
+@pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (3.0, 1.0)])
+@pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9])
+def test_no_flight_passes_through_the_other_disc(box, distance):
+    """The gap at the closest approach of every flight, not only at its ends."""
+    for radius in (0.05 * min(box), largest_radius(*box) * (1 - distance)):
+        scene = Scene(*box, radius)
+        path = islice(follow(scene, invariant_state(scene, 3), math.inf), 8000)
+        path = np.array([row[1:5] for row in path])
+        start = path[:-1, :2] - path[:-1, 2:]
+        step = np.diff(path[:, :2] - path[:, 2:], axis=0)
+        square = np.maximum(np.sum(step**2, axis=1), 1e-300)
+        share = np.clip(-np.sum(start * step, axis=1) / square, 0, 1)
+        nearest = np.hypot(*(start + share[:, None] * step).T)
+        assert nearest.min() >= scene.contact_distance - 1e-14
+
+
+#: Velocities that are trouble, before they are scaled to the energy.
+speeds = st.one_of(
+    st.sampled_from([0.0, -0.0, 1.0, -1.0, 0.5, 5e-324, -1e-310, 1e-300, -1e-160, 1e-17, -1e-16]),
+    st.floats(-1, 1),
+)
+
+
+@given(
+    st.sampled_from(BOXES),
+    st.data(),
+    st.tuples(*[st.sampled_from([-1.0, 0.0, 1.0, 1 - 2.0**-53, 0.3])] * 4),
+    st.tuples(speeds, speeds, speeds, speeds),
+)
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_any_combination_of_extremes_goes_on(box, data, places, velocities):
+    """Centres in corners, on walls, on one line; velocities zero, denormal, equal: on it goes.
+
+    No time is negative or not a number, energy and gaps stay, and time advances.
+    """
+    _, _, radius = data.draw(st.sampled_from(hard_radii(*box)))
+    scene = Scene(*box, radius)
+    assume(math.hypot(*velocities) > 0.1)
+    half_x, half_y, sigma = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
+    x1, y1, x2, y2 = (q * h for q, h in zip(places, (half_x, half_y) * 2, strict=True))
+    assume((x1 - x2) ** 2 + (y1 - y2) ** 2 >= sigma**2)
+    state = (x1, y1, x2, y2, *unit_speed(*velocities))
+    unit_x, unit_y = box_units(scene)
+    elapsed, number = 0.0, 0
+    for number in range(300):
+        state, time, _ = advance(state, law_of(scene))
+        assert time >= 0
+        if time == math.inf:
+            # Only if nothing ever happens again, to within what a denormal speed takes.
+            assert number <= 8
+            return
+        elapsed += time
+        assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-12
+        assert abs(state[0]) <= half_x + 1e-15 * unit_x
+        assert abs(state[3]) <= half_y + 1e-15 * unit_y
+        gap = math.hypot(state[0] - state[2], state[1] - state[3]) - sigma
+        assert gap >= -1e-14 * max(unit_x, unit_y)
+    assert elapsed > 0

@@ -1,0 +1,291 @@
+"""One event at a time, against 50-digit arithmetic, where doubles have it hard."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from twodiscs.dynamics import law
+
+EPS = 2.0**-52
+HALF_X, HALF_Y = 0.55, 0.3
+SIGMA = 0.4
+
+
+def mp(value):
+    return mpmath.mpf(float(value))
+
+
+def exact_contact(dx, dy, du, dv, sigma):
+    """Time to contact (None if discs miss or part) and its conditioning, both to 50 digits.
+
+    The second value is Σ |p ∂t/∂p| over the five inputs p: how far the time moves, to first order,
+    if each input is wrong by one relative unit.
+    """
+    with mpmath.workdps(50):
+        dx, dy, du, dv, sigma = map(mp, (dx, dy, du, dv, sigma))
+        a, b, c = du**2 + dv**2, dx * du + dy * dv, dx**2 + dy**2 - sigma**2
+        discriminant = b**2 - a * c
+        if b >= 0 or discriminant <= 0:
+            return None, None
+        root = mpmath.sqrt(discriminant)
+        time = c / (root - b)
+        slopes = (
+            dx * (dx + du * time),
+            dy * (dy + dv * time),
+            du * time * (dx + du * time),
+            dv * time * (dy + dv * time),
+            sigma**2,
+        )
+        return time, sum(abs(slope) for slope in slopes) / root
+
+
+def contact_time(dx, dy, du, dv, sigma):
+    gap, speed, approach = law.contact_quotient(dx, dy, None, du, dv, None, sigma)
+    return max(gap / speed, 0.0) if approach and speed > 0 else None
+
+
+def check_contact(dx, dy, du, dv, sigma):
+    time, conditioning = exact_contact(dx, dy, du, dv, sigma)
+    found = contact_time(dx, dy, du, dv, sigma)
+    speed, approach = math.hypot(du, dv), -(dx * du + dy * dv)
+    impact, exact_impact = abs(dx * dv - dy * du), sigma * speed
+    doubt = 8 * EPS * (abs(dx * dv) + abs(dy * du) + exact_impact)
+    if abs(impact - exact_impact) <= doubt:
+        # Some roundings of the inputs decide between hit and miss; a hit is at the closest
+        # approach, to within the half-chord that the doubt leaves.
+        if found is not None:
+            half_chord = math.sqrt(4 * doubt * exact_impact) / speed**2
+            assert abs(found - approach / speed**2) <= half_chord + 8 * EPS * found
+    elif found is None or time is None:
+        slow = abs(approach) <= 8 * EPS * sigma * max(speed, 1.0)
+        assert found is time or slow
+    else:
+        assert found >= 0
+        assert abs(mp(found) - time) <= 8 * EPS * conditioning + 4 * EPS * abs(time)
+
+
+@given(
+    st.floats(0, 2 * math.pi),
+    st.floats(1e-12, 1e3),
+    st.floats(0, 2 * math.pi),
+    st.floats(1e-9, 1.4),
+)
+@settings(max_examples=400, deadline=None, derandomize=True)
+def test_contact_from_anywhere(direction, room, heading, speed):
+    distance = SIGMA * (1 + room)
+    check_contact(
+        distance * math.cos(direction), distance * math.sin(direction),
+        speed * math.cos(heading), speed * math.sin(heading), SIGMA,
+    )  # fmt: skip
+
+
+@given(st.floats(0, 2 * math.pi), st.floats(1e-3, 1e3), st.integers(-6, 6), st.floats(1e-3, 1.4))
+@settings(max_examples=400, deadline=None, derandomize=True)
+def test_grazing_within_some_roundings(direction, room, ulps, speed):
+    """The impact parameter is σ to some ulps, so that the discriminant is 0 to some ulps."""
+    impact = SIGMA * (1 + ulps * EPS)
+    along = SIGMA * room
+    c, s = math.cos(direction), math.sin(direction)
+    check_contact(-along * c - impact * s, -along * s + impact * c, speed * c, speed * s, SIGMA)
+
+
+@pytest.mark.parametrize("sigma", [1e-6, 0.02, 0.4, 0.76, 1e6])
+def test_head_on_is_exact(sigma):
+    distance, speed = 3 * sigma, 0.5
+    found = contact_time(-distance, 0.0, speed, 0.0, sigma)
+    assert abs(found - (distance - sigma) / speed) <= 4 * EPS * found
+
+
+def test_no_relative_velocity_is_no_contact():
+    assert contact_time(0.5, 0.1, 0.0, 0.0, SIGMA) is None
+
+
+@given(st.floats(0, 2 * math.pi), st.floats(0, 2 * math.pi), st.integers(-3, 3))
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_contact_is_a_matter_of_direction(place, heading, ulps):
+    """At contact, to some ulps, discs that part are free and discs that approach collide."""
+    distance = SIGMA * (1 + ulps * EPS)
+    dx, dy = distance * math.cos(place), distance * math.sin(place)
+    du, dv = math.cos(heading), math.sin(heading)
+    approach = dx * du + dy * dv
+    assume(abs(approach) > 1e-6)
+    found = contact_time(dx, dy, du, dv, SIGMA)
+    if approach > 0:
+        assert found is None
+    else:
+        # The distance is off by some roundings, so the time is by as many over the normal speed.
+        assert 0 <= found <= 16 * EPS * SIGMA**2 / abs(approach)
+
+
+@given(
+    st.sampled_from([0.3, 1e-6, 1e6, 0.5 * (1 - 1e-9)]),
+    st.floats(-1, 1),
+    st.one_of(
+        st.floats(-1, 1, allow_subnormal=True),
+        st.sampled_from([0.0, -0.0, 5e-324, -5e-324, 1e-310, 2.0**-1022, 1.0, -1.0]),
+    ),
+)
+@settings(max_examples=400, deadline=None, derandomize=True)
+def test_wall_time(limit, place, velocity):
+    position = limit * place
+    gap, speed = law.wall_quotient(position, velocity, limit)
+    assert gap >= 0
+    assert speed == abs(velocity)
+    if velocity != 0:
+        with mpmath.workdps(50):
+            true = (mp(math.copysign(limit, velocity)) - mp(position)) / mp(velocity)
+            # One rounding of the gap; none of the velocity, however small.
+            assert abs(mp(gap) / mp(speed) - true) <= EPS * true
+
+
+def step(state, remaining=math.inf, half_x=HALF_X, half_y=HALF_Y, sigma=SIGMA):
+    law = law.Law(half_x, half_y, sigma)
+    time, code = law.next_event(state, remaining, law)
+    after = law.after_event(state, time, code, law)
+    assert math.isfinite(time)
+    assert time >= 0
+    assert all(map(math.isfinite, after))
+    return time, code, after
+
+
+def energy(state):
+    return math.fsum(v * v for v in state[4:]) / 2
+
+
+def test_both_walls_of_a_corner_are_hit():
+    """Disc 1 runs into the corner exactly: two events, the second after no time."""
+    state = (HALF_X - 0.25, HALF_Y - 0.25, -HALF_X, -HALF_Y, 0.5, 0.5, 0.5, 0.0)
+    _, first, state = step(state)
+    time, second, state = step(state)
+    assert {first, second} == {law.WALL_X1, law.WALL_Y1}
+    assert time <= 4 * EPS
+    assert state[0] == HALF_X
+    assert state[1] == HALF_Y
+    assert state[4:6] == (-0.5, -0.5)
+
+
+def test_two_discs_hit_opposite_walls_at_once():
+    state = (HALF_X - 0.25, 0.0, -HALF_X + 0.25, 0.0, 0.5, 0.0, -0.5, 0.0)
+    codes = set()
+    for _ in range(2):
+        _, code, state = step(state)
+        codes.add(code)
+    assert codes == {law.WALL_X1, law.WALL_X2}
+    assert state[4] == -0.5
+    assert state[6] == 0.5
+
+
+def test_wall_wins_a_tie_with_a_disc_which_then_comes_at_once():
+    """Both discs reach the top and each other after the same time, 0.5."""
+    box = {"half_x": 0.5, "half_y": 0.25, "sigma": 0.25}
+    state = (-0.5, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.5)
+    times, codes = [], []
+    for _ in range(3):
+        time, code, state = step(state, **box)
+        times.append(time)
+        codes.append(code)
+    assert times == [0.5, 0.0, 0.0]
+    assert codes == [law.WALL_Y1, law.WALL_Y2, law.DISC]
+    assert state[4:] == (0.0, -0.5, 0.5, -0.5)
+
+
+def test_end_of_time_moves_and_changes_nothing_else():
+    state = (0.1, 0.05, -0.4, -0.1, 0.5, -0.5, 0.5, 0.5)
+    time, code, after = step(state, remaining=0.0625)
+    assert (time, code) == (0.0625, law.END_OF_TIME)
+    assert after[4:] == state[4:]
+    assert after[0] == 0.1 + 0.5 * 0.0625
+
+
+def test_a_disc_at_rest_waits():
+    state = (0.0, 0.0, -HALF_X, 0.0, 0.0, 0.0, 1.0, 0.0)
+    _, code, after = step(state)
+    assert code == law.DISC
+    assert after[4:] == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=2 * EPS)
+
+
+def test_a_disc_at_rest_on_a_wall_is_no_event():
+    for u in (0.0, -0.0):
+        state = (HALF_X, 0.2, -HALF_X, -HALF_Y, u, 0.0, 0.0, 1.0)
+        time, code, _ = step(state)
+        assert code == law.WALL_Y2
+        assert time == pytest.approx(2 * HALF_Y)
+
+
+@pytest.mark.parametrize("beyond", [1, 2, -1])
+def test_a_disc_put_behind_its_wall_by_a_rounding_bounces_at_once(beyond):
+    x = HALF_X
+    for _ in range(abs(beyond)):
+        x = math.nextafter(x, math.inf if beyond > 0 else -math.inf)
+    time, code, after = step((x, 0.2, -HALF_X, -HALF_Y, 0.5, 0.0, 0.0, 0.5))
+    assert code == law.WALL_X1
+    assert time <= 8 * EPS
+    assert after[0] == HALF_X
+    assert after[4] == -0.5
+    time, code, after = step(after)
+    assert time > 0.1
+
+
+def test_discs_wedged_into_opposite_corners_stay_put():
+    """Within 1e-9 of the largest radius, both discs in corners, at each other and the walls."""
+    width, height = 1.5, 1.0
+    radius = (width + height - math.sqrt(2 * width * height)) / 2 * (1 - 1e-9)
+    half_x, half_y = width / 2 - radius, height / 2 - radius
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        velocity = rng.normal(size=4)
+        velocity /= np.linalg.norm(velocity)
+        state = (half_x, half_y, -half_x, -half_y, *map(float, velocity))
+        for _ in range(300):
+            _, _, state = step(state, half_x=half_x, half_y=half_y, sigma=2 * radius)
+            assert abs(state[0]) <= half_x * (1 + 2 * EPS)
+            assert abs(state[1]) <= half_y * (1 + 2 * EPS)
+            gap = math.hypot(state[0] - state[2], state[1] - state[3]) - 2 * radius
+            assert gap >= -1e-15
+        assert energy(state) == pytest.approx(0.5, abs=1e-13)
+
+
+@pytest.mark.parametrize(("half_x", "half_y", "sigma"), [(5e-7, 5e5, 1e-12), (5e5, 5e-7, 2e-7)])
+def test_boxes_of_extreme_shape(half_x, half_y, sigma):
+    state = (half_x / 2, half_y / 2, -half_x / 2, -half_y / 2, 0.5, 0.5, -0.5, 0.5)
+    for _ in range(1000):
+        _, code, state = step(state, half_x=half_x, half_y=half_y, sigma=sigma)
+        assert code != law.END_OF_TIME
+        assert abs(state[0]) <= half_x * (1 + 2 * EPS)
+        assert abs(state[1]) <= half_y * (1 + 2 * EPS)
+    assert energy(state) == pytest.approx(0.5, abs=1e-13)
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(1e-17, 1e-13))
+@example(seed=0, approach=1e-16)
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_grazing_contact_never_repeats_for_ever(seed, approach):
+    """At contact, with a normal speed of about a rounding, discs come apart in a few events."""
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2 * math.pi)
+    c, s = math.cos(angle), math.sin(angle)
+    state = (
+        SIGMA * c / 2, SIGMA * s / 2, -SIGMA * c / 2, -SIGMA * s / 2,
+        -0.5 * s - approach * c, 0.5 * c - approach * s, 0.5 * s, -0.5 * c,
+    )  # fmt: skip
+    elapsed = 0.0
+    for _ in range(4):
+        time, _, state = step(state, half_x=1.0, half_y=1.0)
+        elapsed += time
+    assert elapsed > 0.01
+
+
+def test_hops_are_counted_once():
+    assert law.crosses(0.1, -0.1)
+    assert not law.crosses(0.1, 0.0)
+    assert not law.crosses(0.0, 0.1)
+    assert law.crosses(0.0, -0.1)
+    assert law.crosses(-0.1, 0.0)
+    # From + to exactly 0 and on to −, or back to +: one hop, or none.
+    assert sum(map(law.crosses, (0.1, 0.0), (0.0, -0.1))) == 1
+    assert sum(map(law.crosses, (0.1, 0.0), (0.0, 0.1))) == 0
+    assert law.crossing_time(0.3, -0.6) == 0.5

@@ -1,0 +1,356 @@
+"""The event law of scenes with effects: against 50 digits, and what every motion must keep."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf
+
+from twodiscs.dynamics import counting, trajectory
+from twodiscs.dynamics.law import (
+    DISC,
+    END_OF_TIME,
+    WRAP_X,
+    after_event,
+    contact_quotient,
+    fall_quotient,
+    law_of,
+    next_event,
+)
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling import starts
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.streams import open_stream
+
+EPS = 2.0**-52
+SCENES = {
+    "unequal": Scene(1.5, 1.0, 0.2, radius_ratio=0.5, mass_ratio=0.3),
+    "torus": Scene(1.5, 1.0, 0.2, periodic="xy"),
+    "channel": Scene(1.5, 1.0, 0.2, periodic="x", mass_ratio=2.0),
+    "field": Scene(1.5, 1.0, 0.2, field=0.5),
+    "rough": Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4),
+    "balls": Scene(1.5, 1.0, 0.2, depth=1.2),
+    "stack": Scene(1.5, 1.0, 0.376, field=0.5),
+    "balls in a field": Scene(
+        1.5, 1.0, 0.2, depth=1.2, periodic="z", field=0.3, radius_ratio=1.2, mass_ratio=2.0
+    ),
+    "nearly all": Scene(
+        1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0,
+        moment_of_inertia=0.4,
+    ),
+}  # fmt: skip
+
+
+@compiled
+def fall(position, velocity, limit, gravity):
+    return fall_quotient(position, velocity, limit, gravity)
+
+
+every_scene = pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+
+
+def start(scene, seed):
+    """Return a state of the invariant measure."""
+    column = np.zeros((12, 1))
+    draw, prism = starts.origins(scene)
+    starts.draw_any_starts(open_stream(np.uint64(seed), 0), draw, (0, 0), column, prism)
+    size = 8 + 4 * (scene.depth is not None) + 2 * (scene.moment_of_inertia is not None)
+    return tuple(map(float, column[:size, 0]))
+
+
+def parts(scene, state):
+    """Return positions and velocities as {axis: pair}, and the pair of spins."""
+    q, p = {"x": state[0:4:2], "y": state[1:4:2]}, {"x": state[4:8:2], "y": state[5:8:2]}
+    if scene.depth is not None:
+        q["z"], p["z"] = state[8:10], state[10:12]
+    return q, p, state[8:10] if scene.moment_of_inertia is not None else (0.0, 0.0)
+
+
+def energy(scene, state):
+    """Return the total energy of a state."""
+    q, p, spins = parts(scene, state)
+    total = []
+    for i, (mass, radius) in enumerate(zip(scene.masses, scene.radii, strict=True)):
+        total += [mass * p[axis][i] ** 2 / 2 for axis in p]
+        total.append((scene.moment_of_inertia or 0.0) * mass * spins[i] ** 2 / 2)
+        total.append(mass * scene.field * (q["y"][i] + scene.height / 2 - radius))
+    return math.fsum(total)
+
+
+def gap(scene, state):
+    """Return the distance of the centres over σ, less one."""
+    q, _, _ = parts(scene, state)
+    return math.hypot(*(a - b for a, b in q.values())) / scene.contact_distance - 1
+
+
+def reversed_state(scene, state):
+    """Return the state with velocities and spins reversed."""
+    deep = state[8:10] if scene.depth is not None else ()
+    return (*state[:4], *(-p for p in state[4:8]), *deep, *(-p for p in state[8 + len(deep) :]))
+
+
+# What every motion keeps ------------------------------------------------------------------------
+
+
+@every_scene
+def test_energy_momentum_and_room_are_kept(scene):
+    """Over 20 000 events; roundings of a sum of n random signs grow like √n, here 140."""
+    law, state = law_of(scene), start(scene, 1)
+    assert energy(scene, state) == pytest.approx(0.5, abs=4 * EPS)
+    for _ in range(20_000):
+        time, code = next_event(state, math.inf, law)
+        assert 0.0 <= time < math.inf
+        state = after_event(state, time, code, law)
+        assert abs(energy(scene, state) - 0.5) < 4 * 140 * EPS
+        assert gap(scene, state) > -64 * EPS
+        q, p, _ = parts(scene, state)
+        for axis in scene.walled:
+            for place, radius in zip(q[axis], scene.radii, strict=True):
+                assert abs(place) <= scene.side(axis) / 2 - radius + 2 * EPS
+        for axis in scene.periodic:
+            assert abs(q[axis][0] - q[axis][1]) <= scene.side(axis) / 2 * (1 + 64 * EPS)
+        for axis in scene.conserved:
+            momentum = sum(m * v for m, v in zip(scene.masses, p[axis], strict=True))
+            assert abs(momentum) < 4 * 140 * EPS
+
+
+@every_scene
+def test_reversed_velocities_lead_back(scene):
+    law, first = law_of(scene), start(scene, 2)
+    state, number = first, 8
+    times = []
+    for _ in range(number):
+        time, code = next_event(state, math.inf, law)
+        state, times = after_event(state, time, code, law), [*times, time]
+    state = reversed_state(scene, state)
+    # The event that has just been is undone at once; the way ends where it began, in mid-flight.
+    for _ in range(number):
+        time, code = next_event(state, math.inf, law)
+        state = after_event(state, time, code, law)
+    state = reversed_state(scene, after_event(state, times[0], END_OF_TIME, law))
+    assert state == pytest.approx(first, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["unequal", "balls in a field", "nearly all"])
+def test_counts_do_not_depend_on_shards_or_lanes(name):
+    scene = SCENES[name]
+
+    def counts(first, stop, lanes=64):
+        return counting.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
+
+    whole = counts(0, 4)
+    halves = [counts(0, 1), counts(1, 4)]
+    for total, *shards, other in zip(whole, *halves, counts(0, 4, 7), strict=True):
+        assert np.array_equal(total, sum(shards))
+        assert np.array_equal(total, other)
+
+
+@every_scene
+def test_a_trajectory_tells_the_same_events_as_the_ensemble(scene):
+    rows = list(trajectory.follow(scene, start(scene, 3), 64.0))
+    times = [row[0] for row in rows]
+    assert times == sorted(times)
+    assert (rows[0][5], rows[-1][5], times[-1]) == ("start", "end", pytest.approx(64.0))
+    names = {row[5] for row in rows}
+    assert ("vertical_hop" in names) <= ("y" in scene.walled)
+    assert {f"wrap_{axis}" in names for axis in scene.periodic} <= {True}
+    assert all((row[6] is None) == (scene.depth is None) for row in rows)
+
+
+# Effects that are there but do nothing ----------------------------------------------------------
+
+
+def test_effects_of_no_size_change_nothing():
+    """Ranges of disc 2 that equal those of disc 1 and weights of 1 give the same bits."""
+    plain = law_of(Scene(1.5, 1.0, 0.2))
+    same = plain._replace(half_x2=plain.half_x1, half_y2=plain.half_y1, weights=(1.0, 1.0))
+    state = other = start(Scene(1.5, 1.0, 0.2), 4)
+    for _ in range(2000):
+        state = after_event(state, *next_event(state, math.inf, plain), plain)
+        other = after_event(other, *next_event(other, math.inf, same), same)
+        assert state == other
+
+
+def test_a_weak_field_bends_the_path_slightly():
+    """A field g moves a path by about g t²/2 as long as no collision has amplified it."""
+    plain, bent = law_of(Scene(1.5, 1.0, 0.05)), law_of(Scene(1.5, 1.0, 0.05, field=1e-9))
+    state = other = start(Scene(1.5, 1.0, 0.05), 5)
+    for _ in range(6):
+        state = after_event(state, *next_event(state, math.inf, plain), plain)
+        other = after_event(other, *next_event(other, math.inf, bent), bent)
+        assert other == pytest.approx(state, abs=1e-6)
+    assert other != state
+
+
+# Falling ----------------------------------------------------------------------------------------
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    position=st.floats(-0.5, 0.5),
+    velocity=st.floats(-2, 2),
+    gravity=st.floats(1e-6, 1e3),
+)
+def test_time_of_fall(position, velocity, gravity):
+    """Against 50 digits; the error is the condition of the root times a few roundings."""
+    assume(abs(velocity) > 1e-12)
+    # The first wall ahead is a question of the sign of v² − 2 g (1/2 − y).
+    with mp.workdps(50):
+        y, v, g = mpf(position), mpf(velocity), mpf(gravity)
+        left = v * v - 2 * g * (mpf(0.5) - y)
+        assume(abs(left) > 1e-12 * v * v)
+        if v > 0 and left > 0:
+            true = (v - mpmath.sqrt(left)) / g
+        else:
+            left = v * v + 2 * g * (y + mpf(0.5))
+            true = (v + mpmath.sqrt(left)) / g
+        slope = abs(v - g * true)
+        terms = abs(y) + mpf(0.5) + abs(v * true) + g * true**2
+        bound = 8 * EPS * (true + terms / slope)
+        gap_, speed = fall(position, velocity, 0.5, gravity)
+        assert abs(mpf(gap_) / mpf(speed) - true) <= bound
+
+
+def test_a_disc_that_grazes_the_top_falls_back():
+    """v² = 2 g (limit − y) exactly: it stops there, and what counts is the floor."""
+    gap_, speed = fall(0.0, 1.0, 0.5, 1.0)
+    assert gap_ / speed == pytest.approx(1 + math.sqrt(2), rel=4 * EPS)
+
+
+# Contacts ---------------------------------------------------------------------------------------
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.tuples(*[st.floats(-1, 1)] * 6))
+def test_contact_of_balls(numbers):
+    (dx, dy, dz), (du, dv, dw), sigma = numbers[:3], numbers[3:], 0.4
+    with mp.workdps(50):
+        x, v = [mpf(q) for q in (dx, dy, dz)], [mpf(q) for q in (du, dv, dw)]
+        a, b = sum(q * q for q in v), sum(p * q for p, q in zip(x, v, strict=True))
+        c = sum(q * q for q in x) - mpf(sigma) ** 2
+        assume(c > 1e-3 and a > 1e-3)
+        left = b * b - a * c
+        assume(abs(left) > 1e-6)
+        gap_, speed, approach = contact_quotient(dx, dy, dz, du, dv, dw, sigma)
+        if b < 0 and left > 0:
+            assert approach
+            true = c / (mpmath.sqrt(left) - b)
+            assert abs(mpf(gap_) / mpf(speed) - true) <= 64 * EPS * true * (1 + 1 / left + 1 / c)
+        else:
+            assert not (approach and speed > 0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.1, 10), st.floats(0.05, 1.0), st.floats(0.2, 5))
+def test_rough_collisions_reverse_what_slides_and_what_approaches(seed, mass, inertia, ratio):
+    """The relative velocity of the surfaces where they touch is reversed, along both directions.
+
+    Energy, momentum and angular momentum about any point stay.
+    """
+    scene = Scene(100.0, 100.0, 0.1, mass_ratio=mass, moment_of_inertia=inertia, radius_ratio=ratio)
+    generator = np.random.default_rng(seed)
+    angle, sigma = generator.uniform(0, 2 * math.pi), scene.contact_distance
+    n = np.array([math.cos(angle), math.sin(angle)])
+    v1, v2 = generator.normal(size=(2, 2))
+    assume((v1 - v2) @ n < -0.01)
+    s1, s2 = generator.normal(size=2)
+    place = sigma * n / 2
+    state = (*place, *-place, *v1, *v2, s1, s2)
+    after = after_event(state, 0.0, DISC, law_of(scene))
+    w1, w2, (t1, t2) = np.array(after[4:6]), np.array(after[6:8]), after[8:]
+    t = np.array([-n[1], n[0]])
+
+    def slip(a, b, spins):
+        return (a - b) @ n, (a - b) @ t - sum(spins)
+
+    size = float(np.max(np.abs(state[4:])))
+    assert np.allclose(
+        slip(w1, w2, (t1, t2)), np.negative(slip(v1, v2, (s1, s2))), atol=1e-13 * size
+    )
+    assert np.allclose(v1 + mass * v2, w1 + mass * w2, rtol=0, atol=1e-12 * size * (1 + mass))
+    assert energy(scene, state) == pytest.approx(energy(scene, after), rel=1e-12)
+    r1, r2 = scene.radii
+
+    def spin_about_contact(a, b, spins):
+        """The angular momentum about the point of contact: spins, and centres at ±r n from it."""
+        arms = r1 * (t @ a) - r2 * mass * (t @ b)
+        return arms + inertia * (r1 * spins[0] + mass * r2 * spins[1])
+
+    before = spin_about_contact(v1, v2, (s1, s2))
+    assert spin_about_contact(w1, w2, (t1, t2)) == pytest.approx(
+        before, abs=1e-11 * size * (1 + mass) * (r1 + r2)
+    )
+    again = after_event((*after[:4], *after[4:]), 0.0, DISC, law_of(scene))
+    assert again[4:] == pytest.approx(state[4:], abs=1e-12 * size)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("disc", [0, 1])
+def test_rough_walls_reverse_what_slides(axis, side, disc):
+    scene = Scene(4.0, 3.0, 0.2, moment_of_inertia=0.5, mass_ratio=2.0, radius_ratio=0.7)
+    half = (4.0, 3.0)[axis] / 2 - scene.radii[disc]
+    places, speeds, spins = [0.0, 0.5, 0.0, -0.5], [0.3, -0.2, 0.1, 0.25], [0.4, -0.6]
+    places[2 * disc + axis], speeds[2 * disc + axis] = side * (half - 0.1), 2.0 * side
+    law, state = law_of(scene), (*places, *speeds, *spins)
+    time, code = next_event(state, math.inf, law)
+    after = after_event(state, time, code, law)
+    assert time == pytest.approx(0.05)
+    # The disc's surface at the wall moves with the centre and turns: ω × (r n) along the wall.
+    turn = side if axis == 0 else -side
+
+    def at_wall(state):
+        return state[4 + 2 * disc + (1 - axis)] + turn * state[8 + disc]
+
+    assert at_wall(after) == pytest.approx(-at_wall(state), abs=1e-15)
+    assert after[4 + 2 * disc + axis] == -2.0 * side
+    assert after[2 * disc + axis] == side * half
+    assert energy(scene, after) == pytest.approx(energy(scene, state), rel=1e-15)
+    still = 4 + 2 * (1 - disc)
+    assert after[still : still + 2] == state[still : still + 2]
+
+
+def test_unequal_masses_exchange_momentum():
+    scene = Scene(4.0, 3.0, 0.2, mass_ratio=3.0)
+    state = (0.2, 0.0, -0.2, 0.0, -1.0, 0.5, 0.0, 0.0)
+    after = after_event(state, 0.0, DISC, law_of(scene))
+    # u1' = (m1 − m2)/M u1, u2' = 2 m1/M u1.
+    assert after[4:] == pytest.approx((0.5, 0.5, -0.5, 0.0), abs=EPS)
+
+
+# Periodic axes ----------------------------------------------------------------------------------
+
+
+def test_discs_meet_across_the_end_of_a_periodic_axis():
+    """At ±0.7 in a period of 1.5 they are 0.1 apart the other way round."""
+    scene = Scene(1.5, 1.0, 0.02, periodic="x")
+    law, state = law_of(scene), (0.7, 0.0, -0.7, 0.0, 0.5, 0.0, -0.5, 0.0)
+    # The separation 1.4 is put into the cell first, as starts are.
+    state = (state[0] - 1.5, *state[1:])
+    time, code = next_event(state, math.inf, law)
+    assert (code, time) == (DISC, pytest.approx(0.06))
+
+    away = (*state[:4], *(-p for p in state[4:]))
+    time, code = next_event(away, math.inf, law)
+    assert (code, time) == (WRAP_X, pytest.approx(0.65))
+    away = after_event(away, time, code, law)
+    assert away[0] - away[2] == pytest.approx(0.75)
+    assert next_event(away, math.inf, law) == (pytest.approx(0.71), DISC)
+
+
+@every_scene
+def test_the_centre_of_mass_stays_where_momentum_is_conserved(scene):
+    """So coordinates stay of the size of the box, however long the run."""
+    if not scene.conserved:
+        return
+    law, state = law_of(scene), start(scene, 6)
+    places = []
+    for _ in range(5000):
+        state = after_event(state, *next_event(state, math.inf, law), law)
+        q, _, _ = parts(scene, state)
+        places.append([np.dot(scene.masses, q[axis]) for axis in scene.conserved])
+    assert np.ptp(places, axis=0).max() < 1e-11

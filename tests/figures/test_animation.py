@@ -1,0 +1,172 @@
+"""The animation: it shows the trajectory, stops at the hop, and is the same bytes every time."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from twodiscs.cli import animation as command
+from twodiscs.comparison import tables
+from twodiscs.dynamics import trajectory
+from twodiscs.figures import animation
+from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
+from twodiscs.figures.kit import drawing, style
+from twodiscs.model.scene import Scene
+
+SCENE = {"width": 1.5, "height": 1.0, "radius": 0.24}
+COLUMNS = tables.TABLES["trajectory"].names
+
+
+@pytest.fixture(scope="module")
+def rows():
+    """Rows of trajectory.csv with hops of both kinds."""
+    found = trajectory.trajectory(Scene(**SCENE), 1908)
+    return [dict(zip(COLUMNS, row, strict=True)) for row in found]
+
+
+@pytest.fixture(scope="module")
+def stage(rows):
+    with style.context():
+        return animation.Stage(SCENE, rows)
+
+
+@pytest.fixture(scope="module")
+def frames(rows, tmp_path_factory):
+    """Return (path, [(milliseconds, pixels)]) of a GIF that shows the same as the PNG beside it."""
+    folder = tmp_path_factory.mktemp("animation")
+    paths = [folder / "a.gif", folder / "a.png"]
+    with style.context():
+        animation.animate(SCENE, rows, paths)
+    gif, png = map(unpacked, paths)
+    for ours, theirs in zip(gif, png, strict=True):
+        assert ours[0] == theirs[0]
+        np.testing.assert_array_equal(ours[1], theirs[1])
+    return paths[0], gif
+
+
+def unpacked(path):
+    """Return [(milliseconds, pixels)] of the frames of a file that repeats for ever."""
+    found = []
+    with Image.open(path) as image:
+        assert image.info["loop"] == 0
+        for k in range(image.n_frames):
+            image.seek(k)
+            found.append((image.info["duration"], np.asarray(image.convert("RGB"), int)))
+    return found
+
+
+def at(*events, end=1000.0):
+    """Return rows of a trajectory from 0 to ``end`` with ``events`` at given times."""
+    rows = [(0.0, "start"), *sorted(events), (end, "end")]
+    return [{"time": time, "event": event} for time, event in rows]
+
+
+# Which moments are shown -------------------------------------------------------------------------
+
+
+def test_the_first_lone_hop_of_the_rarer_kind_is_shown():
+    common = [(float(t), "vertical_hop") for t in range(5, 900, 7)]
+    rare = [(t, "horizontal_hop") for t in (120.0, 121.0, 400.0, 700.0)]
+    times, hop, centre = animation.moments(at(*common, *rare), 1.0)
+    assert (hop, centre) == ("horizontal_hop", 400.0)
+    assert times.tolist() == list(range(400 - BEFORE, 400 + AFTER + 1))
+
+
+def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
+    times, hop, centre = animation.moments(at((3.0, "vertical_hop"), (4.0, "vertical_hop")), 1.0)
+    assert (hop, centre) == ("vertical_hop", 3.0)
+    assert times.tolist() == list(range(3 + AFTER + 1))
+    times, hop, centre = animation.moments(at((3.0, "disc_collision"), end=9.5), 1.0)
+    assert (hop, centre) == (None, 0.0)
+    assert times.tolist() == list(range(10))
+    with pytest.raises(ValueError, match=r"rows must last two frames, a time of 1, not 0\.5"):
+        animation.moments(at(end=0.5), 1.0)
+    with pytest.raises(ValueError, match="rows must be those of a trajectory, not none"):
+        animation.animate(SCENE, [], ["a.gif"])
+    with pytest.raises(ValueError, match=r"output must be a \.gif or \.png file, not 'a\.mp4'"):
+        animation.animate(SCENE, [], ["a.gif", "a.mp4"])
+
+
+# What they show ----------------------------------------------------------------------------------
+
+
+def test_discs_stay_in_the_box_and_apart(stage):
+    first, second = (stage.places(disc, stage.times) for disc in (1, 2))
+    edge = np.array([SCENE["width"], SCENE["height"]]) / 2 - SCENE["radius"]
+    assert (np.abs([first, second]) <= edge + 1e-12).all()
+    assert np.hypot(*(first - second).T).min() >= 2 * SCENE["radius"] - 1e-12
+
+
+def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
+    assert stage.hop == "horizontal_hop"
+    assert stage.centre in [row["time"] for row in rows if row["event"] == stage.hop]
+    assert abs(stage.apart([stage.centre])[0]) < 1e-12
+    assert stage.apart([stage.times[0]])[0] * stage.apart([stage.times[-1]])[0] < 0
+    shown = [milliseconds for milliseconds, _ in frames[1]]
+    assert shown == [*([FRAME] * BEFORE), HOP, *([FRAME] * (AFTER - 1)), LAST]
+    orange = np.array([0xE6, 0x9F, 0x00])
+    marked = [k for k, (_, pixels) in enumerate(frames[1]) if (pixels == orange).all(2).any()]
+    assert marked == list(range(BEFORE, BEFORE + MARKED))
+
+
+def test_pixels_are_those_of_the_discs(stage, frames):
+    """Inside the rim of a disc is its colour, but for traces and numbers, and outside it is not."""
+    stage.box.figure.canvas.draw()
+    up = frames[1][0][1].shape[0]
+    angles = np.linspace(0, 2 * np.pi, 36, endpoint=False)
+    around = np.column_stack([np.cos(angles), np.sin(angles)]) * SCENE["radius"]
+    for k in (0, 40, BEFORE, BEFORE + 30):
+        for disc, (face, _) in enumerate(drawing.DISCS, 1):
+            ((x, y),) = stage.places(disc, stage.times[k : k + 1])
+            colour = np.array([int(face[i : i + 2], 16) for i in (1, 3, 5)])
+            for share, least, most in ((0.9, 0.75, 1), (1.1, 0, 0.1)):
+                across, high = stage.box.transData.transform(share * around + (x, y)).T.astype(int)
+                found = frames[1][k][1][up - 1 - high, across]
+                alike = (np.abs(found - colour).sum(axis=1) < 8).mean()
+                assert least <= alike <= most, (k, disc, share)
+
+
+# Files -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("width", "height"), [(3.0, 1.0), (1.0, 1.5), (40.0, 1.0), (1.0, 1.0)], ids=str
+)
+def test_other_boxes(width, height, tmp_path):
+    scene = Scene(width, height, 0.24)
+    found = [dict(zip(COLUMNS, row, strict=True)) for row in trajectory.trajectory(scene, 3)]
+    with style.context():
+        place = {"width": width, "height": height, "radius": 0.24}
+        animation.animate(place, found, [tmp_path / "a.gif"])
+    assert (tmp_path / "a.gif").stat().st_size < 600_000
+
+
+def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
+    table, style_file = tmp_path / "trajectory.csv", tmp_path / "matplotlibrc"
+    tables.write(table, "trajectory", rows)
+    style_file.write_text("font.size: 20\nlines.linewidth: 7\n")
+    outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
+    words = ["--scene", repr(SCENE), "--trajectory", table, "--output", *outputs]
+    run = subprocess.run(
+        [sys.executable, "-m", "twodiscs.cli.animation", *map(str, words)],
+        env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
+        capture_output=True,
+        text=True,
+    )
+    assert (run.returncode, run.stdout + run.stderr) == (0, "")
+    for path in outputs:
+        assert path.read_bytes() == frames[0].with_name(f"a{path.suffix}").read_bytes()
+        assert path.stat().st_size < 600_000
+
+
+def test_mistakes_are_told_in_one_sentence(monkeypatch, capsys):
+    words = ["", "--scene", "{'width': 1}", "--trajectory", "a.csv", "--output", "a.gif"]
+    monkeypatch.setattr(sys, "argv", words)
+    with pytest.raises(SystemExit) as leave:
+        command.arguments.run(command.main)
+    assert leave.value.code == 2
+    said = "error: parameters must be height, radius, width, not width\n"
+    assert capsys.readouterr().err == said

@@ -1,0 +1,132 @@
+"""Scene: what it refuses, and the geometry it derives, against bisection in exact arithmetic."""
+
+import math
+from dataclasses import FrozenInstanceError
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from twodiscs.model.box import fits, largest_radius
+from twodiscs.model.checks import length
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import REGIMES, Scene
+
+BOXES = [(1.5, 1.0), (3.0, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (1.0, 1.7), (1e-6, 1e6)]
+sides = st.floats(-6, 6).map(lambda x: 10**x)
+
+
+def largest_by_bisection(width, height):
+    """The supremum of the radii at which centres in opposite corners are more than 2r apart."""
+    low, high = Fraction(0), Fraction(min(width, height)) / 2
+    for _ in range(70):
+        radius = (low + high) / 2
+        diagonal = (Fraction(width) - 2 * radius) ** 2 + (Fraction(height) - 2 * radius) ** 2
+        low, high = (radius, high) if diagonal > (2 * radius) ** 2 else (low, radius)
+    return float(low)
+
+
+@pytest.mark.parametrize(("width", "height"), BOXES)
+def test_largest_radius_is_where_the_discs_jam(width, height):
+    assert largest_radius(width, height) == pytest.approx(
+        largest_by_bisection(width, height), rel=4 * 2**-52
+    )
+
+
+@given(sides, sides)
+def test_largest_radius_separates_what_fits_from_what_does_not(width, height):
+    largest = largest_radius(width, height)
+    assert largest == pytest.approx(largest_radius(height, width), rel=4 * 2**-52)
+    assert fits(width, height, largest * (1 - 1e-9))
+    assert not fits(width, height, largest * (1 + 1e-9))
+
+
+def test_largest_radius_of_the_papers_box():
+    assert largest_radius(1.5, 1.0) == pytest.approx((2.5 - math.sqrt(3)) / 2, rel=1e-15)
+
+
+def test_a_radius_next_to_the_largest_is_allowed():
+    assert Scene(1.5, 1, largest_radius(1.5, 1) * (1 - 1e-12)).regime == "no-hops"
+    with pytest.raises(ValueError, match=r"radius 0\.5 does not fit.*below 0\.38397459621556"):
+        Scene(1.5, 1, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "radius", "regime", "components"),
+    [
+        (1.5, 1, 0.2, "all-hops", 1),
+        (1.5, 1, 0.25, "vertical-hops", 2),  # zero room is blocked
+        (1.5, 1, 0.3, "vertical-hops", 2),
+        (1.5, 1, 0.375, "no-hops", 4),
+        (1.5, 1, 0.38, "no-hops", 4),
+        (1, 1.5, 0.3, "horizontal-hops", 2),
+        (3, 1, 0.49, "vertical-hops", 2),
+        (1, 1, 0.25, "no-hops", 4),
+    ],
+)
+def test_regimes(width, height, radius, regime, components):
+    scene = Scene(width, height, radius)
+    assert scene.regime == regime
+    assert regime in REGIMES
+    assert scene.ergodic_components == components
+    assert scene.is_possible("vertical_hop") == scene.vertical_hops
+    assert scene.is_possible("horizontal_hop") == scene.horizontal_hops
+    assert all(scene.is_possible(event) for event in EVENTS[2:])
+
+
+def test_derived_lengths():
+    scene = Scene(1.5, 1, 0.25)
+    assert (scene.range_x, scene.range_y, scene.contact_distance) == (1.0, 0.5, 0.5)
+    assert scene.largest_radius == largest_radius(1.5, 1)
+    assert scene.with_radius(0.1) == Scene(1.5, 1, 0.1)
+
+
+def test_a_scene_is_frozen_and_holds_floats():
+    scene = Scene(3, 1, Fraction(1, 4))
+    assert scene == Scene(3.0, 1.0, 0.25)
+    assert type(scene.width) is type(scene.radius) is float
+    with pytest.raises(FrozenInstanceError):
+        scene.width = 2.0
+
+
+BAD_LENGTHS = [
+    0,
+    -1,
+    -0.0,
+    math.nan,
+    math.inf,
+    "1",
+    b"1",
+    True,
+    None,
+    1j,
+    [1],
+    1e61,
+    1e-61,
+    10**400,
+]
+
+
+@pytest.mark.parametrize("bad", BAD_LENGTHS)
+@pytest.mark.parametrize("name", ["width", "height", "radius"])
+def test_what_is_no_length_is_refused_by_name(name, bad):
+    lengths = {"width": 1.5, "height": 1.0, "radius": 0.2} | {name: bad}
+    with pytest.raises(ValueError, match=rf"^{name} must "):
+        Scene(**lengths)
+
+
+@pytest.mark.parametrize("bad", BAD_LENGTHS)
+def test_functions_refuse_what_is_no_length(bad):
+    with pytest.raises(ValueError, match="must"):
+        largest_radius(bad, 1)
+    with pytest.raises(ValueError, match="must"):
+        largest_radius(1, bad)
+    with pytest.raises(ValueError, match=r"^side must"):
+        length("side", bad)
+
+
+@pytest.mark.parametrize("bad", ["hop", "", None, 3])
+def test_an_unknown_event_is_refused(bad):
+    with pytest.raises(ValueError, match="event must be one of vertical_hop"):
+        Scene(1.5, 1, 0.2).is_possible(bad)

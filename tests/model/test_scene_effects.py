@@ -1,0 +1,176 @@
+"""What scenes with effects say of themselves, against a configuration space made of cells.
+
+Centres are put on a grid, cells that overlap or lack energy are thrown out, and neighbours are
+joined. The scenes are some way off every threshold, for a grid to see it.
+"""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.scene import ENERGY, Scene
+
+SCENES = [
+    Scene(1.5, 1.0, 0.2, radius_ratio=1.3),
+    Scene(1.5, 1.0, 0.2, radius_ratio=1.9),
+    Scene(1.0, 1.0, 0.25, radius_ratio=1.25),
+    Scene(1.5, 0.66, 0.29, radius_ratio=0.2),
+    Scene(1.5, 0.66, 0.058, radius_ratio=5.0),
+    Scene(1.0, 1.0, 0.4, radius_ratio=0.3),
+    Scene(1.0, 0.9, 0.4, radius_ratio=0.35),
+    Scene(1.5, 1.0, 0.3, periodic="x"),
+    Scene(1.0, 1.0, 0.3, periodic="x"),
+    Scene(1.5, 1.0, 0.3, periodic="y"),
+    Scene(0.6, 1.0, 0.2, periodic="y"),
+    Scene(1.5, 1.0, 0.3, periodic="xy"),
+    Scene(1.0, 1.0, 0.32, periodic="xy"),
+    Scene(1.5, 1.0, 0.15, field=2.0),
+    Scene(1.5, 1.0, 0.15, field=0.8),
+    Scene(0.7, 1.0, 0.2, field=1.0),
+    Scene(0.7, 1.5, 0.2, field=0.4),
+    Scene(1.5, 1.0, 0.15, field=0.9, mass_ratio=4.0, radius_ratio=1.5),
+    Scene(1.5, 1.0, 0.3, field=1.2, mass_ratio=0.2, radius_ratio=0.6),
+    Scene(0.9, 1.5, 0.2, field=0.7, periodic="x"),
+    Scene(0.7, 1.5, 0.2, field=0.4, periodic="x"),
+]
+
+#: Cells along each coordinate of each disc.
+CELLS = 24
+
+
+def grid(scene, axis, disc, cells=CELLS):
+    """Return the coordinates of a disc along an axis, from wall to wall or all the way round."""
+    side, r = scene.side(axis), scene.radii[disc]
+    if axis in scene.periodic:
+        return side * np.arange(cells) / cells
+    return np.linspace(r, side - r, cells)
+
+
+def allowed(scene, x1, y1, x2, y2):
+    """Say of centres, arrays that broadcast, whether the discs are apart and have energy."""
+    square = 0.0
+    for axis, gap in (("x", x1 - x2), ("y", y1 - y2)):
+        if axis in scene.periodic:
+            gap = gap - scene.side(axis) * np.round(gap / scene.side(axis))
+        square = square + gap**2
+    (r1, r2), (m1, m2) = scene.radii, scene.masses
+    potential = scene.field * (m1 * (y1 - r1) + m2 * (y2 - r2))
+    return (square >= scene.contact_distance**2 * (1 - 1e-12)) & (potential < ENERGY)
+
+
+def configurations(scene):
+    """Return the cells that are allowed, along x1, y1, x2, y2."""
+    centres = [grid(scene, axis, disc) for disc in (0, 1) for axis in "xy"]
+    return allowed(scene, *np.meshgrid(*centres, indexing="ij", sparse=True))
+
+
+def components(scene, open_cells):
+    """Return how many disjoint parts the cells make."""
+    number = np.arange(open_cells.size).reshape(open_cells.shape)
+    ends = []
+    for direction, axis in enumerate("xyxy"):
+        count = CELLS if axis in scene.periodic else CELLS - 1
+        here = np.take(number, range(count), direction)
+        there = np.take(number, range(1, count + 1), direction, mode="wrap")
+        both = open_cells.flat[here] & open_cells.flat[there]
+        ends.append((here[both], there[both]))
+    rows, columns = (np.concatenate(part) for part in zip(*ends, strict=True))
+    links = coo_array((np.ones(rows.size, bool), (rows, columns)), shape=(number.size,) * 2)
+    _, label = connected_components(links, directed=False)
+    sizes = np.bincount(label[open_cells.ravel()])
+    return np.count_nonzero(sizes > 0.001 * open_cells.sum())
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_components(scene):
+    """The cells fall into as many parts as the scene says, with a hop where it says so."""
+    open_cells = configurations(scene)
+    assert components(scene, open_cells) == scene.ergodic_components
+    for hop in HOPS:
+        axis = AXIS[hop]
+        if axis in scene.periodic:
+            assert not scene.is_possible(hop)
+            continue
+        other = "x" if axis == "y" else "y"
+        # Both centres at the same place along the axis of the hop.
+        level = np.linspace(max(scene.radii), scene.side(axis) - max(scene.radii), 40)
+        centres = dict.fromkeys((axis + "1", axis + "2"), level[:, None, None])
+        centres[other + "1"] = grid(scene, other, 0, 80)[None, :, None]
+        centres[other + "2"] = grid(scene, other, 1, 80)[None, None, :]
+        assert np.any(allowed(scene, **centres)) == scene.is_possible(hop)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_confined(scene):
+    """Disc 1 reaches a far wall from the other side of disc 2 unless the scene says it is confined.
+
+    Where the hop is open all starts get there.
+    """
+    for axis, confined in zip("xy", scene.confined, strict=True):
+        if axis in scene.periodic:
+            assert not confined
+            continue
+        other = "x" if axis == "y" else "y"
+        wall = scene.side(axis) - scene.radii[0]
+        beyond = grid(scene, axis, 1, 200)
+        centres = {
+            axis + "1": wall,
+            axis + "2": beyond[beyond > wall, None, None],
+            other + "1": grid(scene, other, 0, 80)[None, :, None],
+            other + "2": grid(scene, other, 1, 80)[None, None, :],
+        }
+        behind = bool(np.any(allowed(scene, **centres)))
+        hop = {"x": scene.horizontal_hops, "y": scene.vertical_hops}[axis]
+        assert confined == (not hop and not behind)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_walls_that_are_reached(scene):
+    """Disc 1 reaches a wall, and anything a wall, where the scene says so."""
+    centres = {
+        f"{axis}{disc + 1}": grid(scene, axis, disc, 40) for axis, disc in product("xy", (0, 1))
+    }
+    for event, axis in (("right_wall", "x"), ("top_wall", "y")):
+        held = centres | {axis + "1": centres[axis + "1"][-1:]}
+        mesh = np.meshgrid(*held.values(), indexing="ij", sparse=True)
+        found = np.any(allowed(scene, **dict(zip(held, mesh, strict=True))))
+        assert (found and axis in scene.walled) == scene.is_possible(event)
+
+
+@given(
+    st.sampled_from(["", "x", "y", "xy"]),
+    st.floats(0.3, 3.0),
+    st.floats(0.2, 5.0),
+    st.none() | st.floats(0.3, 3.0),
+)
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_largest_radius(periodic, width, ratio, depth):
+    """Discs fit below the largest radius and not above it."""
+    scene = Scene(width, 1.0, 1e-6, depth, radius_ratio=ratio, periodic=periodic)
+    largest = scene.largest_radius
+    assert scene.with_radius(largest * (1 - 1e-12)).largest_radius == largest
+    with pytest.raises(ValueError, match="does not fit"):
+        scene.with_radius(largest * (1 + 1e-12))
+
+
+@pytest.mark.parametrize("width", [0.6, 0.7, 0.79, 1.5])
+def test_strongest_field(width):
+    """A field is too strong once the energy does not lift one disc onto the other."""
+    scene = Scene(width, 1.5, 0.2)
+    # The higher disc touches the lower one, at the bottom, or lies beside it.
+    apart = grid(scene, "x", 0)[:, None] - grid(scene, "x", 1)[None, :]
+    lowest = np.min(np.sqrt(np.maximum(scene.contact_distance**2 - apart**2, 0.0)))
+    if lowest == 0:
+        assert Scene(width, 1.5, 0.2, field=1e3).vertical_hops
+        return
+    assert Scene(width, 1.5, 0.2, field=0.999 * ENERGY / lowest).ergodic_components == 4
+    with pytest.raises(ValueError, match="too strong"):
+        Scene(width, 1.5, 0.2, field=1.001 * ENERGY / lowest)
+    with pytest.raises(ValueError, match="pass each other"):
+        Scene(width, 1.5, 0.2, field=0.1, mass_ratio=2.0)

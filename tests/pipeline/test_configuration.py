@@ -1,0 +1,753 @@
+"""The configuration: what it yields, what each job depends on, one sentence for each mistake."""
+
+import math
+import re
+import subprocess
+import sys
+from copy import deepcopy
+from itertools import pairwise
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from snakemake.utils import update_config
+
+from twodiscs.model import checks, radii
+from twodiscs.model.box import largest_radius
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.pipeline.configuration import load, request, schema
+
+ROOT = Path(__file__).resolve().parents[1]
+PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
+
+
+def one(**keys):
+    """The only scene of a configuration: a 1.5 × 1 box with these keys."""
+    (request,) = load.load({"scenes": [PLAIN["scenes"][0] | keys]}).scenes
+    return request
+
+
+# What comes with the repository
+
+
+def test_the_default_configuration():
+    configuration = load.load(load.read(ROOT / "config/config.yaml"))
+    assert configuration.results == "results"
+    assert [request.name for request in configuration.scenes] == ["paper", "long"]
+    paper, long = configuration.scenes
+    assert (paper.width, paper.height) == (1.5, 1.0)
+    assert len(paper.radii) >= 48
+    assert paper.radii[0] == 0.01
+    assert {0.05, 0.1, 0.2, 0.24, 0.3, 0.38} <= set(paper.radii)
+    assert not {0.25, 0.375, largest_radius(1.5, 1)} & set(paper.radii)
+    assert paper.event_budget == 2 * 10**9
+    assert paper.accuracy == dict.fromkeys(EVENTS, 3e-4)
+    assert (long.width, long.height) == (3.0, 1.0)
+    assert len(long.radii) < 20
+    assert configuration.scene("long") is long
+    with pytest.raises(ValueError, match="name must be one of paper, long, not 'short'"):
+        configuration.scene("short")
+
+
+def test_the_draft_is_a_quick_look_at_the_same_scenes():
+    # As --configfile does: the draft's lists replace, its blocks are merged.
+    merged = load.read(ROOT / "config/config.yaml")
+    update_config(merged, load.read(ROOT / "config/draft.yaml"))
+    draft = load.load(merged)
+    full = load.load(load.read(ROOT / "config/config.yaml"))
+    assert draft.results == "results/draft"
+    assert draft.seed == full.seed
+    for quick, slow in zip(draft.scenes, full.scenes, strict=True):
+        assert (quick.name, quick.width, quick.height) == (slow.name, slow.width, slow.height)
+        assert quick.watch.quantities == slow.watch.quantities
+        assert len(quick.radii) <= 10
+        assert quick.accuracy == dict.fromkeys(EVENTS, 1e-2)
+
+
+def test_the_page_about_the_configuration_is_up_to_date():
+    page = (ROOT / "config/README.md").read_text(encoding="utf-8")
+    assert page == schema.document(), "python -m twodiscs.config > config/README.md"
+
+
+def test_the_module_prints_that_page():
+    command = [sys.executable, "-m", "twodiscs.config"]
+    assert subprocess.run(command, capture_output=True, check=True).stdout.decode() == (
+        schema.document()
+    )
+
+
+# The schema
+
+
+def keys_of(node, path=""):
+    for name, child in node.get("properties", {}).items():
+        yield f"{path}.{name}", child, name in node.get("required", [])
+        yield from keys_of(child, f"{path}.{name}")
+        yield from keys_of(child.get("items", {}), f"{path}.{name}[]")
+
+
+@pytest.mark.parametrize(("path", "node", "required"), list(keys_of(schema.schema())))
+def test_every_key_is_documented(path, node, required):
+    assert node["description"].endswith(".")
+    assert node["allowed"]
+    assert required or "default" in node or "computed" in node
+    if "number" in node.get("type", []) and 1 not in map(node.get, ("maximum", "exclusiveMaximum")):
+        assert node["unit"]
+
+
+def test_the_schema_is_one_and_agrees_with_the_code():
+    jsonschema.Draft202012Validator.check_schema(schema.schema())
+    definitions = schema.schema()["$defs"]
+    assert tuple(definitions["events"]["items"]["enum"]) == EVENTS
+    assert definitions["length"]["minimum"] == checks.SHORTEST
+    assert definitions["length"]["maximum"] == checks.LONGEST
+    properties = schema.schema()["properties"]["scenes"]["items"]["properties"]
+    assert tuple(properties["accuracy"]["properties"]) == ("default", *EVENTS)
+    assert tuple(properties["watch"]["properties"]) == tuple(request.Watch.__dataclass_fields__)
+    assert "|".join(load.PRESETS) in definitions["precision"]["pattern"]
+
+
+def test_reading_a_configuration_needs_no_numerical_package():
+    code = (
+        "import sys; from twodiscs import config; config.load(config.read('config/config.yaml'));"
+        "print({'numpy', 'pandas', 'numba', 'scipy', 'matplotlib'} & set(sys.modules))"
+    )
+    command = [sys.executable, "-c", code]
+    shown = subprocess.run(command, capture_output=True, check=True, cwd=ROOT, text=True).stdout
+    assert shown.strip() == "set()"
+
+
+# Defaults and forms
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(
+    "box", [(1.5, 1), (3, 1), (1, 1), (2, 1), (1, 3), (1, 2), (7, 16), (1, 500)]
+)
+def test_a_name_and_a_box_are_enough(box, size):
+    width, height = box[0] * size, box[1] * size
+    request = one(box={"width": width, "height": height})
+    assert len(request.radii) == 24
+    assert request.watch.quantities == {
+        "volume",
+        "hop_histogram",
+        "trajectory",
+        *(f"{event}_area" for event in EVENTS),
+        *(f"{event}_time" for event in EVENTS),
+    }
+    assert len(request.watch.hop_histogram) == 4
+    assert all(Scene(width, height, r).vertical_hops for r in request.watch.hop_histogram)
+    assert Scene(width, height, request.watch.trajectory).regime == "all-hops"
+    assert request.accuracy == dict.fromkeys(EVENTS, 3e-4)
+    assert request.event_budget == 2 * 10**9
+
+
+def test_a_watch_block_is_everything_that_is_watched():
+    request = one(watch={"mean_times": ["top_wall", "right_wall"]})
+    assert request.watch == request.Watch(False, (), ("right_wall", "top_wall"), (), None)
+    assert request.watch.quantities == {"right_wall_time", "top_wall_time"}
+    assert request.monte_carlo_keys == request.intervals_keys == ()
+    assert request.dynamics_keys == request.keys
+    for parameters in (
+        request.scene_parameters(),
+        request.theory_parameters(),
+        request.dynamics_parameters(request.keys[0]),
+    ):
+        assert "hop" not in repr(parameters)
+    with pytest.raises(ValueError, match="scene one watches no trajectory"):
+        request.trajectory_parameters()
+    with pytest.raises(ValueError, match=r"key must be one of none, not '0\.01'"):
+        request.monte_carlo_parameters("0.01")
+
+
+def test_what_is_false_is_off():
+    watch = {"volume": True, "areas": False, "hop_histogram": False, "trajectory": False}
+    request = one(watch=watch)
+    assert request.watch.quantities == {"volume"}
+    assert request.dynamics_keys == ()
+    assert request.monte_carlo_parameters("0.01")["shell"] is None
+
+
+def test_hop_histograms_have_three_forms():
+    assert one(watch={"hop_histogram": True}).watch.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
+    listed = one(watch={"hop_histogram": [0.2, 0.1]})
+    assert listed.watch.hop_histogram == (0.1, 0.2)
+    assert (listed.histogram_event, listed.histogram_samples) == ("vertical_hop", 10**6)
+    block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
+    assert block.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
+    assert block.intervals_parameters("0.025")["event"] == "horizontal_hop"
+    assert block.intervals_parameters("0.025")["intervals"] == 10**4
+
+
+def test_accuracy_has_three_forms():
+    assert one(accuracy="1e-3").accuracy == dict.fromkeys(EVENTS, 1e-3)
+    assert one(accuracy="reference").accuracy == dict.fromkeys(EVENTS, 1e-4)
+    mixed = one(accuracy={"default": "draft", "top_wall": 0.5}).accuracy
+    assert mixed == dict.fromkeys(EVENTS, 1e-2) | {"top_wall": 0.5}
+    assert one(accuracy={"top_wall": 1}).accuracy["any_wall"] == 3e-4
+
+
+def test_numbers_have_one_form():
+    forms = [
+        {"radii": [0.2, 0.1], "event_budget": "2e6", "accuracy": "1e-3"},
+        {"radii": ["2e-1", 0.1], "event_budget": 2e6, "accuracy": 0.001},
+        {"radii": [0.1, "0.2"], "event_budget": 2000000, "accuracy": "1.0E-3"},
+    ]
+    boxes = [{"width": 1.5, "height": 1}, {"width": "1.5", "height": 1.0}]
+    requests = [one(box=box, **form) for box in boxes for form in forms]
+    assert len({repr(request) for request in requests}) == 1
+    assert requests[0].keys == ("0.1", "0.2")
+    assert type(requests[0].height) is float
+    assert type(requests[0].event_budget) is int
+
+
+def test_loading_leaves_the_mapping_as_it_was():
+    mapping = deepcopy(PLAIN)
+    load.load(mapping)
+    assert mapping == PLAIN
+
+
+def test_radii_at_the_limits_are_allowed():
+    close = largest_radius(1.5, 1) * (1 - 1e-9)
+    assert one(radii=[close, 0.25, 0.375]).radii == (0.25, 0.375, close)
+
+
+def test_included_radii_do_not_move_the_others():
+    block = {"smallest": 0.01, "count": 12}
+    plain = one(radii=block)
+    more = one(radii=block | {"include": [0.123, plain.radii[3]]})
+    assert more.radii == tuple(sorted({*plain.radii, 0.123}))
+
+
+# What a job depends on
+
+
+def jobs(request):
+    """The parameters of every job of a scene, by job."""
+    every = {
+        ("theory",): request.theory_parameters(),
+        ("scene",): request.scene_parameters(),
+        ("trajectory",): request.trajectory_parameters(),
+    }
+    for method in ("monte_carlo", "dynamics", "intervals"):
+        for key in getattr(request, f"{method}_keys"):
+            every[method, key] = getattr(request, f"{method}_parameters")(key)
+    return every
+
+
+BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(request.Watch.__dataclass_fields__, True)}
+
+
+def edited(**keys):
+    return jobs(one(**{**BASE, **keys}))
+
+
+@pytest.mark.parametrize(
+    ("edit", "concerned"),
+    [
+        ({"accuracy": 1e-2}, {"dynamics"}),
+        ({"event_budget": 10}, {"dynamics"}),
+        ({"monte_carlo": {"samples": 10}}, {"monte_carlo"}),
+        ({"monte_carlo": {"shell": 0.1}}, {"monte_carlo"}),
+        ({"watch": BASE["watch"] | {"mean_times": ["any_wall"]}}, {"dynamics"}),
+        ({"watch": BASE["watch"] | {"areas": ["any_wall"]}}, {"monte_carlo"}),
+        ({"watch": BASE["watch"] | {"volume": False}}, {"monte_carlo"}),
+        ({"watch": BASE["watch"] | {"trajectory": 0.2}}, {"trajectory"}),
+        ({"watch": BASE["watch"] | {"hop_histogram": {"intervals": 9}}}, {"intervals"}),
+    ],
+)
+def test_an_edit_concerns_the_jobs_that_depend_on_it(edit, concerned):
+    before, after = edited(), edited(**edit)
+    assert before.keys() == after.keys()
+    assert {job[0] for job in before if repr(before[job]) != repr(after[job])} == concerned
+
+
+def test_another_radius_is_one_more_job_of_each_method():
+    before, after = edited(), edited(radii=[0.1, 0.15, 0.2])
+    assert after.keys() - before.keys() == {("monte_carlo", "0.15"), ("dynamics", "0.15")}
+    changed = {job[0] for job in before if repr(before[job]) != repr(after[job])}
+    assert changed == {"theory", "scene"}
+
+
+def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
+    every = []
+    for seed in (1, 2):
+        mapping = {"seed": seed, "scenes": [PLAIN["scenes"][0] | BASE | {"name": n} for n in "ab"]}
+        for request in load.load(mapping).scenes:
+            every += [p["seed"] for job, p in jobs(request).items() if "seed" in p]
+    assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
+    assert one().trajectory_parameters()["seed"] == radii.stream_seed(
+        1908, "one", "trajectory", "0.24"
+    )
+
+
+def is_plain_and_sorted(value):
+    if isinstance(value, dict):
+        return list(value) == sorted(value) and all(map(is_plain_and_sorted, value.values()))
+    if type(value) is list:
+        return all(map(is_plain_and_sorted, value))
+    return value is None or type(value) in (int, float, bool, str)
+
+
+def test_parameters_are_plain_sorted_and_complete():
+    for job, parameters in edited().items():
+        assert is_plain_and_sorted(parameters), job
+        expected = {"height", "width", "radii" if job[0] in ("theory", "scene") else "radius"}
+        assert expected <= parameters.keys()
+        assert ("seed" in parameters) == (job[0] not in ("theory", "scene"))
+    # theory.csv also holds the radii of the histograms, whose exact means are compared.
+    assert jobs(one(**BASE))["theory",]["radii"] == [0.0375, 0.1, 0.112, 0.188, 0.2, 0.262]
+
+
+# Effects
+
+WALLS = ("right_wall", "top_wall", "any_wall")
+
+#: What a scene may ask for, the events that have a place in it, and its hop histograms' radii.
+CALLS = [
+    ({"radius_ratio": 0.5, "mass_ratio": 2}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
+    ({"periodic": ["x"]}, ("vertical_hop", "disc_collision", "top_wall", "any_wall"),
+     (0.0375, 0.112, 0.188, 0.262)),
+    ({"periodic": ["y"]}, ("horizontal_hop", "disc_collision", "right_wall", "any_wall"),
+     (0.025, 0.075, 0.125, 0.175)),
+    ({"periodic": ["y", "x"]}, ("disc_collision",), ()),
+    ({"field": 1}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
+    ({"moment_of_inertia": 0.5}, EVENTS, ()),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("effects", "events", "histograms"), CALLS)
+def test_everything_is_what_has_a_place(effects, events, histograms):
+    request = one(effects=effects)
+    assert request.watch.areas == request.watch.mean_times == events
+    assert request.watch.hop_histogram == histograms
+    assert request.histogram_event == next((e for e in events if e.endswith("hop")), None)
+    assert (request.watch.trajectory is None) == (effects == {"periodic": ["y", "x"]})
+    named = {name: "".join(sorted(v)) if isinstance(v, list) else v for name, v in effects.items()}
+    for radius in request.radii + request.watch.hop_histogram:
+        assert request.scene(radius) == Scene(1.5, 1, radius, **named)
+    assert request.scene(0.1).effects == request.effects
+    asked = one(effects=effects, watch={"areas": True, "mean_times": True})
+    assert asked.watch.areas == asked.watch.mean_times == events
+
+
+def test_default_radii_keep_to_what_there_is():
+    """Equal steps to 0.9 of the largest; thresholds of hops follow from the energy too."""
+    channel = one(effects={"periodic": ["x"]}, radii={"smallest": 0.05, "count": 5})
+    largest = Scene(1.5, 1, 0.1, periodic="x").largest_radius
+    steps = [b - a for a, b in pairwise(channel.radii)]
+    assert channel.radii[0] == 0.05
+    assert channel.radii[-1] == pytest.approx(0.9 * largest, rel=0.01)
+    assert max(steps) == pytest.approx(min(steps), rel=0.1)
+    # With g = 2 two discs one above the other have the energy up to r = 1/(4g).
+    strong = one(effects={"field": 2}, watch={"hop_histogram": {"event": "horizontal_hop"}})
+    assert strong.watch.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
+    assert one(effects={"field": 2}).watch.trajectory == 0.0625
+    # The larger disc has a hundredth of the side.
+    assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
+    assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
+    include = one(effects={"field": 1}, radii={"count": 4, "include": [0.123]}).radii
+    assert len(include) == 5
+
+
+def test_balls_are_discs_with_a_depth():
+    request = one(box={"width": 1.5, "height": 1, "depth": "1.2"}, effects={"periodic": ["z"]})
+    assert request.effects == {"depth": 1.2, "periodic": "z"}
+    assert request.scene(0.1) == Scene(1.5, 1, 0.1, depth=1.2, periodic="z")
+    assert request.watch.mean_times == EVENTS
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [{}, {"radius_ratio": 1, "mass_ratio": "1.0", "periodic": [], "field": 0}, {"field": 0.0}],
+)
+def test_effects_that_are_absent_leave_no_trace(effects):
+    assert one(effects=effects) == one()
+    assert one(effects=effects).effects == {}
+
+
+def test_parameters_say_the_effects_and_nothing_else():
+    plain = edited()
+    watch = BASE["watch"] | {"hop_histogram": [0.1], "trajectory": 0.1}
+    field = jobs(one(**BASE | {"watch": watch}, effects={"field": 1, "mass_ratio": 2}))
+    named = {"field": 1.0, "mass_ratio": 2.0}
+    assert all(parameters.pop("effects") == named for parameters in field.values())
+    assert "effects" not in repr(plain)
+    assert repr(field) == repr(jobs(one(**BASE | {"watch": watch})))
+    rough = jobs(one(effects={"moment_of_inertia": 0.4}, radii=[0.1]))
+    assert all(map(is_plain_and_sorted, rough.values()))
+    assert rough["dynamics", "0.1"]["effects"] == {"moment_of_inertia": 0.4}
+    torus = one(effects={"periodic": ["x", "y"]}, radii=[0.1])
+    assert torus.dynamics_parameters("0.1")["effects"] == {"periodic": "xy"}
+    assert torus.box_parameters() == {"effects": {"periodic": "xy"}, "height": 1.0, "width": 1.5}
+
+
+def test_kernels_depend_on_nothing_that_their_jobs_do_not_depend_on():
+    request = one(effects={"periodic": ["y"]}, radii=[0.1])
+    for method in radii.METHODS[:3]:
+        kernels = request.kernels_parameters(method)
+        (key, *_) = getattr(request, f"{method}_keys")
+        job = getattr(request, f"{method}_parameters")(key)
+        assert is_plain_and_sorted(kernels)
+        if method == "dynamics":
+            assert set(kernels.pop("mean_times")) == set(job["accuracy"])
+        assert all(job[name] == value for name, value in kernels.items())
+
+
+def test_parameters_of_plain_scenes_are_as_they_ever_were():
+    """Literally, for another spelling would rerun what is built."""
+    watch = BASE["watch"] | {"hop_histogram": [0.2], "mean_times": ["top_wall"]}
+    request = one(radii=[0.1], watch=watch, accuracy=0.01, event_budget=9)
+    assert repr(jobs(request)) == repr(PLAIN_JOBS)
+
+
+PLAIN_JOBS = {
+    ("theory",): {"height": 1.0, "radii": [0.1, 0.2], "width": 1.5},
+    ("scene",): {"height": 1.0, "radii": [0.1], "width": 1.5},
+    ("trajectory",): {"height": 1.0, "radius": 0.24, "seed": 271026068793761292, "width": 1.5},
+    ("monte_carlo", "0.1"): {
+        "areas": list(EVENTS), "height": 1.0, "radius": 0.1, "samples": 100000000,
+        "seed": 2870083659485779642, "shell": 0.02, "volume": True, "width": 1.5,
+    },
+    ("dynamics", "0.1"): {
+        "accuracy": {"top_wall": 0.01}, "event_budget": 9, "height": 1.0, "radius": 0.1,
+        "seed": 7773604374841850693, "width": 1.5,
+    },
+    ("intervals", "0.2"): {
+        "event": "vertical_hop", "height": 1.0, "intervals": 1000000, "radius": 0.2,
+        "seed": 8420814236072247529, "width": 1.5,
+    },
+}  # fmt: skip
+
+
+# What is built once
+
+
+def test_what_is_built_once():
+    known = schema.schema()["properties"]["shared"]["items"]["enum"]
+    assert load.load(PLAIN).shared == tuple(known)
+    assert load.load(PLAIN | {"shared": []}).shared == ()
+    assert load.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
+    # The manuscript brings along what it reads.
+    paper = load.load(PLAIN | {"shared": ["paper"]}).shared
+    assert paper == (
+        *("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds"),
+        *("effects", "paper"),
+    )  # fmt: skip
+    assert {*load.ABOUT_PLAIN, *load.READ_BY_PAPER} < set(known)
+
+
+def test_what_is_about_a_plain_scene_needs_one():
+    plain = PLAIN["scenes"][0] | {"name": "plain"}
+    field = PLAIN["scenes"][0] | {"name": "field", "effects": {"field": 1}}
+    assert load.load({"scenes": [field, plain]}).main.name == "plain"
+    alone = load.load({"scenes": [field]})
+    assert alone.main is None
+    assert not {*load.ABOUT_PLAIN} & {*alone.shared}
+    with pytest.raises(load.ConfigError, match="shared must leave out 'tails' where every scene"):
+        load.load({"scenes": [field], "shared": ["report", "tails"]})
+
+
+# Mistakes: a whole file, a line at its top or in its only scene, and the sentence that it gets.
+# "…" stands for any text.
+
+FILES = {
+    "": ": must hold a block of the keys results, seed, accuracy_cost, shared, scenes, not empty",
+    "- 1": ": must hold a block of the keys results, seed, accuracy_cost, shared, scenes, not [1]",
+    "seed: 1\nseed: 2": ", line 2: the key 'seed' is given a second time",
+    "scenes:\n- box: {width: 1, height: 1, width: 2}": ", line 2: the key 'width' is given a sec…",
+    "results: here\nscenes: [": ", line 2: …",
+    "\tscenes: 1": ", line 1: found character '\\t' that cannot start any token",
+    "? [a]\n: 1": ", line 1: found unhashable key",
+    "a: \x07": ": unacceptable character …",
+}
+
+LINES = {
+    "results: here": "the configuration needs the key 'scenes'",
+    "scenes: []": "scenes must be a non-empty list of scenes, not []",
+    "scenes:": "scenes must be a non-empty list of scenes, not empty",
+    "scenes: {name: a}": "scenes must be a non-empty list of scenes, not {'name': 'a'}",
+    "scenes: [a]": "scenes[0] must be a block of keys, at least name and box, not 'a'",
+    "scenes: [{name: a}]": "scenes[0] needs the key 'box'",
+    "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
+    "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
+    "zz: 1": (
+        "the configuration has an unknown key 'zz'; its keys are results, seed, accuracy_cost, "
+        "shared, scenes"
+    ),
+    "1: 2": "the configuration has an unknown key 1; …",
+    "seed: -1": "seed must be an integer from 0 to 2^63 - 1, not -1",
+    "seed: 1.5": "seed must be an integer …, not 1.5",
+    "seed: true": "seed must be an integer …, not True",
+    "seed: one": "seed must be an integer …, not 'one'",
+    "seed: .nan": "seed must be an integer …, not nan",
+    "seed: 1e19": "seed must be an integer …, not 10000000000000000000",
+    "results: my results": "results must be a path of letters…, not 'my results'",
+    "results: ../elsewhere": "results must be a path …, not '../elsewhere'",
+    "results: src": "results must be a path … outside the folders of the sources, not 'src'",
+    "results: config/x": "results must be a path …, not 'config/x'",
+    "results: '{scene}'": "results must be a path …, not '{scene}'",
+    "results: .": "results must be a path …, not '.'",
+    "results: ''": "results must be a path …, not ''",
+    "results: 7": "results must be a path …, not 7",
+    "results:": "results must be a path …, not empty",
+    "shared: report": "shared must be a list of different names among errata, …, not 'report'",
+    "shared: [paper, paper]": "shared must be a list of different names …, not ['paper', 'paper']",
+    "shared: [papers]": "shared[0] must be one of …, not 'papers'; did you mean 'paper'?",
+    "shared:": "shared must be a list of different names …, not empty",
+}
+
+SCENES = {
+    "name: a/b": ".name must be a name of small letters…, not 'a/b'",
+    "name: a b": ".name must be a name …, not 'a b'",
+    "name: Paper": ".name must be a name …, not 'Paper'",
+    "name: _a": ".name must be a name …, not '_a'",
+    "name: ''": ".name must be a name …, not ''",
+    "name: ..": ".name must be a name …, not '..'",
+    'name: "a\\n"': ".name must be a name …, not 'a\\n'",
+    "name: 2024": ".name must be a name …, not 2024",
+    "name: [a]": ".name must be a name …, not ['a']",
+    "name: figures": ".name must be … none of benchmarks, …, not 'figures'",
+    "name: logs": ".name must be a name …, not 'logs'",
+    "name: benchmarks": ".name must be a name …, not 'benchmarks'",
+    "name: draft": ".name must be a name …, not 'draft'",
+    "box: [1.5, 1]": ".box must be a block {width: …, height: …}, …, not [1.5, 1]",
+    "box: {width: 1.5}": ".box needs the key 'height'",
+    "box: {width: 1.5, heigth: 1}": ".box has an unknown key 'heigth'; did you mean 'height'?",
+    "box: {width: -1.5, height: 1}": ".box.width must be a positive length …, not -1.5",
+    "box: {width: 0, height: 1}": ".box.width must be a positive length …, not 0.0",
+    "box: {width: 1.5, height: .nan}": ".box.height must be a positive length …, not nan",
+    "box: {width: .inf, height: 1}": ".box.width must be a positive length …, not inf",
+    "box: {width: 1e-70, height: 1}": ".box.width must be … between 1e-60 and 1e60, not 1e-70",
+    "box: {width: 1.5, height: tall}": ".box.height must be a positive length …, not 'tall'",
+    "box: {width: 1.5, height: true}": ".box.height must be a positive length …, not True",
+    "box: {width: 1.5, height: }": ".box.height must be a positive length …, not empty",
+    "radii: []": ".radii must be a non-empty list of radii, or a block …, not []",
+    "radii: 0.2": ".radii must be a non-empty list of radii, or a block …, not 0.2",
+    "radii: [0.5]": ".radii: radius 0.5 does not fit: … need a radius below 0.38397459621556…",
+    "radii: [0.1, -0.2]": ".radii[1] must be a positive length …, not -0.2",
+    "radii: [.nan]": ".radii[0] must be a positive length …, not nan",
+    "radii: [yes]": ".radii[0] must be a positive length …, not True",
+    "radii: [0.1, 0.2, 1e-1]": ".radii must hold every radius once, but holds 0.1 twice",
+    "radius: [0.1]": " has an unknown key 'radius'; did you mean 'radii'?",
+    "radii: {count: 0}": ".radii.count must be an integer from 1 to 1000, not 0",
+    "radii: {count: 1.5}": ".radii.count must be an integer from 1 to 1000, not 1.5",
+    "radii: {smallest: 0.4}": ".radii.smallest: radius 0.4 does not fit: …",
+    "radii: {smallest: 0.25}": ".radii: smallest must not be 0.25, where a hop becomes blocked",
+    "radii: {step: 1}": ".radii has an unknown key 'step'; its keys are smallest, count, include",
+    "radii: {include: [0.7]}": ".radii.include: radius 0.7 does not fit: …",
+    "radii: {include: [0.1, 0.1]}": ".radii.include must hold every radius once, but holds 0.1…",
+    "watch:": ".watch must be a block of the keys volume, …, trajectory, not empty",
+    "watch: {}": ".watch must ask for at least one of volume, …, not for nothing",
+    "watch: {volume: false}": ".watch must ask for at least one of volume, …, not for nothing",
+    "watch: [volume]": ".watch must be a block of the keys volume, …, not ['volume']",
+    "watch: {volumes: true}": ".watch has an unknown key 'volumes'; did you mean 'volume'?",
+    "watch: {volume: 1}": ".watch.volume must be true or false, not 1",
+    "watch: {areas: []}": ".watch.areas must be true, false, or a non-empty list of …, not []",
+    "watch: {areas: [wall]}": ".watch.areas[0] must be one of …, not 'wall'; did you mean '…wall'?",
+    "watch: {areas: [any_wall, any_wall]}": ".watch.areas must be … list of different events, …",
+    "watch: {mean_times: any_wall}": ".watch.mean_times must be true, …, not 'any_wall'",
+    "watch: {mean_times: [4]}": ".watch.mean_times[0] must be one of vertical_hop, …, not 4",
+    "watch: {hop_histogram: [0.1, 0.38]}": (
+        ".watch.hop_histogram must keep to radii below 0.375, where vertical_hop is possible, "
+        "not 0.38"
+    ),
+    "watch: {hop_histogram: {event: horizontal_hop, radii: [0.25]}}": (
+        ".watch.hop_histogram must keep to radii below 0.25, where horizontal_hop is possible, "
+        "not 0.25"
+    ),
+    "watch: {hop_histogram: {event: top_wall}}": (
+        ".watch.hop_histogram.event must be vertical_hop or horizontal_hop, not 'top_wall'"
+    ),
+    "watch: {hop_histogram: {intervals: 0}}": (
+        ".watch.hop_histogram.intervals must be an integer from 1 to 1e12, not 0"
+    ),
+    "watch: {hop_histogram: {radii: []}}": ".watch.hop_histogram.radii must be …, not []",
+    "watch: {hop_histogram: [0.1, 0.1]}": ".watch.hop_histogram must hold every radius once, …",
+    "watch: {hop_histogram: [0.5]}": ".watch.hop_histogram: radius 0.5 does not fit: …",
+    "watch: {trajectory: 0.5}": ".watch.trajectory: radius 0.5 does not fit: …",
+    "watch: {trajectory: -1}": ".watch.trajectory must be true, false, or a positive …, not -1.0",
+    "watch: {trajectory: [0.2]}": ".watch.trajectory must be true, …, not [0.2]",
+    "box: {width: 1, height: 1, depth: 0}": ".box.depth must be a positive length …, not 0.0",
+    "box: {width: 1, height: 1, dept: 1}": ".box has an unknown key 'dept'; did you mean 'depth'?",
+    "effects:": ".effects must be a block of the keys radius_ratio, …, not empty",
+    "effects: [field]": ".effects must be a block of the keys radius_ratio, …, not ['field']",
+    "effects: {gravity: 1}": ".effects has an unknown key 'gravity'; …",
+    "effects: {radius_ratio: 0}": ".effects.radius_ratio must be a ratio between …, not 0.0",
+    "effects: {radius_ratio: 2000}": ".effects.radius_ratio must be a ratio between …, not 2000.0",
+    "effects: {mass_ratio: -1}": ".effects.mass_ratio must be a ratio between …, not -1.0",
+    "effects: {mass_ratio: heavy}": ".effects.mass_ratio must be a ratio between …, not 'heavy'",
+    "effects: {mass_ratio: true}": ".effects.mass_ratio must be a ratio between …, not True",
+    "effects: {periodic: x}": ".effects.periodic must be a list of different axes …, not 'x'",
+    "effects: {periodic: xy}": ".effects.periodic must be a list of different axes …, not 'xy'",
+    "effects: {periodic: y}": ".effects.periodic must be a list of different axes …, not 'y'",
+    "effects: {periodic: true}": ".effects.periodic must be a list of different axes …, not True",
+    "effects: {periodic: [x, x]}": ".effects.periodic must be a list of …, not ['x', 'x']",
+    "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",
+    "effects: {periodic: [z]}": ".effects: periodic must be some of the axes xy, not 'z'",
+    "effects: {field: -1}": ".effects.field must be 0 or an acceleration …, not -1.0",
+    "effects: {field: .nan}": ".effects.field must be 0 or an acceleration …, not nan",
+    "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e+60, not 1e-70",
+    "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
+    "effects: {moment_of_inertia: 0}": ".effects.moment_of_inertia must be a number …, not 0.0",
+    "effects: {moment_of_inertia: 2}": ".effects.moment_of_inertia must be a number …, not 2.0",
+    "accuracy: 0": ".accuracy must be a number above 0 and at most 1, a preset …, not 0.0",
+    "accuracy: 1.01": ".accuracy must be a number above 0 and at most 1, …, not 1.01",
+    "accuracy: -1e-3": ".accuracy must be a number above 0 and at most 1, …, not -0.001",
+    "accuracy: .nan": ".accuracy must be a number above 0 and at most 1, …, not nan",
+    "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
+    "accuracy: true": ".accuracy must be a number above 0 and at most 1, …, not True",
+    "accuracy: [0.1]": ".accuracy must be a number above 0 and at most 1, …, not [0.1]",
+    "accuracy: {any_wall: 0}": ".accuracy.any_wall must be a number above 0 …, not 0.0",
+    "accuracy: {any_wall: best}": ".accuracy.any_wall must be a number …, not 'best'",
+    "accuracy: {left_wall: 1}": ".accuracy has an unknown key 'left_wall'; did you mean …?",
+    "event_budget: 0": ".event_budget must be an integer from 1 to 1e15, not 0",
+    "event_budget: 2.5": ".event_budget must be an integer from 1 to 1e15, not 2.5",
+    "event_budget: -2e9": ".event_budget must be an integer from 1 to 1e15, not -2000000000",
+    "event_budget: lots": ".event_budget must be an integer from 1 to 1e15, not 'lots'",
+    "event_budget: 1e16": ".event_budget must be an integer …, not 10000000000000000",
+    "event_budget: .inf": ".event_budget must be an integer from 1 to 1e15, not inf",
+    "monte_carlo: {samples: 0}": ".monte_carlo.samples must be an integer …, not 0",
+    "monte_carlo: {shell: 0}": ".monte_carlo.shell must be a number above 0 …, not 0.0",
+    "monte_carlo: {shell: 1}": ".monte_carlo.shell must be … below 1, not 1.0",
+    "monte_carlo: 1e8": ".monte_carlo must be a block of two keys, …, not '1e8'",
+    "montecarlo: {}": " has an unknown key 'montecarlo'; did you mean 'monte_carlo'?",
+}
+
+
+#: Lines that go together.
+EFFECTS = {
+    ("box: {width: 1, height: 1, depth: 1}", "effects: {moment_of_inertia: 0.4}"): (
+        ".effects: moment_of_inertia must be left out in a box with a depth …, not 0.4"
+    ),
+    ("effects: {periodic: [x]}", "watch: {mean_times: [vertical_hop, horizontal_hop]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, vertical_hop, "
+        "disc_collision, top_wall, any_wall, not 'horizontal_hop'"
+    ),
+    ("effects: {periodic: [x]}", "watch: {areas: [right_wall]}"): (
+        ".watch.areas must keep to what has a place in the scene, …, not 'right_wall'"
+    ),
+    ("effects: {periodic: [y]}", "watch: {mean_times: [top_wall]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, …, not 'top_wall'"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {mean_times: [any_wall]}"): (
+        ".watch.mean_times must keep to what has a place in the scene, disc_collision, not "
+        "'any_wall'"
+    ),
+    ("effects: {periodic: [x]}", "watch: {hop_histogram: {event: horizontal_hop}}"): (
+        ".watch.hop_histogram.event must have a place in the scene, as vertical_hop has, not "
+        "'horizontal_hop'"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {hop_histogram: true}"): (
+        ".watch.hop_histogram must be false, for on periodic axes hops have no place"
+    ),
+    ("effects: {periodic: [x, y]}", "watch: {trajectory: 0.1}"): (
+        ".watch.trajectory must be false, for on periodic axes hops have no place"
+    ),
+    ("effects: {moment_of_inertia: 0.5}", "watch: {hop_histogram: [0.1]}"): (
+        ".watch.hop_histogram must be false, for rough discs in a box are not ergodic and their "
+        "intervals have no exact mean; watch mean_times instead"
+    ),
+    ("effects: {field: 2}", "watch: {hop_histogram: {event: horizontal_hop, radii: [0.2]}}"): (
+        ".watch.hop_histogram must keep to radii below 0.125, where horizontal_hop is possible, "
+        "not 0.2"
+    ),
+    ("effects: {field: 100}", "radii: [0.38]"): (
+        ".radii: field 100.0 is too strong at radius 0.38: …"
+    ),
+    ("effects: {field: 1, mass_ratio: 2}", "radii: [0.378]"): (
+        ".radii: unequal discs in a field need room and energy to pass each other …"
+    ),
+    ("effects: {field: 1}", "radii: [0.1, 0.378]"): (
+        ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places, and a scene with "
+        "effects needs more room, 0.0001 of it"
+    ),
+    ("effects: {field: 200}", "watch: {mean_times: true}"): (
+        ".radii.smallest: radius 0.01 leaves the discs … and a scene with effects needs more room…"
+    ),
+    ("effects: {radius_ratio: 2}", "radii: [0.25]"): ".radii: radius 0.25 does not fit: …",
+    ("effects: {radius_ratio: 2}", "radii: {smallest: 0.24}"): (
+        ".radii: smallest must be below 0.225…, not 0.24"
+    ),
+}
+
+
+def refusal(path, text):
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(load.ConfigError) as caught:
+        load.load(load.read(path))
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    return sentence
+
+
+def agrees(sentence, expected):
+    pattern = re.escape(expected).replace("…", ".*")
+    assert re.fullmatch(pattern, sentence), sentence
+    return True
+
+
+@pytest.mark.parametrize(("text", "expected"), FILES.items())
+def test_a_bad_file_gets_a_sentence(tmp_path, text, expected):
+    path = tmp_path / "bad.yaml"
+    assert agrees(refusal(path, text), f"{path}{expected}")
+
+
+@pytest.mark.parametrize(("line", "expected"), LINES.items())
+def test_a_bad_line_at_the_top_gets_a_sentence(tmp_path, line, expected):
+    good = "scenes: [{name: one, box: {width: 1.5, height: 1}}]\n"
+    alone = line.startswith("scene") or "needs" in expected
+    sentence = refusal(tmp_path / "bad.yaml", line if alone else good + line)
+    assert agrees(sentence, expected)
+
+
+@pytest.mark.parametrize(("line", "expected"), SCENES.items())
+def test_a_bad_line_in_a_scene_gets_a_sentence(tmp_path, line, expected):
+    lines = {"name": "name: one", "box": "box: {width: 1.5, height: 1}"}
+    lines[line.split(":")[0]] = line
+    block = "\n    ".join(lines.values())
+    sentence = refusal(tmp_path / "bad.yaml", f"scenes:\n  - {block}\n")
+    assert agrees(sentence, f"scenes[0]{expected}")
+
+
+@pytest.mark.parametrize(("lines", "expected"), EFFECTS.items())
+def test_effects_that_make_no_sense_get_a_sentence(tmp_path, lines, expected):
+    block = {"name": "name: one", "box": "box: {width: 1.5, height: 1}"}
+    block |= {line.split(":")[0]: line for line in lines}
+    text = "scenes:\n  - " + "\n    ".join(block.values()) + "\n"
+    assert agrees(refusal(tmp_path / "bad.yaml", text), f"scenes[0]{expected}")
+
+
+def test_two_scenes_of_one_name_are_refused():
+    with pytest.raises(load.ConfigError, match=r"scenes\[1\].name must differ .*, not 'one'"):
+        load.load({"scenes": PLAIN["scenes"] * 2})
+
+
+@pytest.mark.parametrize("bad", [None, [], "scenes", 1])
+def test_a_configuration_that_is_no_mapping_is_refused(bad):
+    with pytest.raises(load.ConfigError, match="the configuration must be a block of the keys"):
+        load.load(bad)
+
+
+def test_numbers_beyond_a_float_are_refused():
+    with pytest.raises(load.ConfigError, match=r"box\.width must be a positive length"):
+        one(box={"width": 10**400, "height": 1})
+    with pytest.raises(load.ConfigError, match="event_budget must be an integer"):
+        one(event_budget=math.inf)
+
+
+def test_a_missing_file_says_so(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        load.read(tmp_path / "none.yaml")
+
+
+def test_an_override_of_a_shared_block_is_no_duplicate(tmp_path):
+    text = """
+    deep: [&b {<<: &a {count: 1}, count: 2}]
+    c: {<<: *b, smallest: 3}
+    """
+    path = tmp_path / "shared.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert load.read(path) == yaml.safe_load(text)

@@ -1,0 +1,290 @@
+"""Rejection sampling: the exact volume, and the exact expectation of every shell."""
+
+import math
+
+import numpy as np
+import pytest
+from effect_scenes import SCENES
+from scipy.special import bdtr
+
+from twodiscs.model import events
+from twodiscs.model.box import largest_radius
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling import montecarlo, prism
+from twodiscs.theory import exact
+
+PAPER = Scene(1.5, 1.0, 0.2)
+EVERYTHING = ["volume", *(f"{event}_area" for event in EVENTS)]
+SAMPLES = 8 * montecarlo.BLOCK
+
+#: Five sigma, two-sided: the rate of false alarms of each comparison.
+FALSE_ALARM = 5.7e-7
+
+
+def assert_binomial(hits, samples, probability):
+    """``hits`` of ``samples`` are no surprise, by the exact tails of the binomial law."""
+    low = bdtr(hits, samples, probability)
+    high = 1 - bdtr(hits - 1, samples, probability) if hits else 1.0
+    assert 2 * min(low, high) > FALSE_ALARM, (hits, samples * probability)
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "radius"),
+    [(1.5, 1.0, r) for r in (0.01, 0.05, 0.2, 0.24, 0.2501, 0.3, 0.36, 0.376, 0.38)]
+    + [(3.0, 1.0, 0.4), (1.0, 1.5, 0.3), (1.0, 1.0, 0.1), (1.0, 1.0, 0.28), (2.0, 1.0, 0.4)]
+    + [(1e3, 1.0, 0.3), (1.0, 1e3, 0.3)],
+)
+@pytest.mark.parametrize("shell", [0.02, 0.3])
+def test_hits_have_their_exact_probability(width, height, radius, shell):
+    """Also for thick shells, whose bias is large: the expectation is that of the shell."""
+    scene = Scene(width, height, radius)
+    point = montecarlo.sample_point(scene, EVERYTHING, SAMPLES, shell, 21)
+    samples, found = point["samples"], point["quantities"]
+    volume = found["volume"]
+    assert_binomial(volume["hits"], samples, exact.volume(scene) / volume["measure"])
+    for event in events.SHELLS:
+        sampled = found[f"{event}_area"]
+        expected = exact.shell_expectation(scene, event, sampled["epsilon"])
+        assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
+
+
+def test_estimates_tend_to_the_areas():
+    """With a thin shell the estimate is the area itself, gradient factor and sides included."""
+    point = montecarlo.sample_point(PAPER, EVERYTHING, 64 * montecarlo.BLOCK, 1e-3, 5)
+    areas = exact.areas(PAPER)
+    for event in events.SHELLS:
+        sampled = point["quantities"][f"{event}_area"]
+        estimate = sampled["measure"] * sampled["hits"] / point["samples"]
+        # Five standard errors and the bias, which is of the order of ε over the room.
+        assert abs(estimate / areas[event] - 1) <= 5 / math.sqrt(sampled["hits"]) + 2e-3
+
+
+def test_blocks_add_up_and_are_independent_of_company():
+    arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, (0.01,) * 5, True)
+    whole = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments)
+    parts = [montecarlo.sample_blocks(np.uint64(3), a, b, *arguments) for a, b in ((0, 1), (1, 4))]
+    assert np.array_equal(whole, sum(parts))
+    only = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments[:4], None)
+    assert only[0] == whole[0]
+    assert not only[1:].any()
+    other = montecarlo.sample_blocks(np.uint64(4), 0, 4, *arguments)
+    assert not np.array_equal(whole, other)
+
+
+def test_joint_hits_of_two_walls():
+    """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
+    point = montecarlo.sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
+    assert point["quantities"].keys() == {"right_wall_area", "top_wall_area"}
+    epsilon = point["quantities"]["right_wall_area"]["epsilon"]
+    assert epsilon == point["quantities"]["top_wall_area"]["epsilon"]
+    rng = np.random.default_rng(1)
+    n = 2_000_000
+    x1 = PAPER.range_x / 2 - epsilon * rng.random(n)
+    y1 = PAPER.range_y / 2 - epsilon * rng.random(n)
+    x2 = PAPER.range_x * (rng.random(n) - 0.5)
+    y2 = PAPER.range_y * (rng.random(n) - 0.5)
+    free = np.mean((x1 - x2) ** 2 + (y1 - y2) ** 2 >= PAPER.contact_distance**2)
+    probability = free * epsilon**2 / (PAPER.range_x * PAPER.range_y)
+    error = math.sqrt(probability / point["samples"] + probability**2 * (1 - free) / (free * n))
+    assert abs(point["right_and_top"] / point["samples"] - probability) <= 5 * error
+
+
+def test_only_what_is_asked_for_is_sampled():
+    point = montecarlo.sample_point(PAPER, ["volume"], 1, 0.02, 1)
+    assert point["quantities"].keys() == {"volume"}
+    assert point["samples"] == montecarlo.BLOCK
+    assert "right_and_top" not in point
+    point = montecarlo.sample_point(PAPER, ["vertical_hop_area"], 1, 0.02, 1)
+    assert point["quantities"].keys() == {"vertical_hop_area"}
+
+
+@pytest.mark.parametrize("share", [0.1, 0.6, 0.9, 1 - 1e-3, 1 - 1e-9])
+def test_shells_scale_with_the_room(share):
+    scene = PAPER.with_radius(share * largest_radius(1.5, 1.0))
+    room = scene.largest_radius - scene.radius
+    epsilon = montecarlo.shell_thickness(scene, "disc_collision", 0.02)
+    assert epsilon == 0.02 * min(scene.radius, room)
+    for hop, limit in zip(HOPS, (0.375, 0.25), strict=True):
+        epsilon = montecarlo.shell_thickness(scene, hop, 0.02)
+        assert epsilon == 0.02 * min(scene.radius, abs(limit - scene.radius))
+
+
+def test_a_blocked_hop_has_no_hits():
+    for radius in (0.2501, 0.3, 0.38):
+        scene = PAPER.with_radius(radius)
+        point = montecarlo.sample_point(scene, ["horizontal_hop_area"], SAMPLES, 0.5, 1)
+        assert point["quantities"]["horizontal_hop_area"]["hits"] == 0
+        assert point["quantities"]["horizontal_hop_area"]["epsilon"] > 0
+
+
+def test_a_radius_on_the_threshold_has_a_shell():
+    point = montecarlo.sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
+    assert point["quantities"]["horizontal_hop_area"]["epsilon"] == 0.02 * 0.25
+
+
+def test_no_hits_where_rejection_is_hopeless():
+    """At r_max (1 − 1e-3) one sample in 1e11 is accepted: no hit, and no complaint."""
+    scene = PAPER.with_radius(PAPER.largest_radius * (1 - 1e-3))
+    point = montecarlo.sample_point(scene, EVERYTHING, 1, 0.02, 1)
+    assert point["quantities"]["volume"]["hits"] == 0
+
+
+@pytest.mark.parametrize(
+    ("quantities", "samples", "shell", "seed"),
+    [
+        ([], 1, 0.02, 1),
+        (["mass"], 1, 0.02, 1),
+        (["volume"], 0, 0.02, 1),
+        (["volume"], 1.5, 0.02, 1),
+        (["volume"], "1e6", 0.02, 1),
+        (["volume"], True, 0.02, 1),
+        (["volume"], 1, 0.0, 1),
+        (["volume"], 1, 1.0, 1),
+        (["volume"], 1, math.nan, 1),
+        (["volume"], 1, "thin", 1),
+        (["volume"], 1, 0.02, -1),
+        (["volume"], 1, 0.02, 2**64),
+    ],
+)
+def test_bad_requests_are_refused(quantities, samples, shell, seed):
+    with pytest.raises(ValueError, match="must"):
+        montecarlo.sample_point(PAPER, quantities, samples, shell, seed)
+
+
+# Scenes with effects ----------------------------------------------------------------------------
+
+#: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
+#: fields that keep discs from passing, or from the top.
+MORE_SCENES = [
+    Scene(1.5, 1.0, 0.3, periodic="x"),
+    Scene(1.5, 1.0, 0.3, periodic="y"),
+    Scene(1.0, 1.0, 0.34, periodic="xy"),
+    Scene(1.5, 0.9, 0.4, radius_ratio=0.2, mass_ratio=1e-3),
+    Scene(1.5, 1.0, 0.1, radius_ratio=4.0, mass_ratio=1e3),
+    Scene(1.5, 1.0, 0.05, field=1.5),
+    Scene(1.5, 1.0, 0.3, field=1.5),
+    Scene(1.5, 1.0, 0.3, field=0.1, periodic="x", moment_of_inertia=1.0),
+    Scene(1.5, 1.0, 0.37, moment_of_inertia=0.1),
+    Scene(1.0, 1.0, 0.26, depth=1.0),
+    Scene(1.0, 1.0, 0.3, depth=1.0, periodic="xyz"),
+]
+
+
+def everything(scene):
+    return ["volume", *(f"{event}_area" for event in scene.events)]
+
+
+def prism(scene):
+    return prism.prism_of(scene)._replace(inertia=None)
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
+@pytest.mark.parametrize("shell", [0.05, 0.8])
+def test_weighted_hits_have_their_exact_probability(scene, shell):
+    point = montecarlo.sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
+    samples, found = point["samples"], point["quantities"]
+    assert found.keys() == set(everything(scene))
+    assert "right_and_top" not in point
+    volume = found.pop("volume")
+    assert_binomial(volume["hits"], samples, exact.volume(scene) / volume["measure"])
+    for quantity, sampled in found.items():
+        event = quantity.removesuffix("_area")
+        expected = exact.shell_expectation(scene, event, sampled["epsilon"])
+        assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_weighted_estimates_tend_to_the_areas(scene):
+    point = montecarlo.sample_point(scene, everything(scene), 4 * montecarlo.BLOCK, 0.02, 6)
+    areas = exact.areas(scene)
+    for event in scene.events:
+        sampled = point["quantities"][f"{event}_area"]
+        estimate = sampled["measure"] * sampled["hits"] / point["samples"]
+        if scene.is_possible(event):
+            # Five standard errors and the bias, which is of the order of ε over the room.
+            assert abs(estimate / areas[event] - 1) <= 5 / math.sqrt(sampled["hits"]) + 0.03
+
+
+#: Of one block of each scene with the seed 9: volume, then the events.
+COUNTS = {
+    "unequal": [893325, 38911, 17192, 27208, 15793, 26396, 16273],
+    "torus": [697303, 0, 0, 51237, 0, 0, 0],
+    "channel": [629218, 45135, 0, 47991, 0, 24824, 24987],
+    "field": [295344, 16259, 2287, 18513, 5392, 4788, 7393],
+    "rough": [567288, 39071, 5868, 47171, 13683, 23130, 18392],
+    "balls": [772643, 60328, 22189, 44803, 16015, 28478, 22101],
+    "combination": [524812, 45094, 0, 37421, 0, 7544, 24896],
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_weighted_counts_are_the_same_everywhere(name):
+    scene = SCENES[name]
+    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
+    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    assert montecarlo.weighted_blocks(np.uint64(9), 0, 1, *arguments).tolist() == COUNTS[name]
+
+
+@pytest.mark.parametrize("name", ["torus", "combination"])
+def test_weighted_blocks_add_up(name):
+    scene = SCENES[name]
+    epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
+    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    whole = montecarlo.weighted_blocks(np.uint64(3), 0, 3, *arguments)
+    parts = [
+        montecarlo.weighted_blocks(np.uint64(3), a, b, *arguments) for a, b in ((2, 3), (0, 2))
+    ]
+    assert np.array_equal(whole, sum(parts))
+    other = montecarlo.weighted_blocks(np.uint64(4), 0, 3, *arguments)
+    assert not np.array_equal(whole, other)
+
+
+def test_only_what_is_watched_is_sampled_with_effects():
+    scene = SCENES["combination"]
+    for event in ("vertical_hop", "any_wall"):
+        point = montecarlo.sample_point(scene, [f"{event}_area"], 1, 0.1, 1)
+        assert point["quantities"].keys() == {f"{event}_area"}
+        epsilon = [0.02 if e == event else 0.0 for e in EVENTS]
+        shells = montecarlo.weighted_shells(scene, epsilon)
+        assert [name for name in EVENTS if getattr(shells, name) is not None] == [event]
+        counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), shells)
+        assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
+    assert montecarlo.weighted_shells(scene, [0.0] * 6) is None
+    point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
+    assert point["quantities"].keys() == {"volume"}
+    assert point["samples"] == montecarlo.BLOCK
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
+def test_weighted_shells_stay_inside_the_box(scene):
+    """No thicker, as lengths, than the discs or than the room they have."""
+    for event in scene.events:
+        epsilon = montecarlo.shell_thickness(scene, event, 0.999)
+        assert 0 < epsilon < min(scene.radii)
+        relative = epsilon * math.sqrt(sum(1 / mass for mass in scene.masses))
+        if event in (*HOPS, "disc_collision"):
+            assert relative <= math.sqrt(2) * min(scene.radii)
+            continue
+        for disc, mass in enumerate(scene.masses):
+            if disc == 0 or event == "any_wall":
+                room = min(scene.side(axis) - 2 * scene.radii[disc] for axis in scene.walled)
+                assert epsilon / math.sqrt(mass) < room
+
+
+def test_the_sampler_suits_the_scene():
+    scene = Scene(1.5, 1.0, 0.38, mass_ratio=2.0)
+    samples = 2 * montecarlo.BLOCK
+    assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted_point, samples)
+    arguments = scene, ["volume", "any_wall_area"], samples, 0.1, 5
+    point = montecarlo.better_point(*arguments)
+    assert point == montecarlo.sample_point(*arguments) == montecarlo.weighted_point(*arguments)
+    with pytest.raises(ValueError, match="scene must have no effects"):
+        montecarlo.conditioned_point(*arguments)
+
+
+def test_what_has_no_place_is_refused():
+    with pytest.raises(ValueError, match="quantity must be one of volume, disc_collision_area,"):
+        montecarlo.sample_point(SCENES["torus"], ["any_wall_area"], 1, 0.1, 1)
+    with pytest.raises(ValueError, match="event must be one of vertical_hop, disc_collision, "):
+        montecarlo.shell_thickness(SCENES["channel"], "right_wall", 0.1)

@@ -1,0 +1,186 @@
+"""What accuracy costs: the estimators are right, and the numbers drawn from them too."""
+
+import math
+
+import numpy as np
+import pytest
+
+from twodiscs.comparison import tables
+from twodiscs.figures import accuracy_cost as figure
+from twodiscs.figures import accuracy_cost_by_radius
+from twodiscs.figures.kit import style
+from twodiscs.model.scene import Scene
+from twodiscs.sampling import montecarlo
+from twodiscs.studies.accuracy_cost import measure as accuracy_cost
+from twodiscs.theory import exact
+
+PAPER = Scene(1.5, 1.0, 0.2)
+AREA = accuracy_cost.AREA
+
+#: One radius in each regime.
+SCENES = [PAPER.with_radius(radius) for radius in (0.1, 0.2, 0.3, 0.38)]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_reference_is_the_theory(scene):
+    found = accuracy_cost.reference(scene)
+    assert abs(exact.volume(scene) / found["volume"] - 1) < 1e-14
+    assert abs(exact.areas(scene)["disc_collision"] / found[AREA] - 1) < 1e-14
+
+
+@pytest.mark.parametrize("scene", SCENES[:3])
+@pytest.mark.parametrize("quantity", ["volume", AREA])
+def test_quadrature_falls_off_a_cliff(scene, quantity):
+    """Gauss's rule gains at least a digit and a half a node until nothing but rounding is left."""
+    exact = accuracy_cost.reference(scene)[quantity]
+    errors = [
+        abs(float(accuracy_cost.quadrature(quantity, scene, nodes, 0)[0][quantity] / exact - 1))
+        for nodes in (3, 6, 12)
+    ]
+    assert errors[1] < 1e-4 * errors[0]
+    assert errors[2] < 1e-14
+
+
+def hits(samples, share):
+    """Return the standard error of the relative error of ``samples`` with this share of hits."""
+    return math.sqrt((1 - share) / (share * samples))
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_samples_on_the_surface_are_unbiased(scene):
+    """Five sigma: a false alarm in 6e-7 of all seeds."""
+    exact, samples = exact.areas(scene)["disc_collision"], 200_000
+    found = accuracy_cost.on_surface(scene, samples, 3)[0][AREA]
+    share = exact / accuracy_cost.surface_measure(scene)
+    assert abs(found / exact - 1) < 5 * hits(samples, share)
+
+
+@pytest.mark.parametrize("quantity", ["volume", AREA])
+def test_sobol_points_are_unbiased_and_better(quantity):
+    """The mean of 32 scramblings within five of its standard errors; random points do worse."""
+    exact, points = float(accuracy_cost.reference(PAPER)[quantity]), 1 << 12
+    runs = [accuracy_cost.scrambled_sobol(quantity, PAPER, points, s)[0] for s in range(32)]
+    errors = np.array([run[quantity] for run in runs]) / exact - 1
+    assert abs(errors.mean()) < 5 * errors.std(ddof=1) / math.sqrt(errors.size)
+    measure = (PAPER.range_x * PAPER.range_y) ** 2
+    if quantity == AREA:
+        measure = accuracy_cost.surface_measure(PAPER)
+    assert errors.std() < hits(points, exact / measure) / 2
+
+
+def test_the_best_shell_balances_bias_and_variance():
+    """The bias is ∝ ε and the variance ∝ 1/ε: at the best ε, variance = 2 bias²."""
+    samples = 1 << 20
+    fraction = accuracy_cost.balanced_fraction(PAPER, samples)
+    epsilon = montecarlo.shell_thickness(PAPER, "disc_collision", fraction)
+    expected = exact.shell_expectation(PAPER, "disc_collision", epsilon)
+    bias = expected - exact.areas(PAPER)["disc_collision"]
+    prism = (PAPER.range_x * PAPER.range_y) ** 2
+    variance = expected * (prism / epsilon - expected) / samples
+    # The grid of ε is 6 % wide, and the bias not quite linear.
+    assert math.isclose(variance, 2 * bias**2, rel_tol=0.3)
+    assert accuracy_cost.balanced_fraction(PAPER, 64 * samples) < fraction / 3
+
+
+def test_fitted_slope():
+    x = [0.0, 1.0, 2.0, 3.0]
+    assert accuracy_cost.fitted(x, [1 - 0.5 * t for t in x], 0.1) == (
+        pytest.approx(-0.5),
+        pytest.approx(0.1 / math.sqrt(5)),
+    )
+    slope, error = accuracy_cost.fitted(x, [0.0, 1.0, 0.0, 1.0])
+    assert slope == pytest.approx(0.2)
+    assert error == pytest.approx(math.sqrt(0.8 / 2 / 5))
+    assert accuracy_cost.fitted([1.0], [1.0]) == (None, None)
+    assert accuracy_cost.fitted([1.0, 2.0], [1.0, 3.0]) == (pytest.approx(2.0), None)
+
+
+def test_a_floor_has_no_say_in_the_slope():
+    rows = [
+        accuracy_cost.row(
+            "time", "q", 0.2, "m", work=n, error=math.hypot(1 / math.sqrt(n), floor),
+            floor=floor, repetitions=8, seconds=1.0,
+        )
+        for floor in (1e-4,) for n in (10, 100, 10**4, 10**8, 10**9)
+    ]  # fmt: skip
+    found = accuracy_cost.with_slope(rows)[0]
+    assert found["slope"] == pytest.approx(-0.5, abs=1e-3)
+
+
+def test_the_price_of_a_poisson_process():
+    scene = PAPER
+    rate = exact.event_rate(scene)
+    time = exact.mean_times(scene)["vertical_hop"]
+    assert accuracy_cost.predicted_events(scene, "vertical_hop", 1e-2) == pytest.approx(
+        1e4 * time * rate
+    )
+
+
+# A whole run, as small as can be ----------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return accuracy_cost.rows(seconds=1.0, repetitions=2)
+
+
+def of(rows, **where):
+    return [row for row in rows if all(row[key] == value for key, value in where.items())]
+
+
+def test_every_method_is_there(rows):
+    methods = {
+        "volume": "rejection conditioned sobol quadrature closed_form exact",
+        "area": "shell balanced_shell surface sobol quadrature closed_form exact",
+        "time": "lockstep single_precision scalar time_step",
+        "floor": "shell time_step",
+        "radius": "lockstep poisson paid",
+        "precision": "lockstep single_precision",
+    }
+    for part, names in methods.items():
+        assert {row["method"] for row in of(rows, part=part)} == set(names.split()), part
+
+
+def test_the_table_takes_them(rows, tmp_path):
+    tables.write(tmp_path / "accuracy_cost.csv", "accuracy_cost", rows)
+    assert len(tables.read(tmp_path / "accuracy_cost.csv", "accuracy_cost")) == len(rows)
+
+
+def test_exact_evaluation_is_exact(rows):
+    for row in of(rows, method="exact"):
+        assert row["error"] < 1e-15
+
+
+def test_floors(rows):
+    shells = of(rows, part="floor", method="shell")
+    assert [row["error"] for row in shells] == sorted((r["error"] for r in shells), reverse=True)
+    for row in shells:
+        expected = exact.shell_expectation(PAPER, "disc_collision", row["setting"])
+        exact = exact.areas(PAPER)["disc_collision"]
+        assert row["bias"] == pytest.approx(expected / exact - 1)
+    for row in of(rows, part="floor", method="time_step", quantity="any_wall_time"):
+        assert row["bias"] > 10 * row["spread"]
+
+
+def test_a_hop_that_dies_out_costs_ever_more(rows):
+    found = of(rows, part="radius", method="poisson", quantity="horizontal_hop_time")
+    prices = [row["seconds"] for row in found if row["radius"] > 0.1]
+    assert prices == sorted(prices)
+    assert prices[-1] > 100 * prices[0]
+
+
+@pytest.mark.parametrize("module", [figure, accuracy_cost_by_radius])
+def test_the_figures_draw_them(rows, module, tmp_path):
+    with style.context():
+        drawn = module.draw({}, {"accuracy_cost": rows})
+        style.save(drawn, tmp_path / "figure.png")
+    assert (tmp_path / "figure.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"seconds": 0}, {"seconds": math.nan}, {"seconds": "1"}, {"repetitions": 1}],
+)
+def test_bad_requests_are_refused(wrong):
+    with pytest.raises(ValueError, match="must"):
+        accuracy_cost.rows(**wrong)

@@ -1,0 +1,256 @@
+"""Times to the next hop: fits against independent methods, measurements against exact relations.
+
+Statistical comparisons allow five standard errors. Errors from 128 blocks are known to 6 %, and
+their scores are turned into normal deviates; with some 150 comparisons a false alarm comes in fewer
+than 1e-4 of the seeds.
+"""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from twodiscs.cli import distributions as command
+from twodiscs.comparison import tables
+from twodiscs.dynamics import intervals
+from twodiscs.figures import distributions as drawing
+from twodiscs.figures.kit import style
+from twodiscs.model.scene import Scene
+from twodiscs.studies.distributions import measure as distributions
+from twodiscs.studies.tails import measure as tails
+from twodiscs.theory import tails
+
+PAPER = Scene(1.5, 1.0, 0.24)
+FIELD = Scene(1.5, 1.0, 0.2, field=0.1)
+
+
+def bins_of_exponential(rate, bins):
+    """Return the probabilities of unit bins of an exponential law cut to them."""
+    weights = np.exp(-rate * np.arange(bins))
+    return weights / weights.sum()
+
+
+# Fits ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate", [1e-6, 0.03, 0.5, 3.0, -0.2])
+def test_rate_maximizes_the_likelihood(rate):
+    """The zero of the score, found by bisection with 40 digits; the error is from its slope."""
+    width, bins = 0.125, 24
+    counts = np.round(5000 * bins_of_exponential(rate, bins) * (1 + 0.1 * np.cos(np.arange(bins))))
+    counts = [int(n) for n in counts]
+    found, _, degrees = distributions.exponential_rate(counts, width)
+    with mpmath.workdps(40):
+        total, goal = sum(counts), mpmath.fsum(k * n for k, n in enumerate(counts))
+
+        def moment(x, order):
+            return mpmath.fsum(k**order * mpmath.exp(-x * width * k) for k in range(bins))
+
+        def score(x):
+            return goal - total * moment(x, 1) / moment(x, 0)
+
+        due = mpmath.findroot(score, (-5, 40), solver="bisect", maxsteps=200)
+        curvature = width * mpmath.diff(score, due)
+    assert found.value == pytest.approx(float(due), rel=1e-9, abs=1e-9)
+    assert found.stderr == pytest.approx(float(1 / mpmath.sqrt(curvature)), rel=1e-9)
+    assert found.n == sum(counts)
+    assert degrees <= bins - 2
+
+
+def test_rate_its_error_and_its_chi_square_are_those_of_multinomial_counts():
+    rng, law = np.random.default_rng(1), bins_of_exponential(0.04, 64)
+    scores, chi2 = [], []
+    for counts in rng.multinomial(5000, law, 400):
+        found, square, degrees = distributions.exponential_rate(counts, 0.5)
+        scores.append((found.value - 0.08) / found.stderr)
+        chi2.append(square)
+    assert degrees == 62
+    assert abs(np.mean(scores)) < 5 / math.sqrt(400)
+    assert abs(np.var(scores) - 1) < 5 * math.sqrt(2 / 400)
+    assert abs(np.mean(chi2) - degrees) < 5 * math.sqrt(2 * degrees / 400)
+
+
+def test_chi_square_sees_what_is_not_exponential():
+    counts = np.round(1e4 / (1 + np.arange(64))).astype(int)
+    _, chi2, degrees = distributions.exponential_rate(counts, 1.0)
+    assert chi2 > 100 * degrees
+
+
+def test_few_counts_share_bins_of_the_test():
+    law = bins_of_exponential(0.02, 64)
+    counts = np.round(1200 * law).astype(int)
+    _, chi2, degrees = distributions.exponential_rate(counts, 1.0)
+    assert degrees == 14
+    assert chi2 < degrees
+
+
+def test_density_at_zero_of_a_parabola():
+    """Bins of p(t) = 3 − 2 t² of width 1/2 hold 3/2 − 1/12 and 3/2 − 7/12 of a billion."""
+    counts = [round(1e9 * (3 / 2 - 1 / 12) / 10), round(1e9 * (3 / 2 - 7 / 12) / 10)]
+    found = distributions.density_at_zero(counts, 10**9, 0.5)
+    assert found.value == pytest.approx(0.3, rel=1e-8)
+    rng = np.random.default_rng(2)
+    draws = rng.multinomial(10**4, [0.2, 0.15, 0.65], 2000)
+    found = [distributions.density_at_zero(n[:2], 10**4, 0.5) for n in draws]
+    spread = np.std([one.value for one in found])
+    assert spread == pytest.approx(found[0].stderr, rel=5 / math.sqrt(2 * 2000) + 0.01)
+
+
+def test_hazard_of_an_exponential_is_its_rate():
+    rng = np.random.default_rng(3)
+    counts = np.bincount((rng.exponential(2.0, 10**5) / 0.25).astype(int), minlength=60)
+    rows = list(distributions.hazard(counts[:60], 10**5, 0.25))
+    assert len(rows) > 20
+    for first, last, rate, error, count in rows:
+        assert abs(rate - 0.5) < 5 * error
+        assert last - first >= distributions.GROWTH * first
+        assert count >= distributions.FEWEST_IN_BIN
+    assert [row[0] for row in rows[1:]] == [row[1] for row in rows[:-1]]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: distributions.exponential_rate([1000, 500], 1.0), "at least 3 bins"),
+        (lambda: distributions.exponential_rate([10, 5, 2], 1.0), "at least 1000 in all, not 17"),
+        (lambda: distributions.exponential_rate([1000, 5.5, 2], 1.0), "count must be an integer"),
+        (lambda: distributions.exponential_rate([1000, -5, 2], 1.0), "count must be an integer"),
+        (lambda: distributions.exponential_rate([1000, 500, 2], 0.0), "width must"),
+        (lambda: distributions.density_at_zero([5], 10, 1.0), "at least 2 bins"),
+        (lambda: distributions.density_at_zero([5, 6], 10, 1.0), "at least the 11 counts, not 10"),
+        (lambda: distributions.density_at_zero([5, 6], 100, math.nan), "width must"),
+        (lambda: list(distributions.measured(PAPER, "any_wall", 1)), "hop must be one of"),
+        (lambda: list(distributions.measured(0.24, "vertical_hop", 1)), "scene must be"),
+        (lambda: list(distributions.measured(PAPER, "vertical_hop", -1)), "seed must"),
+        (lambda: list(distributions.measured(PAPER, "vertical_hop", 1, 0)), "events must"),
+        (
+            lambda: list(distributions.measured(PAPER.with_radius(0.3), "horizontal_hop", 1)),
+            "is blocked at radius 0.3",
+        ),
+        (
+            lambda: list(
+                distributions.measured(Scene(1.5, 1.0, 0.2, field=1.0), "vertical_hop", 1)
+            ),
+            "scene must be plain",
+        ),
+        (lambda: distributions.near_threshold(1.5, 1.0, "any_wall"), "hop must be one of"),
+    ],
+)
+def test_bad_requests_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+# Measurements -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("box", "radius", "hop"),
+    [
+        ((1.5, 1.0), 0.05, "vertical_hop"),
+        ((1.5, 1.0), 0.24, "vertical_hop"),
+        ((1.5, 1.0), 0.3, "vertical_hop"),
+        ((1.5, 1.0), 0.2, "horizontal_hop"),
+        ((3.0, 1.0), 0.4, "vertical_hop"),
+        ((1.0, 1.5), 0.1, "horizontal_hop"),
+    ],
+)
+def test_what_is_measured_meets_what_is_exact(box, radius, hop):
+    """The mean interval, the density at 0, and Palm's relation between intervals and passages."""
+    scene = Scene(*box, radius)
+    rows = list(distributions.measured(scene, hop, 4, 2**20))
+    by_name = {(row["quantity"], row["last"] is None): row for row in rows}
+    assert abs(by_name["mean", True]["z"]) < 5
+    assert abs(by_name["first_passage", False]["z"]) < 5
+    room = min(box) - 4 * radius if hop == "horizontal_hop" and box[0] > box[1] else 1
+    if room > 0.5:
+        zero = by_name["density_at_zero", False]
+        assert zero["reference"] == tails.density_at_zero(scene, hop)
+        assert abs(zero["z"]) < 5
+    passage, cut = by_name["first_passage", True], by_name["first_passage", False]
+    assert cut["estimate"] <= passage["estimate"]
+    cubic = tails.tail_constant(scene, hop) > 0
+    assert (passage["z"] is None) == cubic
+
+
+def test_intervals_are_those_of_chains():
+    """Shares of intervals beyond some times, from starts of their own and from hop to hop."""
+    rows = list(distributions.measured(PAPER, "vertical_hop", 5, 2**20))
+    mean = rows[0]["reference"]
+    chains = intervals.hop_intervals(PAPER, "vertical_hop", 2**19, 6)
+    hazards = [row for row in rows if row["quantity"] == "hazard"]
+    alive = total = chains["intervals"]
+    assert len(hazards) > 20
+    for row in hazards:
+        ends = [round(row[end] / chains["bin_width"]) for end in ("first", "last")]
+        left = alive - sum(chains["counts"][slice(*ends)])
+        time = row["last"] - row["first"]
+        # Chains are correlated: the error of their counts is at most doubled.
+        other, error = math.log(alive / left) / time, 2 * math.sqrt(1 / left - 1 / alive) / time
+        assert abs(row["estimate"] - other) < 5 * math.hypot(row["stderr"], error)
+        alive = left
+    assert alive < 1e-2 * total
+    assert hazards[-1]["last"] > 4 * mean
+
+
+def test_hazards_add_up_to_the_survival_of_weighted_starts():
+    rows = list(distributions.measured(PAPER, "vertical_hop", 7, 2**20))
+    survival = 1.0
+    for row in rows:
+        if row["quantity"] == "hazard" and row["last"] <= 4 * rows[0]["reference"]:
+            survival *= math.exp(-row["estimate"] * (row["last"] - row["first"]))
+            last = row["last"]
+    found = tails.tail(PAPER, "vertical_hop", [last], 200, 8)[0]
+    intervals = rows[0]["count"]
+    error = math.hypot(found.stderr, math.sqrt(survival / intervals))
+    assert abs(found.value - survival) < 5 * error
+
+
+def test_radii_near_the_threshold():
+    assert distributions.near_threshold(1.5, 1.0, "horizontal_hop") == [
+        0.21,
+        0.23,
+        0.24,
+        0.245,
+        0.2475,
+    ]
+    assert distributions.near_threshold(1.5, 1.0, "vertical_hop")[-1] == 0.37125
+    assert distributions.near_threshold(3.0, 1.0, "vertical_hop") == []
+    assert distributions.near_threshold(1.0, 3.0, "vertical_hop")[0] == 0.21
+
+
+# The table and the figure -------------------------------------------------------------------------
+
+
+def written(monkeypatch, path, parameters):
+    """Run the command and return the rows that it writes."""
+    monkeypatch.setattr("sys.argv", ["x", "--parameters", repr(parameters), "--output", str(path)])
+    command.main()
+    return tables.read(path, "distributions")
+
+
+def test_the_command_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+    scene = {"name": "paper", "width": 1.5, "height": 1.0, "event": "vertical_hop", "radii": [0.2]}
+    other = scene | {"name": "other", "width": 3.0}
+    parameters = {"events": 2**16, "scenes": [scene, other], "seed": 9}
+    rows = written(monkeypatch, tmp_path / "a.csv", parameters)
+    cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
+    near = [
+        ("paper", hop, radius)
+        for hop in ("vertical_hop", "horizontal_hop")
+        for radius in distributions.near_threshold(1.5, 1.0, hop)
+    ]
+    assert cases == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
+    # A case does not depend on the others.
+    alone = written(monkeypatch, tmp_path / "b.csv", parameters | {"scenes": [scene]})
+    assert alone == [row for row in rows if row["scene"] == "paper"]
+    with style.context():
+        rates, passages = drawing.draw({}, {"distributions": rows}).axes
+    assert len(rates.containers) > 0
+    exact = tails.density_at_zero(Scene(1.5, 1.0, 0.2), "vertical_hop") * rows[0]["exact_mean"]
+    assert any(line.get_ydata()[0] == pytest.approx(exact, rel=1e-12) for line in rates.lines)
+    names = passages.get_legend_handles_labels()[1]
+    assert {"vertical hops", "horizontal hops"} <= set(names)
+    with pytest.raises(ValueError, match="parameters must be events, scenes, seed, not seed"):
+        written(monkeypatch, tmp_path / "c.csv", {"seed": 1})

@@ -1,0 +1,338 @@
+"""What the figure of effects is made of: its counts, its table, its jobs, the figure itself."""
+
+import ast
+import json
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fabricated import Laws, command, store
+from matplotlib.colors import to_rgba
+from test_figures import overlap, shown_texts  # noqa: F401
+
+from twodiscs import benchmark
+from twodiscs.cli import effects as commands
+from twodiscs.comparison import estimates, scores, tables
+from twodiscs.dynamics import counting
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.trajectory import follow
+from twodiscs.figures import effects as drawing
+from twodiscs.figures.kit import style
+from twodiscs.model.box import fits
+from twodiscs.model.scene import Scene
+from twodiscs.pipeline.configuration import load
+from twodiscs.sampling.starts import draw_any_starts, origins
+from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.effects import measure as effects
+from twodiscs.theory import exact, tails
+
+FILES = sorted((Path(__file__).parents[1] / "config" / "scenes").glob("*.yaml"))
+ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
+SEED = 1908
+
+
+# Scenes and counts --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_a_scene_has_the_parameters_that_it_has_alone(path):
+    """Those of its file laid over config.yaml, as Snakemake lays it."""
+    below = load.read(path.parents[1] / "config.yaml")
+    (alone,) = load.load(below | load.read(path)).scenes
+    assert effects.read(path, below["seed"]) == alone
+    assert effects.read(path, SEED + 1).seed == SEED + 1
+
+
+PLAIN = {"name": "a", "box": {"width": 1.5, "height": 1}, "radii": [0.1]}
+FIELD = PLAIN | {"name": "b", "effects": {"field": 1}}
+
+
+@pytest.mark.parametrize("scenes", [[PLAIN], [FIELD, PLAIN], [FIELD | {"watch": {"volume": True}}]])
+def test_a_file_holds_one_scene_with_effects_and_times(tmp_path, scenes):
+    path = tmp_path / "scene.yaml"
+    path.write_text(json.dumps({"scenes": scenes}))
+    with pytest.raises(ValueError, match=r"scene.yaml must hold one scene, with effects, that"):
+        effects.read(path, SEED)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ROUGH,
+        ROUGH.with_radius(0.1),
+        Scene(1.5, 1.0, 0.24),
+        Scene(1.5, 1.0, 0.2, periodic="x", mass_ratio=3.0),
+    ],
+    ids=str,
+)
+def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
+    """Against the trajectories that are written for people, start by start."""
+    times, seed, replicas = (2.0, 6.0, 15.0), np.uint64(3), 48
+    draw, prism = origins(scene)
+    starts = np.zeros((12, replicas))
+    draw_any_starts(open_stream(seed, 0), draw, (0, 0), starts, prism)
+    components = 8 if scene.moment_of_inertia is None else 10
+    first = []
+    for start in starts.T:
+        rows = follow(scene, tuple(map(float, start[:components])), times[-1])
+        first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
+    expected = [sum(moment > time for moment in first) for time in times]
+    law = counting.law_of(scene)
+    found = effects.follow_unmet(seed, 0, 1, replicas, np.array(times), law, draw, prism)
+    assert list(found) == expected
+    assert 0 < expected[0] < replicas
+
+
+def test_unmet_starts_add_up_over_blocks_and_times_descend():
+    found = effects.unmet(ROUGH, (1.0, 10.0, 100.0), 2, 5)
+    assert found == sorted(found, reverse=True)
+    draw, prism = origins(ROUGH)
+    arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), counting.law_of(ROUGH), draw, prism
+    parts = [effects.follow_unmet(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
+    assert found == list(sum(parts))
+
+
+def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
+    """At 100, in 2^18 starts: binomial and Poisson, five sigma each: one false alarm in 1e6.
+
+    The share of smooth discs is within 40 % of its law by then: what is left to go falls as τ/t.
+    """
+    starts = 256 * REPLICAS
+    (rough,) = effects.unmet(ROUGH, (100.0,), 256, 1)
+    smooth_scene = Scene(1.5, 1.0, 0.1)
+    (smooth,) = effects.unmet(smooth_scene, (100.0,), 256, 1)
+    share = estimates.binomial_estimate(rough, starts, 1.0)
+    assert abs(share.value - 2.28e-3) < 5 * share.stderr + 5 * 5e-5  # from 2^20 other starts
+    law = starts * effects._law(smooth_scene, 100.0)
+    assert abs(smooth - law) < 5 * law**0.5 + 0.4 * law
+    assert 10 < law < 0.05 * rough
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((0.2, (1.0,), 1, 1), "scene must be a Scene"),
+        ((ROUGH, (), 1, 1), "times must ascend"),
+        ((ROUGH, (2.0, 1.0), 1, 1), "times must ascend"),
+        ((ROUGH, (0.0,), 1, 1), "time must"),
+        ((ROUGH, (1.0,), 0, 1), "blocks must"),
+        ((ROUGH, (1.0,), 1, -1), "seed must"),
+    ],
+)
+def test_bad_requests_are_refused(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        effects.unmet(*arguments)
+
+
+# The table ----------------------------------------------------------------------------------------
+
+
+def request(name, **changes):
+    """Return the ``SceneRequest`` of a file, with changes."""
+    (path,) = (path for path in FILES if path.stem == name)
+    return replace(effects.read(path, SEED), **changes)
+
+
+@pytest.mark.parametrize("name", ["rough", "unequal"])
+def test_a_cheap_run_agrees_with_theory(name):
+    """Draft accuracy at a third of the radii: all within Bonferroni's bound for one in 1e6."""
+    asked = request(name)
+    cheap = replace(asked, radii=asked.radii[1::3], event_budget=10**6)
+    found = json.loads(json.dumps(effects.count(cheap, blocks=1)))
+    rows = effects.rows(found)
+    z = [abs(row["z"]) for row in rows if row["z"] is not None]
+    assert max(z) < scores.bonferroni_bound(len(z), 1e-6)
+    measured = {(row["radius"], row["quantity"]) for row in rows if row["stderr"]}
+    for radius in cheap.radii:
+        assert {(radius, f"{event}_time") for event in drawing.EVENTS} <= measured
+    assert bool(found["unmet"]) == (name == "rough")
+    # The same job as that of the scene alone: seeds depend on nothing else.
+    job = asked.dynamics_parameters(cheap.keys[0]) | {"event_budget": 10**6}
+    alone = counting.count_events(
+        asked.scene(job["radius"]), job["accuracy"], job["event_budget"], job["seed"]
+    )
+    assert found["dynamics"][0] == alone
+
+
+def fabricated(rng, name):
+    """Return what ``count`` would of a scene, drawn from the exact theory."""
+    asked = request(name)
+    points = [
+        Laws(scene).dynamics(rng, relative=1e-2, events=scene.events)
+        for scene in map(asked.scene, asked.radii)
+    ]
+    unmet = [
+        {"radius": 0.24, "effects": some, "starts": 10**6, "counts": counts}
+        for some, counts in ((asked.effects, [2400, 2000, 1900]), ({}, [15, 1, 0]))
+    ]
+    return {
+        "name": name,
+        "box": asked.box_parameters(),
+        "dynamics": points,
+        "unmet": unmet if name == "rough" else [],
+    }
+
+
+@pytest.fixture(scope="module")
+def found():
+    """What is counted of the six scenes, fabricated."""
+    rng = np.random.default_rng(1)
+    return {path.stem: fabricated(rng, path.stem) for path in FILES}
+
+
+def test_rows_have_the_exact_times_with_and_without_effects(found):
+    for name, one in found.items():
+        asked = request(name)
+        rows = [row for row in effects.rows(one) if row["quantity"] != "never_met_share"]
+        assert [row["radius"] for row in rows] == [
+            r for r in asked.radii for _ in asked.watch.mean_times
+        ]
+        for row in rows:
+            assert ast.literal_eval(row["effects"]) == asked.effects
+            event = row["quantity"].removesuffix("_time")
+            assert row["exact"] == exact.mean_times(asked.scene(row["radius"]))[event]
+            box = row["width"], row["height"], row["radius"]
+            plain = exact.mean_times(Scene(*box))[event] if fits(*box) else None
+            assert row["plain"] == plain
+    assert any(row["plain"] is None for row in effects.rows(found["torus"]))
+    assert {row["status"] for row in effects.rows(found["field"])} == {"reached", "impossible"}
+
+
+def test_rows_of_shares(found):
+    rows = [row for row in effects.rows(found["rough"]) if row["quantity"] == "never_met_share"]
+    assert [row["duration"] for row in rows] == 2 * [1e2, 1e3, 1e4]
+    rough, smooth = rows[2], rows[3]
+    assert rough["estimate"] == pytest.approx(1.9e-3)
+    assert rough["stderr"] == pytest.approx((1.9e-3 * (1 - 1.9e-3) / 1e6) ** 0.5)
+    assert [row["status"] for row in rows] == 3 * ["sampled"] + 2 * ["too-few"] + ["none-seen"]
+    assert smooth["stderr"] is None
+    assert rows[5]["estimate"] is None
+    # P(none within t) is the integral of P(T > s)/τ beyond t, with P → C/s³.
+    scene, s = Scene(1.5, 1.0, 0.24), np.geomspace(100.0, 1e7, 4001)
+    tail = tails.tail_constant(scene, "disc_collision") / s**3
+    assert smooth["plain"] == pytest.approx(
+        np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4
+    )
+
+
+def test_the_command_gathers_the_points(found, tmp_path, monkeypatch):
+    paths = store(tmp_path / "points", found)
+    output = tmp_path / "effects.csv"
+    assert command(monkeypatch, commands, "table", *paths, "--output", output) == 0
+    rows = tables.read(output, "effects")
+    assert list(dict.fromkeys(row["scene"] for row in rows)) == [path.stem for path in FILES]
+    assert rows == [row for one in found.values() for row in effects.rows(one)]
+
+
+# The figure ---------------------------------------------------------------------------------------
+
+RATIOS = {"plain": 1.0, "plain_walls": 1.05}
+
+
+def costs(names):
+    """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate(names)}
+    start = {"benchmark": "effects", "unit": "1/s"}
+    return [start | {"variant": v, "value": 1e8 * x, "ratio": x} for v, x in ratios.items()]
+
+
+@pytest.fixture(scope="module")
+def drawn(found):
+    """The figure of the six scenes and the rows that it shows."""
+    rows = [row for one in found.values() for row in effects.rows(one)]
+    with style.context():
+        return drawing.draw({}, {"effects": rows, "effects_cost": costs(found)}), rows
+
+
+def test_texts_of_the_figure_stand_clear(drawn, shown_texts):  # noqa: F811
+    with style.context():
+        texts = shown_texts(drawn[0])
+    width, height = drawn[0].get_size_inches()
+    assert not [t for t, b in texts if b.x0 < 0 or b.y0 < 0 or b.x1 > width or b.y1 > height]
+    assert not [(s, t) for (s, a), (t, b) in combinations(texts, 2) if overlap(a, b, 0.02)]
+    said = " ".join(text for text, _ in texts)
+    assert all(f"{path.stem}: " in said for path in FILES)
+
+
+def of_colour(axes, colour):
+    """Return the lines of ``axes`` in this colour."""
+    return [line for line in axes.lines if to_rgba(line.get_color()) == to_rgba(colour)]
+
+
+def test_curves_go_through_the_exact_ratios_and_symbols_are_the_estimates(drawn):
+    figure, rows = drawn
+    names = [path.stem for path in FILES]
+    for i, event in enumerate(drawing.EVENTS):
+        main = figure.axes[2 * i]
+        for name in names:
+            colour = drawing._look(names.index(name))[0]
+            own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
+            (curve,) = [line for line in of_colour(main, colour) if len(line.get_xdata()) > 20]
+            x, y = curve.get_data()
+            assert np.isfinite(y).any() == bool(own)
+            known = [r for r in own if r["exact"] and r["plain"]]
+            for row in known:
+                # Radii are dense: between two of them a straight line is within 2 % of the curve.
+                inside = np.isfinite(y)
+                ratio = row["exact"] / row["plain"]
+                assert np.interp(row["radius"], x[inside], y[inside]) == pytest.approx(
+                    ratio, rel=0.02
+                )
+            shown = [line for line in of_colour(main, colour) if line.get_marker() != "None"]
+            values = {round(v, 12) for line in shown for v in line.get_ydata() if v is not None}
+            assert {round(r["estimate"] / r["plain"], 12) for r in known if r["stderr"]} <= values
+
+
+def test_a_curve_ends_where_its_event_does(drawn):
+    figure, _ = drawn
+    ends = {"vertical_hop": 0.375, "disc_collision": Scene(1.5, 1.0, 0.1).largest_radius}
+    names = [path.stem for path in FILES]
+    for i, event in enumerate(ends):
+        for line in figure.axes[2 * i].lines:
+            x, y = line.get_data()
+            if len(x) > 20 and np.isfinite(y).any():
+                last = x[np.isfinite(y)][-1]
+                assert ends[event] - 1e-3 < last < ends[event]
+    colour = drawing._look(names.index("rough"))[0]
+    rough = next(line for line in of_colour(figure.axes[0], colour) if len(line.get_xdata()) > 20)
+    y = rough.get_ydata()
+    np.testing.assert_allclose(y[np.isfinite(y)], 1.25, rtol=1e-12)
+
+
+def test_costs_are_over_the_plain_scene(drawn):
+    axes = drawn[0].axes[-1]
+    shown = [line.get_xdata()[0] for line in axes.lines if line.get_marker() not in ("None", "")]
+    expected = [
+        1 / row["ratio"] for row in costs([p.stem for p in FILES]) if row["variant"] != "plain"
+    ]
+    assert shown == pytest.approx(expected)
+
+
+def test_looks_differ_however_many_scenes():
+    looks = [drawing._look(i) for i in range(36)]
+    assert len(set(looks)) == 36
+    assert len({colour for colour, _ in looks[:6]}) == len({marker for _, marker in looks[:6]}) == 6
+
+
+# What an event costs ------------------------------------------------------------------------------
+
+
+def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
+    """The speeds are fabricated: seconds are the events of the plain scene, halved without hops."""
+    watched = {}
+
+    def lockstep(blocks, scene, events):
+        watched[scene.has_effects, tuple(events)] = scene
+        return 2.0 if scene.has_effects else 4.0, 1.0 if len(events) == 6 else 0.5
+
+    monkeypatch.setattr(benchmark, "lockstep", lockstep)
+    rows = benchmark.effects_rows(
+        {"torus": {"periodic": "xy"}, "rough": {"moment_of_inertia": 0.5}}
+    )
+    assert {row["variant"]: row["ratio"] for row in rows} == {
+        "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0
+    }  # fmt: skip
+    assert (True, ("disc_collision",)) in watched
+    assert (False, ("right_wall", "top_wall", "any_wall")) in watched
