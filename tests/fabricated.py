@@ -6,32 +6,23 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.comparison import exact_rows
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
-BOX = {"width": 1.5, "height": 1.0}
+BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
-SHELLS = EVENTS[:5]
 
 
 def scenes(radii=RADII):
-    return [Scene(**BOX, radius=radius) for radius in radii]
+    return [BOX.scene(radius) for radius in radii]
 
 
 def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
-    rows = []
-    for scene in scenes(radii):
-        exact = exact.exact(scene)
-        values = {"volume": exact["volume"]}
-        values |= {f"{event}_area": exact["areas"][event] for event in EVENTS}
-        values |= {f"{event}_time": exact["mean_times"][event] for event in EVENTS}
-        rows += [
-            {"radius": scene.radius, "quantity": quantity, "exact": value}
-            for quantity, value in values.items()
-        ]
-    return rows
+    return exact_rows.theory_rows(BOX, radii)
 
 
 class Laws:
@@ -139,11 +130,14 @@ def store(folder, points):
 
 
 def command(monkeypatch, module, *arguments):
-    """Run the command line of ``module`` in this process and return its exit status."""
-    from twodiscs.pipeline.arguments import run
+    """Run the ``main`` of a ``module`` in this process and return its exit status.
 
-    monkeypatch.setattr("sys.argv", ["command", *map(str, arguments)])
-    try:
-        run(module.main)
-    except SystemExit as leave:
-        return leave.code or 0
+    ``arguments`` are those of the command line; a dict is spelled as JSON.
+    """
+    words = [json.dumps(a) if isinstance(a, dict) else str(a) for a in arguments]
+    with monkeypatch.context() as patch:
+        patch.setattr("sys.argv", [module.__name__, *words])
+        try:
+            run(module.main)
+        except SystemExit as leave:
+            return leave.code or 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.model.box import largest_radius
+from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.studies.stability import measure as stability
 
@@ -18,10 +18,11 @@ BOXES = [
 PAPER = Scene(1.5, 1.0, 0.2)
 
 
-@pytest.mark.parametrize("box", BOXES)
-def test_everything_is_conserved_at_every_hard_radius(box):
-    rows = list(stability.dynamics_rows(*box, seed=5, ordinary=4_000_000, hard=2_000_000))
-    assert len(rows) == 4 * len(stability.hard_radii(*box))
+@pytest.mark.parametrize("sides", BOXES)
+def test_everything_is_conserved_at_every_hard_radius(sides):
+    box = Box(*sides)
+    rows = list(stability.dynamics_rows(box, seed=5, ordinary=4_000_000, hard=2_000_000))
+    assert len(rows) == 4 * len(stability.hard_radii(box))
     assert [row for row in rows if row["passed"] is not True] == []
     assert all(row["count"] >= 2_000_000 for row in rows)
 
@@ -29,9 +30,8 @@ def test_everything_is_conserved_at_every_hard_radius(box):
 @pytest.mark.parametrize("distance", [1e-10, 1e-11, 1e-12])
 def test_closer_still_to_the_largest_radius(distance):
     """Where doubles leave a handful of places for each disc, nothing is lost either."""
-    for box in ((1.5, 1.0), (1.0, 1.0), (3.0, 1.0)):
-        scene = Scene(*box, largest_radius(*box) * (1 - distance))
-        seen = stability.run(scene, 1_000_000, 1)
+    for box in (Box(1.5, 1.0), Box(1.0, 1.0), Box(3.0, 1.0)):
+        seen = stability.run(box.scene(box.largest_radius * (1 - distance)), 1_000_000, 1)
         assert seen["lanes_lost"] == 0
         assert seen["energy_error"] <= stability.ENERGY_BOUND
         assert seen["smallest_gap"] >= stability.GAP_BOUND
@@ -51,9 +51,8 @@ def test_energy_error_grows_like_a_random_walk():
 
 
 def audited(starts, shortest=0.0, events=50):
-    scene = PAPER
     columns = np.array(starts, float).T.copy()
-    return stability.audit(columns, 1, events, law_of(scene), shortest)
+    return stability.audit(columns, 1, events, law_of(PAPER), shortest)
 
 
 GOOD = (-0.4, 0.1, 0.4, -0.1, 0.6, 0.48, -0.64, 0.0)

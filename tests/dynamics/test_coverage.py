@@ -7,28 +7,27 @@ import pytest
 
 from twodiscs.comparison import estimates
 from twodiscs.dynamics import counting
-from twodiscs.model import events
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
-from twodiscs.sampling.separations import draw_constants
 from twodiscs.studies.stability import measure as stability
-from twodiscs.theory import exact
+from twodiscs.theory.exact import mean_times, shell_expectation, volume
 
+BOX = Box(1.5, 1.0)
 RADII = (0.05, 0.2, 0.24, 0.3, 0.38)
 
 
 @pytest.fixture(scope="module")
 def covered():
     """{(radius, event): row} of 1600 repetitions of a run of one block."""
-    rows = list(stability.coverage_rows(1.5, 1.0, seed=77))
+    rows = list(stability.coverage_rows(BOX, seed=77))
     return {(row["radius"], row["quantity"]): row for row in rows}
 
 
 @pytest.mark.parametrize("radius", RADII)
 def test_intervals_cover_the_exact_time_in_92_to_98_of_100(covered, radius):
     """1600 repetitions know the coverage to 0.55 %: a true 95 % fails once in 1e7 seeds."""
-    times = exact.mean_times(Scene(1.5, 1.0, radius))
+    times = mean_times(BOX.scene(radius))
     for event in EVENTS:
         if times[event] is None:
             assert (radius, event) not in covered
@@ -42,8 +41,8 @@ def test_intervals_cover_the_exact_time_in_92_to_98_of_100(covered, radius):
 
 def test_too_few_events_are_said_to_be_too_few(monkeypatch):
     """Just below h/4 one block sees hardly any horizontal hop: there is no interval to speak of."""
-    monkeypatch.setattr(stability, "ordinary_radii", lambda width, height: [0.2499])
-    rows = list(stability.coverage_rows(1.5, 1.0, seed=7, repetitions=20))
+    monkeypatch.setattr(stability, "ordinary_radii", lambda box: [0.2499])
+    rows = list(stability.coverage_rows(BOX, seed=7, repetitions=20))
     row = next(row for row in rows if row["quantity"] == "horizontal_hop")
     assert row["status"] == "too-few"
     assert row["value"] is None
@@ -51,34 +50,33 @@ def test_too_few_events_are_said_to_be_too_few(monkeypatch):
 
 
 def test_binomial_intervals_cover_volume_and_areas():
-    """1600 blocks of conditioned proposals, against the exact expectation of each shell."""
-    scene = Scene(1.5, 1.0, 0.38)
-    draw = draw_constants(scene)
-    shells = [montecarlo.shell_thickness(scene, event, 0.3) for event in events.SHELLS]
-    blocks = [
-        montecarlo.propose_blocks(np.uint64(6), block, block + 1, draw, tuple(shells))
-        for block in range(1600)
+    """1600 points of one block of proposals, against the exact expectation of each shell."""
+    scene = BOX.scene(0.38)
+    areas = [f"{event}_area" for event in SHELLS]
+    points = [
+        montecarlo.conditioned_point(scene, ["volume", *areas], 1, 0.3, seed)
+        for seed in range(1600)
     ]
-    exact = {0: (1.0, exact.volume(scene))}
-    for i, (event, shell) in enumerate(zip(events.SHELLS, shells, strict=True), start=1):
-        sides = 2 if "hop" in event else 1
-        exact[i] = sides * shell, exact.shell_expectation(scene, event, shell)
-    for i, (thickness, value) in exact.items():
-        measure = 2 * draw.mass / thickness
-        estimates = [
-            estimates.binomial_estimate(int(counts[i]), montecarlo.PROPOSALS, measure)
-            for counts in blocks
-        ]
+    exact = {"volume": volume(scene)}
+    for event, area in zip(SHELLS, areas, strict=True):
+        epsilon = points[0]["quantities"][area]["epsilon"]
+        exact[area] = shell_expectation(scene, event, epsilon)
+    for quantity, value in exact.items():
+        found = []
+        for point in points:
+            part = point["quantities"][quantity]
+            found.append(
+                estimates.binomial_estimate(part["hits"], point["samples"], part["measure"])
+            )
         if value == 0:
-            assert estimates == [None] * 1600
+            assert found == [None] * 1600
         else:
-            assert 0.92 <= estimates.coverage(estimates, value) <= 0.98, i
+            assert 0.92 <= np.mean([one.covers(value) for one in found]) <= 0.98, quantity
 
 
 def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
     """What a table shows as estimate ± stderr comes from the same sums by the same function."""
-    scene = Scene(1.5, 1.0, 0.24)
-    point = counting.count_events(scene, {"right_wall": 0.02}, 10**7, 1)
+    point = counting.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
     count, squares = point["counts"]["right_wall"], point["products"]["right_wall*right_wall"]
     replicas, duration = point["eligible"]["right_wall"], point["duration"]
     estimate = estimates.mean_time(count, squares, replicas, duration)

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
-from twodiscs.model.box import largest_radius
+from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_velocity
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.starts import state_in, states
 from twodiscs.studies.stability.measure import advance, box_units, hard_radii
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -22,14 +21,14 @@ BOXES = [(1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1e-6, 1e6)
 
 
 def invariant_state(scene, seed):
-    stream = open_stream(np.uint64(seed), 0)
-    return (*draw_configuration(stream, draw_constants(scene), 0, 0), *draw_velocity(stream))
+    return state_in(states(scene, 1, seed), 0)
 
 
-@pytest.mark.parametrize("box", BOXES)
-def test_every_hard_radius_of_every_box(box):
-    for case, distance, radius in hard_radii(*box):
-        scene = Scene(*box, radius)
+@pytest.mark.parametrize("sides", BOXES)
+def test_every_hard_radius_of_every_box(sides):
+    box = Box(*sides)
+    for case, distance, radius in hard_radii(box):
+        scene = box.scene(radius)
         for seed in range(2):
             assert compare(scene, invariant_state(scene, seed), 60) >= 40, (case, distance, seed)
 
@@ -104,9 +103,9 @@ def test_states_that_are_hard(state):
 
 def test_corner_hit_exactly_by_both_discs():
     """Both run into opposite corners at the same time: four events at once, and the way back."""
-    box = Scene(1.5, 1.0, 0.125)
+    scene = PAPER.with_radius(0.125)
     state = (0.625 - 0.25, 0.375 - 0.25, -0.625 + 0.25, -0.375 + 0.25, 0.5, 0.5, -0.5, -0.5)
-    rows = list(follow(box, state, 1.0))
+    rows = list(follow(scene, state, 1.0))
     assert [row[0] for row in rows] == [0.0, 0.5, 0.5, 0.5, 0.5, 1.0]
     assert sorted(row[5] for row in rows[1:-1]) == ["wall_x1", "wall_x2", "wall_y1", "wall_y2"]
     assert rows[-1][1:5] == state[:4]
@@ -142,12 +141,13 @@ def test_discs_smaller_than_the_spacing_of_coordinates():
             assert abs(math.fsum(v * v for v in state[4:]) - 1) < 1e-14
 
 
-@pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (3.0, 1.0)])
+@pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.0), (3.0, 1.0)])
 @pytest.mark.parametrize("distance", [1e-3, 1e-6, 1e-9])
-def test_no_flight_passes_through_the_other_disc(box, distance):
+def test_no_flight_passes_through_the_other_disc(sides, distance):
     """The gap at the closest approach of every flight, not only at its ends."""
-    for radius in (0.05 * min(box), largest_radius(*box) * (1 - distance)):
-        scene = Scene(*box, radius)
+    box = Box(*sides)
+    for radius in (0.05 * box.shortest, box.largest_radius * (1 - distance)):
+        scene = box.scene(radius)
         path = islice(follow(scene, invariant_state(scene, 3), math.inf), 8000)
         path = np.array([row[1:5] for row in path])
         start = path[:-1, :2] - path[:-1, 2:]
@@ -172,13 +172,14 @@ speeds = st.one_of(
     st.tuples(speeds, speeds, speeds, speeds),
 )
 @settings(max_examples=300, deadline=None, derandomize=True)
-def test_any_combination_of_extremes_goes_on(box, data, places, velocities):
+def test_any_combination_of_extremes_goes_on(sides, data, places, velocities):
     """Centres in corners, on walls, on one line; velocities zero, denormal, equal: on it goes.
 
     No time is negative or not a number, energy and gaps stay, and time advances.
     """
-    _, _, radius = data.draw(st.sampled_from(hard_radii(*box)))
-    scene = Scene(*box, radius)
+    box = Box(*sides)
+    _, _, radius = data.draw(st.sampled_from(hard_radii(box)))
+    scene = box.scene(radius)
     assume(math.hypot(*velocities) > 0.1)
     half_x, half_y, sigma = scene.range_x / 2, scene.range_y / 2, scene.contact_distance
     x1, y1, x2, y2 = (q * h for q, h in zip(places, (half_x, half_y) * 2, strict=True))

@@ -1,14 +1,34 @@
 """One event at a time, against 50-digit arithmetic, where doubles have it hard."""
 
 import math
+from itertools import islice
 
 import mpmath
 import numpy as np
 import pytest
+from exact_motion import exact_path
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import law
+from twodiscs.dynamics.law import (
+    DISC,
+    END_OF_TIME,
+    WALL_X1,
+    WALL_X2,
+    WALL_Y1,
+    WALL_Y2,
+    Law,
+    after_event,
+    contact_quotient,
+    crosses,
+    crossing_time,
+    divided,
+    law_of,
+    next_event,
+    wall_quotient,
+)
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import state_in, states
 
 EPS = 2.0**-52
 HALF_X, HALF_Y = 0.55, 0.3
@@ -44,7 +64,7 @@ def exact_contact(dx, dy, du, dv, sigma):
 
 
 def contact_time(dx, dy, du, dv, sigma):
-    gap, speed, approach = law.contact_quotient(dx, dy, None, du, dv, None, sigma)
+    gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
     return max(gap / speed, 0.0) if approach and speed > 0 else None
 
 
@@ -132,7 +152,7 @@ def test_contact_is_a_matter_of_direction(place, heading, ulps):
 @settings(max_examples=400, deadline=None, derandomize=True)
 def test_wall_time(limit, place, velocity):
     position = limit * place
-    gap, speed = law.wall_quotient(position, velocity, limit)
+    gap, speed = wall_quotient(position, velocity, limit)
     assert gap >= 0
     assert speed == abs(velocity)
     if velocity != 0:
@@ -143,9 +163,9 @@ def test_wall_time(limit, place, velocity):
 
 
 def step(state, remaining=math.inf, half_x=HALF_X, half_y=HALF_Y, sigma=SIGMA):
-    law = law.Law(half_x, half_y, sigma)
-    time, code = law.next_event(state, remaining, law)
-    after = law.after_event(state, time, code, law)
+    law = Law(half_x, half_y, sigma)
+    time, code = next_event(state, remaining, law)
+    after = after_event(state, time, code, law)
     assert math.isfinite(time)
     assert time >= 0
     assert all(map(math.isfinite, after))
@@ -161,7 +181,7 @@ def test_both_walls_of_a_corner_are_hit():
     state = (HALF_X - 0.25, HALF_Y - 0.25, -HALF_X, -HALF_Y, 0.5, 0.5, 0.5, 0.0)
     _, first, state = step(state)
     time, second, state = step(state)
-    assert {first, second} == {law.WALL_X1, law.WALL_Y1}
+    assert {first, second} == {WALL_X1, WALL_Y1}
     assert time <= 4 * EPS
     assert state[0] == HALF_X
     assert state[1] == HALF_Y
@@ -174,7 +194,7 @@ def test_two_discs_hit_opposite_walls_at_once():
     for _ in range(2):
         _, code, state = step(state)
         codes.add(code)
-    assert codes == {law.WALL_X1, law.WALL_X2}
+    assert codes == {WALL_X1, WALL_X2}
     assert state[4] == -0.5
     assert state[6] == 0.5
 
@@ -189,14 +209,14 @@ def test_wall_wins_a_tie_with_a_disc_which_then_comes_at_once():
         times.append(time)
         codes.append(code)
     assert times == [0.5, 0.0, 0.0]
-    assert codes == [law.WALL_Y1, law.WALL_Y2, law.DISC]
+    assert codes == [WALL_Y1, WALL_Y2, DISC]
     assert state[4:] == (0.0, -0.5, 0.5, -0.5)
 
 
 def test_end_of_time_moves_and_changes_nothing_else():
     state = (0.1, 0.05, -0.4, -0.1, 0.5, -0.5, 0.5, 0.5)
     time, code, after = step(state, remaining=0.0625)
-    assert (time, code) == (0.0625, law.END_OF_TIME)
+    assert (time, code) == (0.0625, END_OF_TIME)
     assert after[4:] == state[4:]
     assert after[0] == 0.1 + 0.5 * 0.0625
 
@@ -204,7 +224,7 @@ def test_end_of_time_moves_and_changes_nothing_else():
 def test_a_disc_at_rest_waits():
     state = (0.0, 0.0, -HALF_X, 0.0, 0.0, 0.0, 1.0, 0.0)
     _, code, after = step(state)
-    assert code == law.DISC
+    assert code == DISC
     assert after[4:] == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=2 * EPS)
 
 
@@ -212,7 +232,7 @@ def test_a_disc_at_rest_on_a_wall_is_no_event():
     for u in (0.0, -0.0):
         state = (HALF_X, 0.2, -HALF_X, -HALF_Y, u, 0.0, 0.0, 1.0)
         time, code, _ = step(state)
-        assert code == law.WALL_Y2
+        assert code == WALL_Y2
         assert time == pytest.approx(2 * HALF_Y)
 
 
@@ -222,7 +242,7 @@ def test_a_disc_put_behind_its_wall_by_a_rounding_bounces_at_once(beyond):
     for _ in range(abs(beyond)):
         x = math.nextafter(x, math.inf if beyond > 0 else -math.inf)
     time, code, after = step((x, 0.2, -HALF_X, -HALF_Y, 0.5, 0.0, 0.0, 0.5))
-    assert code == law.WALL_X1
+    assert code == WALL_X1
     assert time <= 8 * EPS
     assert after[0] == HALF_X
     assert after[4] == -0.5
@@ -254,7 +274,7 @@ def test_boxes_of_extreme_shape(half_x, half_y, sigma):
     state = (half_x / 2, half_y / 2, -half_x / 2, -half_y / 2, 0.5, 0.5, -0.5, 0.5)
     for _ in range(1000):
         _, code, state = step(state, half_x=half_x, half_y=half_y, sigma=sigma)
-        assert code != law.END_OF_TIME
+        assert code != END_OF_TIME
         assert abs(state[0]) <= half_x * (1 + 2 * EPS)
         assert abs(state[1]) <= half_y * (1 + 2 * EPS)
     assert energy(state) == pytest.approx(0.5, abs=1e-13)
@@ -279,13 +299,54 @@ def test_grazing_contact_never_repeats_for_ever(seed, approach):
     assert elapsed > 0.01
 
 
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.24, 0.3, 0.38])
+@pytest.mark.parametrize("seed", range(3))
+def test_events_are_those_of_50_digits(radius, seed):
+    """Event by event until the errors, which grow exponentially, have eaten all but six digits."""
+    codes = {
+        "wall_x1": WALL_X1, "wall_y1": WALL_Y1, "wall_x2": WALL_X2, "wall_y2": WALL_Y2,
+        "disc_collision": DISC,
+    }  # fmt: skip
+    scene = Scene(1.5, 1.0, radius)
+    state = state_in(states(scene, 1, seed), 0)
+    law, now, compared = law_of(scene), 0.0, 0
+    with mpmath.workdps(50):
+        path = (event for event in exact_path(scene, state) if event[1] in codes)
+        for true_time, name in islice(path, 60):
+            time, code = next_event(state, math.inf, law)
+            state = after_event(state, time, code, law)
+            now += time
+            if abs(now - true_time) > 1e-6:
+                break
+            assert code == codes[name]
+            compared += 1
+    assert compared >= 15
+
+
 def test_hops_are_counted_once():
-    assert law.crosses(0.1, -0.1)
-    assert not law.crosses(0.1, 0.0)
-    assert not law.crosses(0.0, 0.1)
-    assert law.crosses(0.0, -0.1)
-    assert law.crosses(-0.1, 0.0)
+    assert crosses(0.1, -0.1)
+    assert not crosses(0.1, 0.0)
+    assert not crosses(0.0, 0.1)
+    assert crosses(0.0, -0.1)
+    assert crosses(-0.1, 0.0)
     # From + to exactly 0 and on to −, or back to +: one hop, or none.
-    assert sum(map(law.crosses, (0.1, 0.0), (0.0, -0.1))) == 1
-    assert sum(map(law.crosses, (0.1, 0.0), (0.0, 0.1))) == 0
-    assert law.crossing_time(0.3, -0.6) == 0.5
+    assert sum(map(crosses, (0.1, 0.0), (0.0, -0.1))) == 1
+    assert sum(map(crosses, (0.1, 0.0), (0.0, 0.1))) == 0
+    assert crossing_time(0.3, -0.6) == 0.5
+
+
+def test_the_law_of_a_plain_scene_has_no_effects():
+    """What is None is not compiled."""
+    law = law_of(Scene(1.5, 1.0, 0.2))
+    assert law == Law(0.55, 0.3, 0.4)
+    assert all(value is None for value in law[3:])
+
+
+@given(st.floats(0.1, 10), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
+@settings(max_examples=200, deadline=None, derandomize=True)
+def test_a_division_has_parts_whose_sum_is_the_whole(whole, first, second):
+    """To the last bit; a rounding in the sum would be the same at every event, and add up."""
+    parts = divided(whole, first, second)
+    assert sum(map(mp, parts)) == mp(whole)
+    for part, share in zip(parts, (first, second), strict=True):
+        assert part == pytest.approx(whole * share / (first + second), abs=2 * EPS * whole)

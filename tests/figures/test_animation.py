@@ -1,36 +1,36 @@
 """The animation: it shows the trajectory, stops at the hop, and is the same bytes every time."""
 
+import json
 import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from fabricated import command
 from PIL import Image
 
-from twodiscs.cli import animation as command
-from twodiscs.comparison import tables
+from twodiscs.comparison.scene_tables import Trajectory
 from twodiscs.dynamics import trajectory
 from twodiscs.figures import animation
 from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.figures.kit import drawing, style
-from twodiscs.model.scene import Scene
+from twodiscs.model.box import Box
+from twodiscs.pipeline import jobs
 
-SCENE = {"width": 1.5, "height": 1.0, "radius": 0.24}
-COLUMNS = tables.TABLES["trajectory"].names
+BOX, RADIUS = Box(1.5, 1.0), 0.24
 
 
 @pytest.fixture(scope="module")
 def rows():
     """Rows of trajectory.csv with hops of both kinds."""
-    found = trajectory.trajectory(Scene(**SCENE), 1908)
-    return [dict(zip(COLUMNS, row, strict=True)) for row in found]
+    return list(trajectory.rows(BOX, RADIUS, 1908))
 
 
 @pytest.fixture(scope="module")
 def stage(rows):
     with style.context():
-        return animation.Stage(SCENE, rows)
+        return animation.Stage(BOX, RADIUS, rows)
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def frames(rows, tmp_path_factory):
     folder = tmp_path_factory.mktemp("animation")
     paths = [folder / "a.gif", folder / "a.png"]
     with style.context():
-        animation.animate(SCENE, rows, paths)
+        animation.animate(BOX, RADIUS, rows, paths)
     gif, png = map(unpacked, paths)
     for ours, theirs in zip(gif, png, strict=True):
         assert ours[0] == theirs[0]
@@ -85,9 +85,9 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     with pytest.raises(ValueError, match=r"rows must last two frames, a time of 1, not 0\.5"):
         animation.moments(at(end=0.5), 1.0)
     with pytest.raises(ValueError, match="rows must be those of a trajectory, not none"):
-        animation.animate(SCENE, [], ["a.gif"])
+        animation.animate(BOX, RADIUS, [], ["a.gif"])
     with pytest.raises(ValueError, match=r"output must be a \.gif or \.png file, not 'a\.mp4'"):
-        animation.animate(SCENE, [], ["a.gif", "a.mp4"])
+        animation.animate(BOX, RADIUS, [], ["a.gif", "a.mp4"])
 
 
 # What they show ----------------------------------------------------------------------------------
@@ -95,9 +95,9 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
 
 def test_discs_stay_in_the_box_and_apart(stage):
     first, second = (stage.places(disc, stage.times) for disc in (1, 2))
-    edge = np.array([SCENE["width"], SCENE["height"]]) / 2 - SCENE["radius"]
+    edge = np.array([BOX.width, BOX.height]) / 2 - RADIUS
     assert (np.abs([first, second]) <= edge + 1e-12).all()
-    assert np.hypot(*(first - second).T).min() >= 2 * SCENE["radius"] - 1e-12
+    assert np.hypot(*(first - second).T).min() >= 2 * RADIUS - 1e-12
 
 
 def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
@@ -117,7 +117,7 @@ def test_pixels_are_those_of_the_discs(stage, frames):
     stage.box.figure.canvas.draw()
     up = frames[1][0][1].shape[0]
     angles = np.linspace(0, 2 * np.pi, 36, endpoint=False)
-    around = np.column_stack([np.cos(angles), np.sin(angles)]) * SCENE["radius"]
+    around = np.column_stack([np.cos(angles), np.sin(angles)]) * RADIUS
     for k in (0, 40, BEFORE, BEFORE + 30):
         for disc, (face, _) in enumerate(drawing.DISCS, 1):
             ((x, y),) = stage.places(disc, stage.times[k : k + 1])
@@ -133,25 +133,27 @@ def test_pixels_are_those_of_the_discs(stage, frames):
 
 
 @pytest.mark.parametrize(
-    ("width", "height"), [(3.0, 1.0), (1.0, 1.5), (40.0, 1.0), (1.0, 1.0)], ids=str
+    "box", [Box(3.0, 1.0), Box(1.0, 1.5), Box(40.0, 1.0), Box(1.0, 1.0)], ids=str
 )
-def test_other_boxes(width, height, tmp_path):
-    scene = Scene(width, height, 0.24)
-    found = [dict(zip(COLUMNS, row, strict=True)) for row in trajectory.trajectory(scene, 3)]
+def test_other_boxes(box, tmp_path):
+    found = list(trajectory.rows(box, RADIUS, 3))
     with style.context():
-        place = {"width": width, "height": height, "radius": 0.24}
-        animation.animate(place, found, [tmp_path / "a.gif"])
+        animation.animate(box, RADIUS, found, [tmp_path / "a.gif"])
     assert (tmp_path / "a.gif").stat().st_size < 600_000
+
+
+GIVEN = json.dumps({"box": BOX.parameters(), "radius": RADIUS})
 
 
 def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     table, style_file = tmp_path / "trajectory.csv", tmp_path / "matplotlibrc"
-    tables.write(table, "trajectory", rows)
+    Trajectory.write(table, rows)
     style_file.write_text("font.size: 20\nlines.linewidth: 7\n")
     outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
-    words = ["--scene", repr(SCENE), "--trajectory", table, "--output", *outputs]
+    words = ["--parameters", GIVEN, "--table", f"trajectory={table}", "--output", *outputs]
     run = subprocess.run(
-        [sys.executable, "-m", "twodiscs.cli.animation", *map(str, words)],
+        [sys.executable, "-m", "twodiscs.pipeline.jobs", "animation", "figures.animation"]
+        + [str(word) for word in words],
         env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
         capture_output=True,
         text=True,
@@ -162,11 +164,22 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
         assert path.stat().st_size < 600_000
 
 
-def test_mistakes_are_told_in_one_sentence(monkeypatch, capsys):
-    words = ["", "--scene", "{'width': 1}", "--trajectory", "a.csv", "--output", "a.gif"]
-    monkeypatch.setattr(sys, "argv", words)
-    with pytest.raises(SystemExit) as leave:
-        command.arguments.run(command.main)
-    assert leave.value.code == 2
-    said = "error: parameters must be height, radius, width, not width\n"
-    assert capsys.readouterr().err == said
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"box": {"width": 1}}, "box must have width, height and maybe effects, not {'width': 1}"),
+        ({"box": BOX.parameters()}, "figures.animation: missing a required argument: 'radius'"),
+        ({"box": BOX.parameters(), "radius": -1}, "radius must be a positive"),
+    ],
+)
+def test_mistakes_are_told_in_one_sentence(given, said, rows, tmp_path, monkeypatch, capsys):
+    table, output = tmp_path / "trajectory.csv", tmp_path / "a.gif"
+    Trajectory.write(table, rows)
+    words = ["--parameters", json.dumps(given), "--table", f"trajectory={table}"]
+    words = ["animation", "figures.animation", *words, "--output", output]
+    assert command(monkeypatch, jobs, *words) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert said in error
+    assert error.count("\n") == 1
+    assert not output.exists()

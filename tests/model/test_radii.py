@@ -7,25 +7,25 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from twodiscs.model import box, radii
-from twodiscs.model.box import fits, largest_radius
-from twodiscs.model.scene import Scene
+from twodiscs.model.box import Box
+from twodiscs.model.radii import METHODS, even_radii, key, radii, stream_seed
 
 sides = st.floats(-6, 6).map(lambda x: 10**x)
 
 
 @given(sides, sides, st.floats(1e-6, 0.99), st.integers(1, 200))
 def test_any_box_gets_its_radii(width, height, fraction, count):
-    largest = largest_radius(width, height)
+    box = Box(width, height)
+    largest = box.largest_radius
     smallest = fraction * largest
     assume(smallest not in (width / 4, height / 4))
-    radii = radii.radii(width, height, smallest, count)
-    assert len(radii) == count
-    assert radii[0] == smallest
-    assert all(a < b for a, b in itertools.pairwise(radii))
-    assert all(fits(width, height, radius) for radius in radii)
-    assert not {width / 4, height / 4, largest} & set(radii[1:])
-    assert all(type(radius) is float for radius in radii)
+    grid = radii(width, height, smallest, count)
+    assert len(grid) == count
+    assert grid[0] == smallest
+    assert all(a < b for a, b in itertools.pairwise(grid))
+    assert all(map(box.fits, grid))
+    assert not {width / 4, height / 4, largest} & set(grid[1:])
+    assert all(type(radius) is float for radius in grid)
 
 
 @pytest.mark.parametrize("gap", [0.0, 2**-52, 1e-15, 1e-12, 1e-7, 1e-5])
@@ -34,60 +34,52 @@ def test_any_box_gets_its_radii(width, height, fraction, count):
 def test_thresholds_that_nearly_coincide(gap, ratio, sign):
     # w = h puts both hops' thresholds in one place, w = 2h one of them at the largest radius.
     width = ratio * (1 + sign * gap)
-    radii = radii.radii(width, 1.0, 0.01, 60)
-    assert len(set(radii)) == 60
-    assert all(fits(width, 1.0, radius) for radius in radii)
-    assert not {width / 4, 0.25} & set(radii)
+    grid = radii(width, 1.0, 0.01, 60)
+    assert len(set(grid)) == 60
+    assert all(map(Box(width, 1.0).fits, grid))
+    assert not {width / 4, 0.25} & set(grid)
 
 
 def test_points_crowd_on_both_sides_of_every_threshold():
-    radii = radii.radii(1.5, 1.0, 0.01, 46)
+    grid = radii(1.5, 1.0, 0.01, 46)
     typical = 0.38 / 46
     for threshold in (0.25, 0.375):
         for side in (-1, 1):
-            distances = sorted(d for r in radii if (d := side * (r - threshold)) > 0)
+            distances = sorted(d for r in grid if (d := side * (r - threshold)) > 0)
             assert distances[0] < typical / 8
             assert distances[1] < typical / 2
             # The gaps widen from the threshold outwards.
             assert distances[0] < distances[1] - distances[0] < distances[3] - distances[2]
-    room = [largest_radius(1.5, 1.0) - radius for radius in reversed(radii)]
+    room = [Box(1.5, 1.0).largest_radius - radius for radius in reversed(grid)]
     assert room[0] < typical / 50
     assert room[0] < room[1] - room[0] < room[3] - room[2]
 
 
 def test_keys_are_short_and_read_back():
-    radii = radii.radii(1.5, 1.0, 0.01, 46)
-    keys = [radii.key(radius) for radius in radii]
+    grid = radii(1.5, 1.0, 0.01, 46)
+    keys = [key(radius) for radius in grid]
     assert max(map(len, keys)) <= len("0.37507")
-    assert [float(key) for key in keys] == list(radii)
-    assert radii.key(1) == "1.0"
-    assert radii.key(0.2) == "0.2"
+    assert [float(text) for text in keys] == list(grid)
+    assert key(1) == "1.0"
+    assert key(0.2) == "0.2"
 
 
 def test_the_grid_scales_with_the_box():
     # 2^10 is exact in binary; in decimals the rounding differs, so points agree within a gap.
-    small, large = (radii.radii(1.5 * s, s, 0.01 * s, 30) for s in (1.0, 1024.0))
+    small, large = (radii(1.5 * s, s, 0.01 * s, 30) for s in (1.0, 1024.0))
     gaps = [b - a for a, b in itertools.pairwise(small)]
     for i in range(1, 29):
         assert abs(large[i] / 1024 - small[i]) < (gaps[i - 1] + gaps[i]) / 2
 
 
-def test_thresholds_of_a_box():
-    assert box.thresholds(1.5, 1.0) == (0.25, 0.375)
-    assert box.thresholds(1.0, 1.5) == (0.25, 0.375)
-    assert box.thresholds(3.0, 1.0) == (0.25,)  # w/4 is beyond the largest radius
-    assert box.thresholds(2.0, 1.0) == (0.25,)
-    assert box.thresholds(1.0, 1.0) == (0.25,)
-
-
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((1.5, 1.0, 0.01, 0), "count must be a positive integer, not 0"),
-        ((1.5, 1.0, 0.01, -3), "count must be a positive integer, not -3"),
-        ((1.5, 1.0, 0.01, 5.0), "count must be a positive integer, not 5.0"),
-        ((1.5, 1.0, 0.01, True), "count must be a positive integer, not True"),
-        ((1.5, 1.0, 0.01, "5"), "count must be a positive integer, not '5'"),
+        ((1.5, 1.0, 0.01, 0), "count must be an integer from 1 to 1000, not 0"),
+        ((1.5, 1.0, 0.01, -3), "count must be an integer from 1 to 1000, not -3"),
+        ((1.5, 1.0, 0.01, 5.0), "count must be an integer of at least 1, not 5.0"),
+        ((1.5, 1.0, 0.01, True), "count must be an integer of at least 1, not True"),
+        ((1.5, 1.0, 0.01, "5"), "count must be an integer of at least 1, not '5'"),
         ((1.5, 1.0, 0.4, 5), "smallest must be below the largest radius"),
         ((1.5, 1.0, 0.25, 5), "smallest must not be 0.25"),
         ((1.5, 1.0, math.nan, 5), "smallest must be a positive, finite number, not nan"),
@@ -98,15 +90,15 @@ def test_thresholds_of_a_box():
 )
 def test_bad_grids_are_refused(arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
-        radii.radii(*arguments)
+        radii(*arguments)
 
 
 def test_seeds_depend_on_each_part_and_on_nothing_else():
     seeds = {
-        (root, scene, method, key): radii.stream_seed(root, scene, method, key)
+        (root, scene, method, key): stream_seed(root, scene, method, key)
         for root in (0, 1, 1908)
         for scene in ("paper", "long", "paper1")
-        for method in radii.METHODS
+        for method in METHODS
         for key in ("0.1", "0.11", "0.2")
     }
     assert len(set(seeds.values())) == len(seeds)
@@ -118,31 +110,31 @@ def test_seeds_depend_on_each_part_and_on_nothing_else():
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((-1, "paper", "dynamics", "0.1"), "root must be a non-negative integer, not -1"),
-        ((True, "paper", "dynamics", "0.1"), "root must be a non-negative integer, not True"),
-        ((1.0, "paper", "dynamics", "0.1"), "root must be a non-negative integer, not 1.0"),
+        ((-1, "paper", "dynamics", "0.1"), "root must be an integer from 0 to .*, not -1"),
+        ((True, "paper", "dynamics", "0.1"), "root must be an integer of at least 0, not True"),
+        ((1.0, "paper", "dynamics", "0.1"), "root must be an integer of at least 0, not 1.0"),
         ((1, "paper", "magic", "0.1"), "method must be one of monte_carlo, .*, not 'magic'"),
     ],
 )
 def test_bad_seeds_are_refused(arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
-        radii.stream_seed(*arguments)
+        stream_seed(*arguments)
 
 
 @pytest.mark.parametrize("bad", [0, -1, math.nan, "0.1", True])
 def test_what_is_no_radius_has_no_key(bad):
     with pytest.raises(ValueError, match="radius must"):
-        radii.key(bad)
+        key(bad)
 
 
 @given(st.floats(-6, 6).map(lambda x: 10**x), st.floats(1.01, 1e4), st.integers(2, 1000))
 def test_even_radii_are_even(smallest, ratio, count):
     largest = ratio * smallest
-    radii = radii.even_radii(smallest, largest, count)
+    found = even_radii(smallest, largest, count)
     step = (largest - smallest) / (count - 1)
-    assert len(radii) == count
-    assert radii[0] == smallest
-    for i, radius in enumerate(radii):
+    assert len(found) == count
+    assert found[0] == smallest
+    for i, radius in enumerate(found):
         assert abs(radius - (smallest + i * step)) < 0.2500001 * step
         assert radius < 1.0100001 * largest
 
@@ -159,25 +151,6 @@ def test_even_radii_are_even(smallest, ratio, count):
     ],
 )
 def test_even_radii_that_make_no_sense(arguments, sentence):
-    assert radii.even_radii(0.1, 0.2, 1) == (0.1,)
+    assert even_radii(0.1, 0.2, 1) == (0.1,)
     with pytest.raises(ValueError, match=sentence):
-        radii.even_radii(*arguments)
-
-
-@given(sides, sides)
-def test_ends_are_found_to_the_last_digit(width, height):
-    """The closed forms of a plain box: w/4 or the largest radius, which ``fits`` decides."""
-
-    def scene_at(radius):
-        return Scene(width, height, radius)
-
-    found = box.end(scene_at, min(width, height) / 2)
-    assert not fits(width, height, found)
-    assert fits(width, height, math.nextafter(found, 0))
-    hop = box.end(scene_at, min(width, height) / 2, lambda scene: scene.vertical_hops)
-    assert hop == (width / 4 if fits(width, height, math.nextafter(width / 4, 0)) else found)
-
-
-def test_an_end_that_is_not_there():
-    assert box.end(lambda radius: Scene(1, 1, radius), 0.5, lambda scene: False) < 1e-18
-    assert box.end(lambda radius: None, 0.5) == 0.5
+        even_radii(*arguments)

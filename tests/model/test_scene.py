@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twodiscs.model.box import fits, largest_radius
+from twodiscs.model.box import Box
 from twodiscs.model.checks import length
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import REGIMES, Scene
@@ -29,25 +29,25 @@ def largest_by_bisection(width, height):
 
 @pytest.mark.parametrize(("width", "height"), BOXES)
 def test_largest_radius_is_where_the_discs_jam(width, height):
-    assert largest_radius(width, height) == pytest.approx(
+    assert Box(width, height).largest_radius == pytest.approx(
         largest_by_bisection(width, height), rel=4 * 2**-52
     )
 
 
 @given(sides, sides)
 def test_largest_radius_separates_what_fits_from_what_does_not(width, height):
-    largest = largest_radius(width, height)
-    assert largest == pytest.approx(largest_radius(height, width), rel=4 * 2**-52)
-    assert fits(width, height, largest * (1 - 1e-9))
-    assert not fits(width, height, largest * (1 + 1e-9))
+    largest = Box(width, height).largest_radius
+    assert largest == pytest.approx(Box(height, width).largest_radius, rel=4 * 2**-52)
+    assert Box(width, height).fits(largest * (1 - 1e-9))
+    assert not Box(width, height).fits(largest * (1 + 1e-9))
 
 
 def test_largest_radius_of_the_papers_box():
-    assert largest_radius(1.5, 1.0) == pytest.approx((2.5 - math.sqrt(3)) / 2, rel=1e-15)
+    assert Box(1.5, 1.0).largest_radius == pytest.approx((2.5 - math.sqrt(3)) / 2, rel=1e-15)
 
 
 def test_a_radius_next_to_the_largest_is_allowed():
-    assert Scene(1.5, 1, largest_radius(1.5, 1) * (1 - 1e-12)).regime == "no-hops"
+    assert Scene(1.5, 1, Box(1.5, 1).largest_radius * (1 - 1e-12)).regime == "no-hops"
     with pytest.raises(ValueError, match=r"radius 0\.5 does not fit.*below 0\.38397459621556"):
         Scene(1.5, 1, 0.5)
 
@@ -78,7 +78,7 @@ def test_regimes(width, height, radius, regime, components):
 def test_derived_lengths():
     scene = Scene(1.5, 1, 0.25)
     assert (scene.range_x, scene.range_y, scene.contact_distance) == (1.0, 0.5, 0.5)
-    assert scene.largest_radius == largest_radius(1.5, 1)
+    assert scene.largest_radius == Box(1.5, 1).largest_radius
     assert scene.with_radius(0.1) == Scene(1.5, 1, 0.1)
 
 
@@ -119,9 +119,9 @@ def test_what_is_no_length_is_refused_by_name(name, bad):
 @pytest.mark.parametrize("bad", BAD_LENGTHS)
 def test_functions_refuse_what_is_no_length(bad):
     with pytest.raises(ValueError, match="must"):
-        largest_radius(bad, 1)
+        Box(bad, 1)
     with pytest.raises(ValueError, match="must"):
-        largest_radius(1, bad)
+        Box(1, bad)
     with pytest.raises(ValueError, match=r"^side must"):
         length("side", bad)
 

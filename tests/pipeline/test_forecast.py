@@ -5,20 +5,21 @@ import sys
 
 import pytest
 
-from twodiscs.cli import forecast as command
-from twodiscs.comparison import tables
+from twodiscs.comparison.scene_tables import Forecast
 from twodiscs.dynamics import counting, intervals
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline import forecast
-from twodiscs.pipeline.configuration import load, schema
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.studies.catalogue import STUDIES
 
 BOX = {"width": 1.5, "height": 1.0}
 
 
 def job(radius, accuracy, budget=10**9, seed=1):
     return {
-        **BOX, "radius": radius, "seed": seed, "event_budget": budget,
+        "box": BOX, "radius": radius, "seed": seed, "event_budget": budget,
         "accuracy": dict.fromkeys(EVENTS, accuracy),
     }  # fmt: skip
 
@@ -46,11 +47,11 @@ def test_a_blocked_hop_costs_a_first_round():
 
 
 def test_samples_and_intervals_come_in_blocks():
-    sampled = {**BOX, "radius": 0.2, "areas": ["top_wall"], "volume": True, "shell": 0.02}
+    sampled = {"box": BOX, "radius": 0.2, "areas": ["top_wall"], "volume": True, "shell": 0.02}
     pilot = forecast.pilot_monte_carlo(sampled | {"samples": 1})
     assert pilot.events == 1 << 20
     assert pilot.seconds_per_million > 0
-    drawn = {**BOX, "radius": 0.2, "event": "horizontal_hop", "intervals": 10**5}
+    drawn = {"box": BOX, "radius": 0.2, "event": "horizontal_hop", "intervals": 10**5}
     assert forecast.pilot_intervals(drawn).events == 2 * intervals.CHAINS * intervals.RETURNS
 
 
@@ -63,15 +64,21 @@ CONFIGURATION = {
 }
 
 
+STARTS = {kind: forecast.Start(0.5, 0.25) for kind in (*STAGES, "tables", "figures")}
+
+
 @pytest.fixture
-def rows(monkeypatch):
-    """Rows with pilots of 5 events at 2e5 s per million and starts of 0.5 s and 0.25 s."""
-    starts = {kind: forecast.Start(0.5, 0.25) for kind in (*forecast.STAGES, "tables", "figures")}
-    monkeypatch.setattr(forecast, "run_samples", lambda kinds, cores: starts)
+def quick(monkeypatch):
+    """Pilots of 5 events at 2e5 s per million and starts of 0.5 s and 0.25 s, without any run."""
+    monkeypatch.setattr(forecast, "run_samples", lambda kinds, cores: STARTS)
     monkeypatch.setattr(
         forecast, "run_pilots", lambda jobs, cores: [forecast.Pilot(5, 2e5) for _ in jobs]
     )
-    return forecast.rows(load.load(CONFIGURATION), 2)
+
+
+@pytest.fixture
+def rows(quick):
+    return forecast.rows(load(CONFIGURATION), 2)
 
 
 def of(rows, **where):
@@ -97,21 +104,23 @@ def test_sums_add_up(rows):
     assert rows[-1]["scene"] == "all"
     assert rows[-1]["stage"] == "total"
     (comparison,) = of(rows, stage="accuracy_cost")
-    assert comparison["seconds"] == 7
+    other = load(CONFIGURATION | {"accuracy_cost": {"seconds": 9}})
+    (longer,) = of(forecast.rows(other, 2), stage="accuracy_cost")
+    assert longer["startup"] == comparison["startup"] + 2 > 7
     # One job does not go faster on two cores.
-    assert comparison["wall_clock"] == 7 + forecast.COMPARISON
+    assert comparison["wall_clock"] == comparison["seconds"] + comparison["startup"]
 
 
 def test_the_table_takes_them(rows, tmp_path):
-    tables.write(tmp_path / "forecast.csv", "forecast", rows)
-    assert tables.read(tmp_path / "forecast.csv", "forecast") == rows
+    Forecast.write(tmp_path / "forecast.csv", rows)
+    assert Forecast.read(tmp_path / "forecast.csv") == rows
 
 
 def test_what_is_printed(rows, monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(forecast, "rows", lambda configuration, cores: rows)
     arguments = ["forecast", "--configuration", json.dumps(CONFIGURATION), "--cores", "2"]
     monkeypatch.setattr(sys, "argv", [*arguments, "--output", str(tmp_path / "forecast.csv")])
-    command.main()
+    forecast.main()
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["scene", "stage", "jobs", "events", "one", "core", "2", "cores"]
     assert lines[1].split() == ["a", "dynamics", "2", "10", "3.5", "s", "1.8", "s"]
@@ -120,7 +129,7 @@ def test_what_is_printed(rows, monkeypatch, tmp_path, capsys):
 
 
 def test_durations_as_people_say_them():
-    assert [command.duration(s) for s in (1, 99, 100, 7200)] == [
+    assert [forecast.duration(s) for s in (1, 99, 100, 7200)] == [
         "1.0 s",
         "99.0 s",
         "1.7 min",
@@ -131,7 +140,7 @@ def test_durations_as_people_say_them():
 @pytest.mark.parametrize("cores", [0, -1, 1.5, True])
 def test_no_cores(cores):
     with pytest.raises(ValueError, match="cores must be an integer"):
-        forecast.rows(load.load(CONFIGURATION), cores)
+        forecast.rows(load(CONFIGURATION), cores)
 
 
 def test_a_sample_job_runs():
@@ -140,36 +149,36 @@ def test_a_sample_job_runs():
     assert start.startup > 0
 
 
-def test_what_is_built_once_is_forecast_if_asked_for(monkeypatch):
-    starts = {kind: forecast.Start(0.5, 0.25) for kind in (*forecast.STAGES, "tables", "figures")}
-    monkeypatch.setattr(forecast, "run_samples", lambda kinds, cores: starts)
-    monkeypatch.setattr(
-        forecast, "run_pilots", lambda jobs, cores: [forecast.Pilot(5, 2e5) for _ in jobs]
-    )
-    for names in ([], ["report", "errata"], ["accuracy_cost"]):
-        asked = load.load(CONFIGURATION | {"shared": names})
-        found = [row["stage"] for row in of(forecast.rows(asked, 1), scene="all")]
-        assert found == ["compile", *asked.shared, "total"]
-    known = schema.schema()["properties"]["shared"]["items"]["enum"]
-    assert {*forecast.ONCE, "accuracy_cost"} == {*known}
+@pytest.mark.parametrize("names", [[], ["report", "errata"], ["accuracy_cost"]])
+def test_what_is_built_once_is_forecast_if_asked_for(quick, names):
+    asked = load(CONFIGURATION | {"shared": names})
+    found = [row["stage"] for row in of(forecast.rows(asked, 1), scene="all")]
+    assert found == ["compile", *asked.shared, "total"]
+
+
+def test_all_that_is_built_once_has_a_time(rows):
+    shared = {row["stage"]: row for row in of(rows, scene="all")}
+    studies = [name for name, study in STUDIES.items() if study.shared]
+    assert {*studies, *forecast.DOCUMENTS, "compile", "total"} == {*shared}
+    assert all(row["startup"] > 0 for row in shared.values())
 
 
 def test_a_scene_with_effects_is_forecast():
     """Events as in the job; tables and figures are those that have a place on a torus."""
-    torus = {**BOX, "radius": 0.2, "effects": {"periodic": "xy"}, "seed": 1}
+    torus = {"box": BOX | {"effects": {"periodic": "xy"}}, "radius": 0.2, "seed": 1}
     asked = torus | {"accuracy": {"disc_collision": 2e-3}, "event_budget": 10**8}
     scene = Scene(1.5, 1.0, 0.2, periodic="xy")
     spent = counting.count_events(scene, asked["accuracy"], 10**8, 1)["events"]
     assert 1 / 1.5 < spent / forecast.pilot_dynamics(asked).events < 1.5
     sampled = {"areas": ["disc_collision"], "volume": True, "shell": 0.02, "samples": 3 << 20}
     assert forecast.pilot_monte_carlo(torus | sampled).events == 3 << 20
-    (request,) = load.load(
+    (request,) = load(
         {"scenes": [{"name": "a", "box": BOX, "effects": {"periodic": ["x", "y"]}}]}
     ).scenes
     rows = forecast.scene_rows(
         request,
         [forecast.Pilot(1, 1.0) for _ in forecast.jobs_of(request)],
-        {kind: forecast.Start(0.0, 0.0) for kind in (*forecast.STAGES, "tables", "figures")},
+        STARTS,
         1,
     )
     # Grid, theory, volume, areas, mean times, check and cost; and a figure of each of three.

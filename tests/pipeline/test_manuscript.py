@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 import typst
 
-from twodiscs.comparison import tables
-from twodiscs.figures.catalogue import FIGURES, SHARED
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures.catalogue import FIGURES, NOTES
 from twodiscs.figures.kit import style
 from twodiscs.pipeline.documents import manuscript
+from twodiscs.studies.catalogue import STUDY_FIGURES, STUDY_TABLES
 
-PAPER = Path(__file__).resolve().parents[1] / "paper"
+PAPER = Path(__file__).resolve().parents[2] / "paper"
+TABLES = SCENE_TABLES | STUDY_TABLES
 
 # What is typed ------------------------------------------------------------------------------------
 
@@ -119,7 +121,7 @@ def test_there_is_one_place_for_every_figure():
     source = (PAPER / "paper.typ").read_text()
     calls = re.findall(r"#(?:drawn|abreast|beside)\((.*)\)", source)
     named = [name for call in calls for name in re.findall(r'"(\w+)"', call)]
-    assert sorted(named) == sorted([*FIGURES, *SHARED])
+    assert sorted(named) == sorted([*FIGURES, *STUDY_FIGURES])
 
 
 # Fabricated results -------------------------------------------------------------------------------
@@ -127,7 +129,7 @@ def test_there_is_one_place_for_every_figure():
 
 def rows(table, *values):
     """Return rows of ``table`` that are empty but for ``values``, dicts."""
-    return [dict.fromkeys(tables.TABLES[table].names) | value for value in values]
+    return [TABLES[table].empty(**value) for value in values]
 
 
 def cost(part, quantity, method, **values):
@@ -139,7 +141,7 @@ def hard(part, quantity, method=None, **values):
     return {"part": part, "quantity": quantity, "method": method, "count": 2000} | values
 
 
-SCENE_TABLES = {
+OF_SCENE = {
     "grid": rows("grid", {"radius": 0.1}, {"radius": 0.2}),
     "check": rows(
         "check",
@@ -153,7 +155,7 @@ SCENE_TABLES = {
     ),
 }
 
-SHARED_TABLES = {
+OF_STUDIES = {
     "errata": rows(
         "errata",
         {"label": "volindic", "place": "II", "verdict": "right"},
@@ -259,30 +261,36 @@ def paper(tmp_path_factory, page):
     """
 
     def make(
-        figures=tuple(FIGURES), common=tuple(SHARED), scenes=1, empty=(), change=None, text=None
+        figures=tuple(FIGURES),
+        common=tuple(STUDY_FIGURES),
+        scenes=1,
+        empty=(),
+        change=None,
+        text=None,
     ):
         tmp_path = tmp_path_factory.mktemp("paper")
         folder = tmp_path / "results"
         named = {
             name: [] if name in empty else [dict(row) for row in found]
-            for name, found in (SCENE_TABLES | SHARED_TABLES).items()
+            for name, found in (OF_SCENE | OF_STUDIES).items()
         }
         for (table, row, column), value in (change or {}).items():
             named[table][row][column] = value
         names = [f"scene{i}" for i in range(scenes)]
         for place, some, shown in (
-            *((folder / name, SCENE_TABLES, figures) for name in names),
-            (folder, SHARED_TABLES, common),
+            *((folder / name, OF_SCENE, figures) for name in names),
+            (folder, OF_STUDIES, common),
         ):
             (place / "figures").mkdir(parents=True)
             for name in shown:
                 shutil.copy(page, place / "figures" / f"{name}.pdf")
             for name in some:
-                tables.write(place / f"{name}.csv", name, named[name])
-        template = tmp_path / "paper.typ"
+                TABLES[name].write(place / f"{name}.csv", named[name])
+        template = tmp_path / "elsewhere" / "paper.typ"
+        template.parent.mkdir()
         for source in PAPER.iterdir():
             if source.is_file():
-                shutil.copy(source, tmp_path)
+                shutil.copy(source, template.parent)
         if text:
             template.write_text(text)
         box = {"width": 1.5, "height": 1.0}
@@ -291,10 +299,10 @@ def paper(tmp_path_factory, page):
             "figures": list(common),
             "results": str(folder),
             "scenes": [
-                box | {"name": name, "figures": list(figures), "tables": list(SCENE_TABLES)}
+                box | {"name": name, "figures": list(figures), "tables": list(OF_SCENE)}
                 for name in names
             ],
-            "tables": list(SHARED_TABLES),
+            "tables": list(OF_STUDIES),
         }
         output = tmp_path / "paper.pdf"
         manuscript.typeset(str(template), str(output), contents)
@@ -317,12 +325,12 @@ def test_it_is_the_same_bytes_again_and_has_no_date(paper, unchanged):
 
 @pytest.mark.parametrize("start", [0, 1])
 def test_a_missing_figure_leaves_no_dangling_reference(paper, start):
-    paper(figures=list(FIGURES)[start::2], common=list(SHARED)[start::2])
+    paper(figures=list(FIGURES)[start::2], common=list(STUDY_FIGURES)[start::2])
 
 
 def test_figures_are_only_spoken_of_where_they_are():
     references = re.findall(r"@(\w+)", (PAPER / "paper.typ").read_text())
-    assert not {*FIGURES, *SHARED} & {*references}
+    assert not {*FIGURES, *STUDY_FIGURES} & {*references}
 
 
 def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
@@ -443,8 +451,11 @@ def test_versions_are_those_installed():
 
 
 def test_what_captions_explain_alike_is_split_off():
-    own, alike = manuscript.split(FIGURES["volume"].caption)
-    assert f"{own} {alike}" == FIGURES["volume"].caption
+    entry = FIGURES["volume"]
+    own, alike = manuscript.captions()["volume"]
+    assert f"{own} {alike}" == entry.full_caption()
     assert own.endswith("(symbols).")
+    assert alike == NOTES[entry.note].plain
     assert alike.startswith("Error bars")
-    assert manuscript.split("A box.") == ("A box.", "")
+    assert manuscript.captions()["model"] == (FIGURES["model"].full_caption(), "")
+    assert manuscript.captions().keys() == FIGURES.keys() | STUDY_FIGURES.keys()

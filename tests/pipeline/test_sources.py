@@ -1,7 +1,12 @@
-"""The files a module is made of, and the hash of all of them."""
+"""The files a module is made of, and their fingerprint: code counts, and nothing else."""
 
+import io
+import json
+import os
+import shutil
 import subprocess
 import sys
+import tokenize
 from pathlib import Path
 
 import pytest
@@ -52,15 +57,27 @@ CASES = {
 
 
 @pytest.fixture
-def package(tmp_path, monkeypatch):
+def place(monkeypatch):
+    """Return a function that makes a folder the package to be read, or forgets what was read."""
+
+    def look_at(folder):
+        monkeypatch.setattr(sources, "PACKAGE", folder)
+        for known in (sources._imports, sources._read, sources.fingerprint):
+            known.cache_clear()
+
+    real = sources.PACKAGE
+    yield look_at
+    look_at(real)
+
+
+@pytest.fixture
+def package(tmp_path, place):
     root = tmp_path / "twodiscs"
     for name, text in MODULES.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
-    monkeypatch.setattr(sources, "PACKAGE", root)
-    sources._imports.cache_clear()
-    yield root
-    sources._imports.cache_clear()
+    place(root)
+    return root
 
 
 @pytest.mark.parametrize("module", CASES)
@@ -73,40 +90,189 @@ def test_imports_are_followed(package, module):
 
 @pytest.mark.parametrize("module", ["", "nothing", "pack.nothing", "..alone", "alone.py", None, 3])
 def test_unknown_module_is_an_error(package, module):
-    with pytest.raises(ValueError, match="module must be a module of twodiscs"):
-        sources.imported(module)
+    for function in (sources.imported, sources.fingerprint):
+        with pytest.raises(ValueError, match="module must be a module of twodiscs"):
+            function(module)
 
 
-def test_hash_sees_every_edit(package):
-    seen = {sources.package_hash()}
-    assert sources.package_hash() in seen
-    (package / "alone.py").touch()
-    assert sources.package_hash() in seen
-    for edit in (
-        lambda: (package / "alone.py").write_text(MODULES["alone.py"] + "# a comment\n"),
-        lambda: (package / "pack" / "more.py").write_text(""),
-        lambda: (package / "helper.py").rename(package / "pack" / "helper.py"),
-    ):
-        edit()
-        assert sources.package_hash() not in seen
-        seen.add(sources.package_hash())
-    (package / "notes.txt").write_text("no source")
-    assert sources.package_hash() in seen
+def test_modules_and_what_the_code_of_one_imports(package):
+    assert sources.modules()[:2] == [(), ("absolute",)]
+    assert {("pack",), ("pack", "inner")} < {*sources.modules()}
+    assert len(sources.modules()) == len(MODULES)
+    # Its parents are imported too, but not by its code.
+    assert sorted(sources.imports_of(("pack", "inner"))) == [("alone",), ("pack", "sibling")]
+
+
+# Fingerprints -------------------------------------------------------------------------------------
+
+TEXT = '''
+"""About # this module."""
+from dataclasses import dataclass
+
+LIMIT = 3  # at most
+MARK = "#" + '#' + f"# {LIMIT} #" + """two # lines
+# of them"""
+"""What LIMIT and MARK are."""
+
+# A remark, é.
+@dataclass
+class Table:
+    'A table.'
+
+    radius: float
+    """radius of the discs"""
+
+    def write(self):
+        """Write # it.
+
+        Over lines.
+        """
+        return "é", "#"  # both
+
+
+def empty(): "Nothing."
+'''
+
+#: Edits of ``TEXT``: what is replaced, and by what.
+NO_CODE = [
+    ("# at most", ""),
+    ("# at most", "# at least 'this'"),
+    ("# A remark, é.\n", ""),
+    ("3  # at", "3# at"),
+    ("\n\ndef", "\n\n\n\n# new\ndef"),
+    ('"""About # this module."""\n', ""),
+    ("'A table.'", '"""Another table, over\n    two lines."""'),
+    ('"""radius of the discs"""', "'radius of disc 1'"),
+    ('    """radius of the discs"""\n', ""),
+    ('"""What LIMIT and MARK are."""\n', ""),
+    ("Over lines.", "Over more\n\n        lines."),
+    ("# both", "# both, é"),
+    ('"Nothing."', '"Nothing at all."'),
+]
+CODE = [
+    ("LIMIT = 3", "LIMIT = 4"),
+    ('"#" +', '"" +'),
+    ("'#' +", "'# ' +"),
+    ("# {LIMIT} #", "# {LIMIT}"),
+    ("two # lines", "two # line"),
+    ("# of them", "# of us"),
+    ('"é", "#"', '"é", "# both"'),
+    ("radius: float", "radius: int"),
+    ("@dataclass\n", ""),
+    ("return", "yield"),
+]
+
+
+@pytest.fixture
+def print_of(package, place):
+    """Return a function: the fingerprint of ``chain``, in which ``alone`` has a text."""
+
+    def fingerprint(text):
+        (package / "alone.py").write_text(text, encoding="utf-8")
+        place(package)
+        return sources.fingerprint("chain")
+
+    return fingerprint
+
+
+@pytest.mark.parametrize(("old", "new"), NO_CODE)
+def test_what_is_no_code_leaves_the_fingerprint(print_of, old, new):
+    assert TEXT.count(old) == 1
+    assert print_of(TEXT.replace(old, new)) == print_of(TEXT)
+
+
+@pytest.mark.parametrize(("old", "new"), CODE)
+def test_what_is_code_changes_the_fingerprint(print_of, old, new):
+    assert TEXT.count(old) == 1
+    assert print_of(TEXT.replace(old, new)) != print_of(TEXT)
+
+
+def test_fingerprints_follow_imports_and_names_and_see_no_time_stamps(package, place):
+    def now(*modules):
+        place(package)
+        return sources.fingerprint(*modules)
+
+    before = {name: now(name) for name in CASES}
+    assert len(before["chain"]) == 16
+    assert now("chain", "absolute") == now("absolute", "chain") == before["chain"]
+    os.utime(package / "alone.py", (1, 1))
+    assert {name: now(name) for name in CASES} == before
+    (package / "alone.py").write_text("import math\n")
+    os.utime(package / "alone.py", (1, 1))
+    changed = {name for name in CASES if now(name) != before[name]}
+    assert changed == {name for name, files in CASES.items() if "alone" in files}
+    # The same text under another name is another program.
+    (package / "pack" / "sibling.py").rename(package / "pack" / "brother.py")
+    assert now("pack.brother") != before["pack.sibling"]
+
+
+def without_comments(text):
+    """Return Python source without its comments."""
+    lines = text.splitlines(keepends=True)
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            row, column = token.start
+            lines[row - 1] = lines[row - 1][:column] + "\n"
+    return "".join(lines)
+
+
+def all_modules():
+    return [".".join(name) for name in sources.modules() if name]
+
+
+def test_no_comment_of_this_package_is_taken_for_code(tmp_path, place):
+    """A second method: here the tokenizer finds the comments, there it is the syntax tree."""
+    before, copy = sources.fingerprint(*all_modules()), tmp_path / "twodiscs"
+    shutil.copytree(sources.PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    cut = 0
+    for path in copy.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(without_comments(text), encoding="utf-8")
+        cut += without_comments(text) != text
+    place(copy)
+    assert cut > 20
+    assert sources.fingerprint(*all_modules()) == before
+
+
+def other_python():
+    """Return the path of Python 3.13, if there is one that runs."""
+    for path in ("/root/.pyenv/versions/3.13.0/bin/python", "python3.13"):
+        if shutil.which(path) and subprocess.run([path, "-c", ""], check=False).returncode == 0:
+            return path
+    return None
+
+
+def test_fingerprints_are_the_same_for_another_version_of_python():
+    python = other_python()
+    if python is None or sys.version_info[:2] == (3, 13):
+        pytest.skip("there is no other version of Python")
+    code = (
+        "import json, sys; from twodiscs.pipeline import sources\n"
+        "print(json.dumps({name: sources.fingerprint(name) for name in sys.argv[1:]}))"
+    )
+    run = subprocess.run(
+        [python, "-c", code, *all_modules()],
+        env=os.environ | {"PYTHONPATH": str(sources.PACKAGE.parent)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert json.loads(run.stdout) == {name: sources.fingerprint(name) for name in all_modules()}
 
 
 def test_what_python_really_imports_is_listed():
     """A second method: import a module in a fresh interpreter and look at what was loaded."""
     code = (
-        "import sys, twodiscs.dynamics\n"
+        "import sys, twodiscs.dynamics.counting\n"
         "print(*(m.__file__ for n, m in sys.modules.items() if n.split('.')[0] == 'twodiscs'))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {Path(name).resolve() for name in run.stdout.split()}
-    assert loaded <= set(sources.imported("dynamics"))
+    assert loaded <= set(sources.imported("dynamics.counting"))
 
 
 def test_standard_library_only():
-    code = "import sys, twodiscs.sources; print(*sys.modules)"
+    code = "import sys, twodiscs.pipeline.sources; print(*sys.modules)"
     run = subprocess.run(
         [
             sys.executable,
@@ -118,4 +284,4 @@ def test_standard_library_only():
         text=True,
         check=True,
     )
-    assert "twodiscs.sources" in run.stdout.split()
+    assert "twodiscs.pipeline.sources" in run.stdout.split()

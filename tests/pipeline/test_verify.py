@@ -8,12 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from twodiscs.cli import verify as command
-from twodiscs.comparison import tables
-from twodiscs.pipeline.configuration import load
+from twodiscs.comparison.scene_tables import Areas
+from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.results import verify
+from twodiscs.pipeline.results.manifest import is_reproducible, manifest
+from twodiscs.studies.catalogue import STUDIES
+from twodiscs.studies.stability.table import Stability
+from twodiscs.studies.thresholds.table import Thresholds
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 CONFIGURATION = {
     "results": "results",
@@ -61,8 +65,8 @@ def results(tmp_path):
         for point in found:
             (points / method / f"{point['radius']}.json").write_text(json.dumps(point))
     path = folder / "small" / "areas.csv"
-    tables.write(path, "areas", [area(0.1), area(0.24)])
-    text = verify.manifest(folder, [path])
+    Areas.write(path, [area(0.1), area(0.24)])
+    text = manifest(folder, [path])
     (folder / "manifest.sha256").write_text(text)
     return folder
 
@@ -113,7 +117,7 @@ def test_a_bin_of_a_histogram_is_found(results, expected):
 @pytest.mark.parametrize(("relative", "found"), [(0.9e-12, 0), (1.1e-12, 1)])
 def test_floats_may_differ_in_the_last_digits_only(results, expected, relative, found):
     exact = (0.4 - 0.24) * (1 + relative)
-    tables.write(results / "small" / "areas.csv", "areas", [area(0.1), area(0.24, exact=exact)])
+    Areas.write(results / "small" / "areas.csv", [area(0.1), area(0.24, exact=exact)])
     edit_point(results, lambda p: p["quantities"]["right_wall_area"].update(measure=97.7 + 1e-13))
     sentences = verify.verify(results, expected)[0]
     assert len(sentences) == found
@@ -136,15 +140,14 @@ def test_floats_may_differ_in_the_last_digits_only(results, expected, relative, 
     ],
 )
 def test_differences_are_as_exact_as_what_they_are_made_of(results, expected, change, found):
-    tables.write(results / "small" / "areas.csv", "areas", [area(0.1), area(0.24, **change)])
+    Areas.write(results / "small" / "areas.csv", [area(0.1), area(0.24, **change)])
     assert len(verify.verify(results, expected)[0]) == found
 
 
 @pytest.mark.parametrize(("chi2", "near"), [(0.01, 1e-8), (100.0, 1e-6)])
 def test_a_sum_of_squares_of_scores_is_as_exact_as_they_are(chi2, near):
-    row = dict.fromkeys(tables.TABLES["thresholds"].names) | {"chi2": chi2}
     sheet, close, far = (
-        verify.table_cells("thresholds", [row | {"chi2": chi2 + off * near}])
+        verify.table_cells("thresholds", [Thresholds.empty(chi2=chi2 + off * near)])
         for off in (0.0, 0.9, 1.1)
     )
     assert verify.compare("thresholds.csv", close, sheet) == []
@@ -152,8 +155,7 @@ def test_a_sum_of_squares_of_scores_is_as_exact_as_they_are(chi2, near):
 
 
 def test_of_rounding_errors_only_the_verdict_counts():
-    row = dict.fromkeys(tables.TABLES["stability"].names)
-    row |= {"part": "theory", "quantity": "volume", "value": 1e-16, "passed": True}
+    row = Stability.empty(part="theory", quantity="volume", value=1e-16, passed=True)
     sheet = verify.table_cells("stability", [row])
     other = verify.table_cells("stability", [row | {"value": 3e-16}])
     worse = verify.table_cells("stability", [row | {"value": 3e-10, "passed": False}])
@@ -166,7 +168,7 @@ def test_of_rounding_errors_only_the_verdict_counts():
 def test_missing_and_additional_points_are_found(results, expected):
     folder = results / "small" / "points" / "monte_carlo"
     (folder / "0.24.json").rename(folder / "0.25.json")
-    tables.write(results / "small" / "areas.csv", "areas", [area(0.1), area(0.1), area(0.25)])
+    Areas.write(results / "small" / "areas.csv", [area(0.1), area(0.1), area(0.25)])
     row = "right_wall_area monte_carlo row 2"
     assert verify.verify(results, expected)[0] == [
         f"small/areas.csv, radius 0.1: {row} exact is not expected, and 10 more",
@@ -232,20 +234,20 @@ def test_the_command_writes_compares_and_says_what_differs(results, tmp_path, mo
     argv = ["verify", "--results", results, "--expected", expected, "--configuration", text]
     monkeypatch.setattr("sys.argv", list(map(str, argv)))
     with pytest.raises(ValueError, match="no results to compare with"):
-        command.main()
+        verify.main()
     monkeypatch.setattr("sys.argv", list(map(str, [*argv, "--write"])))
-    assert command.main() == 0
+    assert verify.main() == 0
     monkeypatch.setattr("sys.argv", list(map(str, argv)))
-    assert command.main() == 0
+    assert verify.main() == 0
     assert "compared 3 points and 1 tables: 11 integers" in capsys.readouterr().out
     edit_point(results, lambda p: p.update(samples=7))
-    assert command.main() == 1
+    assert verify.main() == 1
     assert capsys.readouterr().err == (
         "small/points/monte_carlo, radius 0.24: samples is 7, expected 1048576\ndifferences: 1\n"
     )
     shutil.rmtree(results)
     with pytest.raises(ValueError, match="holds no results to verify"):
-        command.main()
+        verify.main()
 
 
 @pytest.mark.parametrize(
@@ -270,11 +272,11 @@ def test_the_manifest_is_that_of_sha256sum(tmp_path):
     for name in ("b/two.csv", "a.csv"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(name)
-    text = verify.manifest(tmp_path, [tmp_path / "b" / "two.csv", tmp_path / "a.csv"])
+    text = manifest(tmp_path, [tmp_path / "b" / "two.csv", tmp_path / "a.csv"])
     digests = [hashlib.sha256(name.encode()).hexdigest() for name in ("a.csv", "b/two.csv")]
     assert text == f"{digests[0]}  a.csv\n{digests[1]}  b/two.csv\n"
     with pytest.raises(ValueError, match="subpath"):
-        verify.manifest(tmp_path / "b", [tmp_path / "a.csv"])
+        manifest(tmp_path / "b", [tmp_path / "a.csv"])
 
 
 def test_only_what_holds_no_seconds_is_reproducible():
@@ -293,14 +295,19 @@ def test_only_what_holds_no_seconds_is_reproducible():
         "figures/accuracy_cost_by_radius.pdf",
         "paper.pdf",
     )
-    assert all(map(verify.is_reproducible, same))
-    assert not any(map(verify.is_reproducible, (*timed, "report.html", "forecast.csv")))
+    assert all(map(is_reproducible, same))
+    assert not any(map(is_reproducible, (*timed, "report.html", "forecast.csv")))
+    for study in STUDIES.values():
+        drawn = [f"figures/{name}.png" for name, e in study.figures.items() if e.tables]
+        seconds = [not {*study.timed}.isdisjoint(e.tables) for e in study.figures.values()]
+        assert [is_reproducible(path) for path in drawn] == [not timed for timed in seconds]
 
 
 def test_tolerances_are_finite_but_for_rounding_errors():
     """No column of any table escapes: a float of 1 may be off by 1e-8 at most."""
-    for table, declared in tables.TABLES.items():
-        row = {c.name: 1.0 if c.kind is float else None for c in declared.columns}
+    for table, declared in verify.TABLES.items():
+        columns = declared.columns().items()
+        row = {name: 1.0 if column.kind is float else None for name, column in columns}
         for place in verify.table_cells(table, [row]).values():
             assert all(math.isfinite(c.tolerance) and c.tolerance <= 1e-8 for c in place.values())
 
@@ -310,11 +317,11 @@ def test_what_is_committed_is_small_and_of_the_default_configuration():
     path = folder / "configuration.json"
     if not path.exists():
         pytest.skip("nothing is committed")
-    default = load.read(REPOSITORY / "config" / "config.yaml")
+    default = read(REPOSITORY / "config" / "config.yaml")
     assert verify.other_configuration(default, json.loads(path.read_text())) == ""
     assert max(file.stat().st_size for file in folder.rglob("*.*")) < 1_000_000
-    for scene in load.load(default).scenes:
-        for method in verify.METHODS:
-            keys = getattr(scene, f"{method}_keys")
-            points = folder / scene.name / "points" / f"{method}.json"
-            assert (tuple(json.loads(points.read_text())) if keys else ()) == keys
+    for scene in load(default).scenes:
+        for stage in STAGES:
+            points = folder / scene.name / "points" / f"{stage}.json"
+            found = json.loads(points.read_text()) if scene.keys[stage] else {}
+            assert [*found] == [*scene.keys[stage]]

@@ -1,20 +1,26 @@
 """Compiled code is kept, and never used for other sources than its own."""
 
 import json
+import math
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import twodiscs
+from twodiscs.sampling import jit
+from twodiscs.sampling.jit import numba
 
 SCRIPT = """
-from twodiscs import dynamics
-from twodiscs.scene import EVENTS, Scene
-print(dynamics.run_blocks(Scene(1.5, 1.0, 0.2), EVENTS, 1, 0, 1, 4.0, replicas=64)[0].tolist())
+from twodiscs.dynamics.counting import run_blocks
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+print(run_blocks(Scene(1.5, 1.0, 0.2), EVENTS, 1, 0, 1, 4.0, replicas=64)[0].tolist())
 """
 
 
@@ -53,7 +59,7 @@ def test_an_edit_of_the_event_law_changes_the_result(package):
     caches = sorted((sources.parent / "cache").iterdir())
     assert len(caches) == 1
     assert any(caches[0].rglob("*.nbc"))
-    law = sources / "events.py"
+    law = sources / "dynamics" / "law.py"
     text = law.read_text()
     edited = text.replace("exchange = exchange if", "exchange = 0.9 * exchange if")
     assert edited != text
@@ -77,7 +83,7 @@ def test_old_caches_go(package):
         (home / f"sources-{i:016x}").mkdir(parents=True)
         os.utime(home / f"sources-{i:016x}", (i, i))
     (home / "something else").mkdir()
-    script = "import twodiscs.jit, os; print(os.environ['NUMBA_CACHE_DIR'])"
+    script = "import twodiscs.sampling.jit, os; print(os.environ['NUMBA_CACHE_DIR'])"
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
     )
@@ -88,7 +94,7 @@ def test_old_caches_go(package):
 
 def test_a_users_choice_of_processor_wins(package):
     _, environment = package
-    script = "import twodiscs.jit, os; print(os.environ['NUMBA_CPU_FEATURES'])"
+    script = "import twodiscs.sampling.jit, os; print(os.environ['NUMBA_CPU_FEATURES'])"
     done = subprocess.run(
         [sys.executable, "-c", script], env=environment | {"NUMBA_CPU_FEATURES": "+sse2"},
         text=True, capture_output=True, check=True,
@@ -96,16 +102,116 @@ def test_a_users_choice_of_processor_wins(package):
     assert done.stdout.strip() == "+sse2"
 
 
+def test_the_hash_knows_every_source_by_its_text_and_its_place(tmp_path, monkeypatch):
+    monkeypatch.setattr(jit, "PACKAGE", tmp_path)
+    (tmp_path / "folder").mkdir()
+    sources = {"a.py": "x = 1", "folder/b.py": "y = 2"}
+
+    def hashed(**changes):
+        for path in tmp_path.rglob("*.py"):
+            path.unlink()
+        for name, text in (sources | changes).items():
+            (tmp_path / name).write_text(text)
+        return jit.sources_hash()
+
+    first = hashed()
+    assert re.fullmatch("[0-9a-f]{16}", first)
+    assert hashed() == first
+    changed = [
+        hashed(**change)
+        for change in (
+            {"a.py": "x = 3"},
+            {"folder/b.py": "y = 2 "},
+            {"folder/c.py": ""},
+            {"c.py": ""},
+        )
+    ]
+    assert len({first, *changed}) == 5
+    (tmp_path / "notes.txt").write_text("no source")
+    (tmp_path / "c.py").unlink()
+    assert jit.sources_hash() == first
+
+
+# Functions that are made --------------------------------------------------------------------
+
+
+@jit.optional(lambda x, bonus: x)
+def with_bonus(x, bonus):
+    """Return x and a bonus, a tuple of one number: there is no such thing as ``None[0]``."""
+    return x + bonus[0]
+
+
+@jit.compiled
+def total_with_bonus(values, bonus):
+    total = 0.0
+    for x in values:
+        total += with_bonus(x, bonus)
+    return total
+
+
+def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
+    values = np.array([1.0, 2.0, 4.0])
+    assert total_with_bonus(values, None) == 7.0
+    assert total_with_bonus(values, (10.0,)) == 37.0
+    # The same outside of a kernel.
+    assert with_bonus(1.0, None) == 1.0
+    assert with_bonus(1.0, (10.0,)) == 11.0
+    assert with_bonus.__doc__.startswith("Return x and a bonus")
+
+
+def test_lines_are_written_out_with_the_names_they_use():
+    doubled = jit.inlined_closure(lambda x: 2 * x)
+    lines = [f"out[{i}] = step_{i}(x) + y" for i in range(3)]
+    names = {"step_0": doubled, "step_1": abs, "step_2": math.sqrt}
+    fill = jit.written_out("out, x, y", lines, names)
+    out = np.zeros(3)
+    numba.njit(lambda out: fill(out, 4.0, 0.5))(out)
+    assert out.tolist() == [8.5, 4.5, 2.5]
+
+
+def test_a_tally_adds_the_unit_of_each_counter_that_says_yes():
+    count = jit.tally(
+        (
+            (1, lambda x: x > 0, None),
+            (256, lambda x, y: x > y, None),
+            (256**2, lambda x, y: y == 0, "extra"),
+        ),
+        "x, y, extra",
+    )
+    run = numba.njit(lambda start, x, y, extra: count(start, x, y, extra))
+    for x, y, expected in ((1, 2, 1), (2, 1, 1 + 256), (-1, -2, 256), (-1, 0, 256**2), (-2, -1, 0)):
+        assert run(0, x, y, True) == expected
+        assert run(5, x, y, True) == expected + 5
+        # Without its argument a counter is left out.
+        assert run(0, x, y, None) == expected % 256**2
+
+
+def test_a_counter_without_its_argument_need_not_make_sense():
+    """It is not even looked at: None has no items."""
+    count = jit.tally([(1, lambda x, items: x > items[0], "items")], "x, items")
+    run = numba.njit(lambda x, items: count(0, x, items))
+    assert run(3, None) == 0
+    assert run(3, (2, 4)) == 1
+
+
+def test_the_type_of_a_tally_is_that_of_its_units():
+    count = jit.tally([(np.uint64(1) << np.uint64(63), lambda x: x > 0, None)], "x")
+    run = numba.njit(lambda start, x: count(start, x))
+    assert run(np.uint64(1), 1.0) == 2**63 + 1
+    assert run(np.uint64(1), -1.0) == 1
+
+
 # What is absent is not compiled -----------------------------------------------------------------
 
 #: Print how often each machine instruction stands in the kernel that counts all events of a scene.
 INSTRUCTIONS = """
 import collections, json, re, sys
-from twodiscs import dynamics
-from twodiscs.scene import EVENTS, Scene
+from twodiscs.dynamics.counting import count_blocks, run_blocks
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
 scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
-dynamics.run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
-(assembly,) = dynamics.count_blocks.inspect_asm().values()
+run_blocks(scene, EVENTS, 1, 0, 1, 1.0, replicas=1)
+(assembly,) = count_blocks.inspect_asm().values()
 names = re.findall(r"^\\t([a-z]\\w+)", assembly, re.MULTILINE)
 json.dump(collections.Counter(names), sys.stdout)
 """
@@ -129,12 +235,12 @@ def test_absent_effects_leave_no_instruction(package):
     present = instructions(environment)
     assert instructions(environment, moment_of_inertia=0.5) != present
 
-    jit = sources / "jit.py"
-    text = jit.read_text(encoding="utf-8")
-    head, mark, _ = text.partition("    def decorate(present):")
-    assert mark
+    module = sources / "sampling" / "jit.py"
+    text = module.read_text(encoding="utf-8")
+    mark = "    def decorate(present):"
+    assert text.count(mark) == 1
     without = "return lambda present: inlined(present if present.__name__ == 'on_wall' else absent)"
-    jit.write_text(f"{head}    {without}\n", encoding="utf-8")
+    module.write_text(text.replace(mark, f"    {without}\n\n{mark}"), encoding="utf-8")
     assert instructions(environment) == present
     failed = subprocess.run(
         [sys.executable, "-c", INSTRUCTIONS, '{"moment_of_inertia": 0.5}'],

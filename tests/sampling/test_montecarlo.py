@@ -5,21 +5,19 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import SCENES
+from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 
-from twodiscs.model import events
-from twodiscs.model.box import largest_radius
-from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling import montecarlo, prism
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.prism import prism_of
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
 EVERYTHING = ["volume", *(f"{event}_area" for event in EVENTS)]
 SAMPLES = 8 * montecarlo.BLOCK
-
-#: Five sigma, two-sided: the rate of false alarms of each comparison.
-FALSE_ALARM = 5.7e-7
 
 
 def assert_binomial(hits, samples, probability):
@@ -43,7 +41,7 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
     samples, found = point["samples"], point["quantities"]
     volume = found["volume"]
     assert_binomial(volume["hits"], samples, exact.volume(scene) / volume["measure"])
-    for event in events.SHELLS:
+    for event in SHELLS:
         sampled = found[f"{event}_area"]
         expected = exact.shell_expectation(scene, event, sampled["epsilon"])
         assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
@@ -53,7 +51,7 @@ def test_estimates_tend_to_the_areas():
     """With a thin shell the estimate is the area itself, gradient factor and sides included."""
     point = montecarlo.sample_point(PAPER, EVERYTHING, 64 * montecarlo.BLOCK, 1e-3, 5)
     areas = exact.areas(PAPER)
-    for event in events.SHELLS:
+    for event in SHELLS:
         sampled = point["quantities"][f"{event}_area"]
         estimate = sampled["measure"] * sampled["hits"] / point["samples"]
         # Five standard errors and the bias, which is of the order of ε over the room.
@@ -61,7 +59,9 @@ def test_estimates_tend_to_the_areas():
 
 
 def test_blocks_add_up_and_are_independent_of_company():
-    arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, (0.01,) * 5, True)
+    # Squares of separations, then grains of the places of disc 1 at the walls.
+    ends = (2e-4, 2e-4, 0.42**2, 2**32 - 2**26, 2**32 - 2**26)
+    arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, ends, True)
     whole = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments)
     parts = [montecarlo.sample_blocks(np.uint64(3), a, b, *arguments) for a, b in ((0, 1), (1, 4))]
     assert np.array_equal(whole, sum(parts))
@@ -101,7 +101,7 @@ def test_only_what_is_asked_for_is_sampled():
 
 @pytest.mark.parametrize("share", [0.1, 0.6, 0.9, 1 - 1e-3, 1 - 1e-9])
 def test_shells_scale_with_the_room(share):
-    scene = PAPER.with_radius(share * largest_radius(1.5, 1.0))
+    scene = PAPER.with_radius(share * Box(1.5, 1.0).largest_radius)
     room = scene.largest_radius - scene.radius
     epsilon = montecarlo.shell_thickness(scene, "disc_collision", 0.02)
     assert epsilon == 0.02 * min(scene.radius, room)
@@ -176,7 +176,7 @@ def everything(scene):
 
 
 def prism(scene):
-    return prism.prism_of(scene)._replace(inertia=None)
+    return prism_of(scene)._replace(inertia=None)
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)
@@ -222,7 +222,7 @@ COUNTS = {
 def test_weighted_counts_are_the_same_everywhere(name):
     scene = SCENES[name]
     epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
-    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    arguments = prism(scene), montecarlo.weighted_ends(scene, epsilon)
     assert montecarlo.weighted_blocks(np.uint64(9), 0, 1, *arguments).tolist() == COUNTS[name]
 
 
@@ -230,7 +230,7 @@ def test_weighted_counts_are_the_same_everywhere(name):
 def test_weighted_blocks_add_up(name):
     scene = SCENES[name]
     epsilon = [0.02 if event in scene.events else 0.0 for event in EVENTS]
-    arguments = prism(scene), montecarlo.weighted_shells(scene, epsilon)
+    arguments = prism(scene), montecarlo.weighted_ends(scene, epsilon)
     whole = montecarlo.weighted_blocks(np.uint64(3), 0, 3, *arguments)
     parts = [
         montecarlo.weighted_blocks(np.uint64(3), a, b, *arguments) for a, b in ((2, 3), (0, 2))
@@ -246,11 +246,11 @@ def test_only_what_is_watched_is_sampled_with_effects():
         point = montecarlo.sample_point(scene, [f"{event}_area"], 1, 0.1, 1)
         assert point["quantities"].keys() == {f"{event}_area"}
         epsilon = [0.02 if e == event else 0.0 for e in EVENTS]
-        shells = montecarlo.weighted_shells(scene, epsilon)
-        assert [name for name in EVENTS if getattr(shells, name) is not None] == [event]
-        counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), shells)
+        ends = montecarlo.weighted_ends(scene, epsilon)
+        assert [name for name, end in zip(EVENTS, ends, strict=True) if end is not None] == [event]
+        counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), ends)
         assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
-    assert montecarlo.weighted_shells(scene, [0.0] * 6) is None
+    assert montecarlo.weighted_ends(scene, [0.0] * 6) is None
     point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
     assert point["quantities"].keys() == {"volume"}
     assert point["samples"] == montecarlo.BLOCK

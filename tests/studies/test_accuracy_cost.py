@@ -5,13 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.comparison import tables
-from twodiscs.figures import accuracy_cost as figure
-from twodiscs.figures import accuracy_cost_by_radius
 from twodiscs.figures.kit import style
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
+from twodiscs.studies.accuracy_cost import figure, figure_by_radius, scalar
 from twodiscs.studies.accuracy_cost import measure as accuracy_cost
+from twodiscs.studies.accuracy_cost.table import AccuracyCost
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -32,9 +31,9 @@ def test_the_reference_is_the_theory(scene):
 @pytest.mark.parametrize("quantity", ["volume", AREA])
 def test_quadrature_falls_off_a_cliff(scene, quantity):
     """Gauss's rule gains at least a digit and a half a node until nothing but rounding is left."""
-    exact = accuracy_cost.reference(scene)[quantity]
+    true = accuracy_cost.reference(scene)[quantity]
     errors = [
-        abs(float(accuracy_cost.quadrature(quantity, scene, nodes, 0)[0][quantity] / exact - 1))
+        abs(float(accuracy_cost.quadrature(quantity, scene, nodes, 0)[0][quantity] / true - 1))
         for nodes in (3, 6, 12)
     ]
     assert errors[1] < 1e-4 * errors[0]
@@ -49,23 +48,23 @@ def hits(samples, share):
 @pytest.mark.parametrize("scene", SCENES)
 def test_samples_on_the_surface_are_unbiased(scene):
     """Five sigma: a false alarm in 6e-7 of all seeds."""
-    exact, samples = exact.areas(scene)["disc_collision"], 200_000
+    true, samples = exact.areas(scene)["disc_collision"], 200_000
     found = accuracy_cost.on_surface(scene, samples, 3)[0][AREA]
-    share = exact / accuracy_cost.surface_measure(scene)
-    assert abs(found / exact - 1) < 5 * hits(samples, share)
+    share = true / accuracy_cost.surface_measure(scene)
+    assert abs(found / true - 1) < 5 * hits(samples, share)
 
 
 @pytest.mark.parametrize("quantity", ["volume", AREA])
 def test_sobol_points_are_unbiased_and_better(quantity):
     """The mean of 32 scramblings within five of its standard errors; random points do worse."""
-    exact, points = float(accuracy_cost.reference(PAPER)[quantity]), 1 << 12
+    true, points = float(accuracy_cost.reference(PAPER)[quantity]), 1 << 12
     runs = [accuracy_cost.scrambled_sobol(quantity, PAPER, points, s)[0] for s in range(32)]
-    errors = np.array([run[quantity] for run in runs]) / exact - 1
+    errors = np.array([run[quantity] for run in runs]) / true - 1
     assert abs(errors.mean()) < 5 * errors.std(ddof=1) / math.sqrt(errors.size)
     measure = (PAPER.range_x * PAPER.range_y) ** 2
     if quantity == AREA:
         measure = accuracy_cost.surface_measure(PAPER)
-    assert errors.std() < hits(points, exact / measure) / 2
+    assert errors.std() < hits(points, true / measure) / 2
 
 
 def test_the_best_shell_balances_bias_and_variance():
@@ -108,12 +107,24 @@ def test_a_floor_has_no_say_in_the_slope():
 
 
 def test_the_price_of_a_poisson_process():
-    scene = PAPER
-    rate = exact.event_rate(scene)
-    time = exact.mean_times(scene)["vertical_hop"]
-    assert accuracy_cost.predicted_events(scene, "vertical_hop", 1e-2) == pytest.approx(
-        1e4 * time * rate
-    )
+    rate, time = exact.event_rate(PAPER), exact.mean_times(PAPER)["vertical_hop"]
+    expected = pytest.approx(1e4 * time * rate)
+    assert accuracy_cost.predicted_events(PAPER, "vertical_hop", 1e-2) == expected
+
+
+@pytest.mark.parametrize("method", ["by_lockstep", "by_scalar", "by_single_precision", "by_steps"])
+def test_engines_name_what_they_count(method):
+    """Each mean time within a tenth of the exact one: an event taken for another one is far off."""
+    run = getattr(accuracy_cost, method)
+    amount = (2.0**-6, PAPER, 1, 3) if method == "by_steps" else (PAPER, 1, 3)
+    if method == "by_scalar":
+        amount = PAPER, 1024, 3
+    found, work, calls = run(*amount)
+    for event, time in exact.mean_times(PAPER).items():
+        assert found[f"{event}_time"] == pytest.approx(time, rel=0.1), event
+    assert len(found) == len(scalar.COUNTED)
+    assert work > 10_000
+    assert calls == 1
 
 
 # A whole run, as small as can be ----------------------------------------------------------------
@@ -142,8 +153,8 @@ def test_every_method_is_there(rows):
 
 
 def test_the_table_takes_them(rows, tmp_path):
-    tables.write(tmp_path / "accuracy_cost.csv", "accuracy_cost", rows)
-    assert len(tables.read(tmp_path / "accuracy_cost.csv", "accuracy_cost")) == len(rows)
+    AccuracyCost.write(tmp_path / "accuracy_cost.csv", rows)
+    assert AccuracyCost.read(tmp_path / "accuracy_cost.csv") == rows
 
 
 def test_exact_evaluation_is_exact(rows):
@@ -156,8 +167,8 @@ def test_floors(rows):
     assert [row["error"] for row in shells] == sorted((r["error"] for r in shells), reverse=True)
     for row in shells:
         expected = exact.shell_expectation(PAPER, "disc_collision", row["setting"])
-        exact = exact.areas(PAPER)["disc_collision"]
-        assert row["bias"] == pytest.approx(expected / exact - 1)
+        area = exact.areas(PAPER)["disc_collision"]
+        assert row["bias"] == pytest.approx(expected / area - 1)
     for row in of(rows, part="floor", method="time_step", quantity="any_wall_time"):
         assert row["bias"] > 10 * row["spread"]
 
@@ -169,10 +180,10 @@ def test_a_hop_that_dies_out_costs_ever_more(rows):
     assert prices[-1] > 100 * prices[0]
 
 
-@pytest.mark.parametrize("module", [figure, accuracy_cost_by_radius])
+@pytest.mark.parametrize("module", [figure, figure_by_radius])
 def test_the_figures_draw_them(rows, module, tmp_path):
     with style.context():
-        drawn = module.draw({}, {"accuracy_cost": rows})
+        drawn = module.draw(None, {"accuracy_cost": rows})
         style.save(drawn, tmp_path / "figure.png")
     assert (tmp_path / "figure.png").stat().st_size > 10_000
 

@@ -5,24 +5,27 @@ their scores are turned into normal deviates; with some 150 comparisons a false 
 than 1e-4 of the seeds.
 """
 
+import json
 import math
 
 import mpmath
 import numpy as np
 import pytest
+from fabricated import command
 
-from twodiscs.cli import distributions as command
-from twodiscs.comparison import tables
 from twodiscs.dynamics import intervals
-from twodiscs.figures import distributions as drawing
 from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.pipeline import jobs
+from twodiscs.studies.distributions import figure
 from twodiscs.studies.distributions import measure as distributions
-from twodiscs.studies.tails import measure as tails
+from twodiscs.studies.distributions.table import Distributions
+from twodiscs.studies.tails.measure import tail
 from twodiscs.theory import tails
 
-PAPER = Scene(1.5, 1.0, 0.24)
-FIELD = Scene(1.5, 1.0, 0.2, field=0.1)
+BOX = Box(1.5, 1.0)
+PAPER = BOX.scene(0.24)
 
 
 def bins_of_exponential(rate, bins):
@@ -134,7 +137,7 @@ def test_hazard_of_an_exponential_is_its_rate():
             ),
             "scene must be plain",
         ),
-        (lambda: distributions.near_threshold(1.5, 1.0, "any_wall"), "hop must be one of"),
+        (lambda: distributions.near_threshold(BOX, "any_wall"), "hop must be one of"),
     ],
 )
 def test_bad_requests_are_refused(call, message):
@@ -201,56 +204,59 @@ def test_hazards_add_up_to_the_survival_of_weighted_starts():
         if row["quantity"] == "hazard" and row["last"] <= 4 * rows[0]["reference"]:
             survival *= math.exp(-row["estimate"] * (row["last"] - row["first"]))
             last = row["last"]
-    found = tails.tail(PAPER, "vertical_hop", [last], 200, 8)[0]
+    found = tail(PAPER, "vertical_hop", [last], 200, 8)[0]
     intervals = rows[0]["count"]
     error = math.hypot(found.stderr, math.sqrt(survival / intervals))
     assert abs(found.value - survival) < 5 * error
 
 
 def test_radii_near_the_threshold():
-    assert distributions.near_threshold(1.5, 1.0, "horizontal_hop") == [
-        0.21,
-        0.23,
-        0.24,
-        0.245,
-        0.2475,
-    ]
-    assert distributions.near_threshold(1.5, 1.0, "vertical_hop")[-1] == 0.37125
-    assert distributions.near_threshold(3.0, 1.0, "vertical_hop") == []
-    assert distributions.near_threshold(1.0, 3.0, "vertical_hop")[0] == 0.21
+    def near(hop, width=1.5, height=1.0):
+        return distributions.near_threshold(Box(width, height), hop)
+
+    assert near("horizontal_hop") == [0.21, 0.23, 0.24, 0.245, 0.2475]
+    assert near("vertical_hop")[-1] == 0.37125
+    assert near("vertical_hop", 3.0) == []
+    assert near("vertical_hop", 1.0, 3.0)[0] == 0.21
 
 
 # The table and the figure -------------------------------------------------------------------------
 
 
 def written(monkeypatch, path, parameters):
-    """Run the command and return the rows that it writes."""
-    monkeypatch.setattr("sys.argv", ["x", "--parameters", repr(parameters), "--output", str(path)])
-    command.main()
-    return tables.read(path, "distributions")
+    """Run the job of the table and return the rows that it writes."""
+    words = ["table", "studies.distributions.measure", "--parameters", json.dumps(parameters)]
+    assert command(monkeypatch, jobs, *words, "--output", path) == 0
+    return Distributions.read(path)
 
 
-def test_the_command_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
-    scene = {"name": "paper", "width": 1.5, "height": 1.0, "event": "vertical_hop", "radii": [0.2]}
-    other = scene | {"name": "other", "width": 3.0}
+def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+    scene = {"name": "paper", "box": BOX.parameters(), "event": "vertical_hop", "radii": [0.2]}
+    other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
     parameters = {"events": 2**16, "scenes": [scene, other], "seed": 9}
-    rows = written(monkeypatch, tmp_path / "a.csv", parameters)
+    rows = written(monkeypatch, tmp_path / "distributions.csv", parameters)
     cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
     near = [
         ("paper", hop, radius)
         for hop in ("vertical_hop", "horizontal_hop")
-        for radius in distributions.near_threshold(1.5, 1.0, hop)
+        for radius in distributions.near_threshold(BOX, hop)
     ]
     assert cases == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
     # A case does not depend on the others.
-    alone = written(monkeypatch, tmp_path / "b.csv", parameters | {"scenes": [scene]})
+    alone = list(distributions.rows([scene], 9, 2**16))
     assert alone == [row for row in rows if row["scene"] == "paper"]
     with style.context():
-        rates, passages = drawing.draw({}, {"distributions": rows}).axes
+        rates, passages = figure.draw(None, {"distributions": rows}).axes
     assert len(rates.containers) > 0
-    exact = tails.density_at_zero(Scene(1.5, 1.0, 0.2), "vertical_hop") * rows[0]["exact_mean"]
-    assert any(line.get_ydata()[0] == pytest.approx(exact, rel=1e-12) for line in rates.lines)
+    zero = tails.density_at_zero(BOX.scene(0.2), "vertical_hop") * rows[0]["exact_mean"]
+    assert any(line.get_ydata()[0] == pytest.approx(zero, rel=1e-12) for line in rates.lines)
     names = passages.get_legend_handles_labels()[1]
     assert {"vertical hops", "horizontal hops"} <= set(names)
-    with pytest.raises(ValueError, match="parameters must be events, scenes, seed, not seed"):
-        written(monkeypatch, tmp_path / "c.csv", {"seed": 1})
+
+
+def test_a_job_that_lacks_its_scenes_is_told_in_one_sentence(tmp_path, monkeypatch, capsys):
+    with pytest.raises(AssertionError):
+        written(monkeypatch, tmp_path / "distributions.csv", {"seed": 1})
+    said = capsys.readouterr().err
+    assert said.startswith("error: parameters of twodiscs.studies.distributions.measure: missing")
+    assert said.count("\n") == 1

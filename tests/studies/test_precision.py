@@ -25,12 +25,12 @@ def test_in_double_precision_it_is_the_engine(radius):
 
 
 def test_the_law_itself_stays_double():
-    names = precision.law(np.float32)
+    names = precision.law_in(np.float32)
     assert names["RESTING_SPEED"] == 4 * 2.0**-23
     assert law.RESTING_SPEED == 4 * 2.0**-52
     assert names["next_event"] is not law.next_event
     assert names["DISC"].dtype == np.float32
-    assert set(names) == set(vars(events))
+    assert set(names) == set(vars(law))
     third = np.float32(1) / np.float32(3)
     gap, speed = names["wall_quotient"](third, np.float32(1), np.float32(0.5))
     assert gap == np.float32(0.5) - third

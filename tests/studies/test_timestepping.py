@@ -7,6 +7,7 @@ from twodiscs.dynamics import ensemble
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs.studies.accuracy_cost import timestepping
 from twodiscs.theory import exact
@@ -47,7 +48,7 @@ def test_it_is_the_plain_simulation(radius, step):
     sums = timestepping.step_blocks(
         np.uint64(4), 0, 1, replicas, 8, steps, step, scene.contact_distance, draw
     )
-    starts.draw_starts(open_stream(np.uint64(4), 0), draw, 0, 0, starts)
+    draw_starts(open_stream(np.uint64(4), 0), draw, 0, 0, starts)
     expected = np.sum([plain(scene, start, steps, step) for start in starts.T], axis=0)
     assert sums.tolist() == expected.tolist()
     assert sums[-1] > 50

@@ -43,8 +43,22 @@ def benchmark_of(name):
 
 
 def code(*modules):
-    """Return the fingerprint of modules that a job runs, and of all that they import."""
+    """Return the fingerprint of modules that a job runs, and of all that they import.
+
+    To be named are those that ``jobs`` finds by their name: what does the work, and besides how a
+    figure looks and how tables are read, or the columns of the table that is written.
+    """
     return fingerprint("pipeline.jobs", *modules)
+
+
+def figure_code(module):
+    """Return the fingerprint of what draws a figure."""
+    return code(module, "comparison.tables", "figures.kit.style")
+
+
+def table_code(module, table):
+    """Return the fingerprint of what makes a table, a class, and of what declares its columns."""
+    return code(module, table.__module__.partition(".")[2])
 
 
 def as_json(value):

@@ -52,7 +52,7 @@ rule figure:
             figure_tables(f"{RESULTS}/{w.scene}", FIGURES[w.figure])
         ),
         caption=lambda w: FIGURES[w.figure].full_caption(SCENES[w.scene].effects),
-        code=lambda w: code(FIGURES[w.figure].module),
+        code=lambda w: figure_code(FIGURES[w.figure].module),
     shell:
         "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
         " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
@@ -81,7 +81,7 @@ rule shared_figure:
         module=lambda w: STUDY_FIGURES[w.figure].module,
         tables=lambda w: named_tables(study_figure_tables(STUDY_FIGURES[w.figure])),
         caption=lambda w: STUDY_FIGURES[w.figure].full_caption(),
-        code=lambda w: code(STUDY_FIGURES[w.figure].module),
+        code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
     shell:
         "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
         " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
@@ -106,7 +106,7 @@ rule animate:
     params:
         job=lambda w: as_json(figure_job(SCENES[w.scene], ANIMATION)),
         caption=ANIMATION.full_caption(),
-        code=code("figures.animation"),
+        code=figure_code("figures.animation"),
     shell:
         "{JOB} animation figures.animation --parameters {params.job:q}"
         " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q} > {log:q} 2>&1"

@@ -11,7 +11,7 @@ rule grid:
         benchmark_of("{scene}/grid")
     params:
         job=lambda w: as_json(SCENES[w.scene].grid_job()),
-        code=code("comparison.exact_rows"),
+        code=table_code("comparison.exact_rows", SCENE_TABLES["grid"]),
     shell:
         "{JOB} table comparison.exact_rows --function grid_rows --parameters {params.job:q}"
         " --output {output.table:q} > {log:q} 2>&1"
@@ -26,7 +26,7 @@ rule theory:
         benchmark_of("{scene}/theory")
     params:
         job=lambda w: as_json(SCENES[w.scene].theory_job()),
-        code=code("comparison.exact_rows"),
+        code=table_code("comparison.exact_rows", SCENE_TABLES["theory"]),
     shell:
         "{JOB} table comparison.exact_rows --function theory_rows --parameters {params.job:q}"
         " --output {output.table:q} > {log:q} 2>&1"
@@ -102,7 +102,7 @@ rule trajectory:
         benchmark_of("{scene}/trajectory")
     params:
         job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
-        code=code("dynamics.trajectory"),
+        code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
     shell:
         "{JOB} table dynamics.trajectory --parameters {params.job:q} --output {output.table:q}"
         " > {log:q} 2>&1"

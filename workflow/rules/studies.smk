@@ -50,7 +50,7 @@ for name in GENERIC:
             module=STUDIES[name].code,
             function=STUDIES[name].function,
             tables=named_tables(study_tables(STUDIES[name])),
-            code=code(STUDIES[name].code),
+            code=table_code(STUDIES[name].code, STUDIES[name].tables[0]),
         shell:
             "{JOB} table {params.module} --function {params.function} --parameters {params.job:q}"
             " --table {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
@@ -98,7 +98,7 @@ rule effects_table:
     benchmark:
         benchmark_of("effects_table")
     params:
-        code=code("studies.effects.measure"),
+        code=table_code("studies.effects.measure", STUDIES["effects"].tables[0]),
     shell:
         "{JOB} table studies.effects.measure --parameters '{{}}' --points {input.points:q}"
         " --output {output.table:q} > {log:q} 2>&1"

@@ -51,7 +51,7 @@ rule table:
         job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
         tables=lambda w: named_tables(tables_beside(w.scene, w.table)),
         points=f"{RESULTS}/{{scene}}/points",
-        code=code("comparison.gather"),
+        code=lambda w: table_code("comparison.gather", SCENE_TABLES[w.table]),
     shell:
         "{JOB} table comparison.gather --function {wildcards.table}_rows --parameters {params.job:q}"
         " --table {params.tables:q} --points {params.points:q} --output {output.table:q}"
@@ -79,7 +79,7 @@ rule check:
                 if "check" in scene.tables
             }
         ),
-        code=code("comparison.check"),
+        code=table_code("comparison.check", SCENE_TABLES["check"]),
     shell:
         "{JOB} verdict comparison.check --table {params.tables:q} --output {output.passed:q}"
         " > {log:q} 2>&1"

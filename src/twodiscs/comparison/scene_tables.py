@@ -15,7 +15,8 @@ from twodiscs.comparison.tables import (
 
 #: Units that depend on the row or on the quantity.
 SEE_QUANTITY = Column(float, "see quantity")
-AS_QUANTITY = Column(float, "length⁴; length³ of areas")
+AS_QUANTITY = Column(float, "as quantity")
+VOLUME, AREA = Column(float, "length⁴"), Column(float, "length³")
 
 
 class Grid(Table):
@@ -85,6 +86,12 @@ class Volume(Sampled):
     weighted with the invariant density; for balls it is in length⁶.
     """
 
+    exact: VOLUME
+    estimate: VOLUME
+    stderr: VOLUME
+    expectation: VOLUME
+    bias: VOLUME
+
 
 class Areas(Sampled):
     """
@@ -92,6 +99,12 @@ class Areas(Sampled):
     of finite thickness is not a surface, so its exact expectation has a column. In a field areas
     are weighted as the flux is; for balls they are in length⁵.
     """
+
+    exact: AREA
+    estimate: AREA
+    stderr: AREA
+    expectation: AREA
+    bias: AREA
 
 
 class MeanTimes(Table):

@@ -31,7 +31,11 @@ class Box:
         if not isinstance(effects, dict) or not effects.keys() <= EFFECTS.keys():
             known = ", ".join(EFFECTS)
             raise ValueError(f"effects must be a dict of some of {known}, not {effects!r}")
-        named = {name: value for name, value in effects.items() if value != ABSENT[name]}
+        checked = {
+            name: EFFECTS[name].checked(value) if EFFECTS[name].is_number else value
+            for name, value in effects.items()
+        }
+        named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
         if named:
             object.__setattr__(self, "effects", dict(sorted(self.tiny.effects.items())))
@@ -69,8 +73,7 @@ class Box:
     @cached_property
     def tiny(self):
         """A scene of tiny discs: what does not depend on the radius can be asked of it."""
-        widest = max(1.0, _ratio(self.effects))
-        return self.scene(TINY * self.shortest / widest)
+        return self.scene(TINY * self.shortest / max(1.0, self.effects.get("radius_ratio", 1.0)))
 
     @property
     def sides(self):
@@ -120,16 +123,22 @@ class Box:
         """Return the radius from which on ``event`` is impossible; None if it always is.
 
         For hops of equal discs that is w/4 (vertical) or h/4 (horizontal), unless the discs jam
-        before; for what stays possible to the end it is the largest radius.
+        before; for what stays possible to the end it is the last radius.
         """
-        one_of("event", event, EVENTS)
+        if one_of("event", event, EVENTS) not in HOPS:
+            # In a field it may take a large disc to touch the top.
+            nearly = self.scene(self.last_radius * (1 - TINY))
+            return self.last_radius if nearly.is_possible(event) else None
         if self.effects:
             return self.end(lambda scene: scene.is_possible(event)) if self._has(event) else None
-        if event not in HOPS:
-            return self.largest_radius
-        # Discs side by side along the other axis need four radii.
-        across = self.width if AXIS[event] == "y" else self.height
-        return min(across / 4, self.largest_radius)
+        return min(self.blocking_radius(event), self.largest_radius)
+
+    def blocking_radius(self, hop):
+        """Return w/4 or h/4, where ``hop`` is blocked if the discs of a plain box fit that far.
+
+        Discs that pass each other on y1 = y2 are side by side along x, and need four radii there.
+        """
+        return (self.width if AXIS[hop] == "y" else self.height) / 4
 
     def _has(self, event):
         return event in self.tiny.events
@@ -142,8 +151,3 @@ class Box:
         """
         found = {self.threshold(hop) for hop in HOPS if self._has(hop)}
         return tuple(sorted(radius for radius in found if radius < self.last_radius))
-
-
-def _ratio(effects):
-    ratio = effects.get("radius_ratio", 1.0)
-    return ratio if isinstance(ratio, int | float) and ratio == ratio else 1.0

@@ -7,9 +7,10 @@
     python -m twodiscs.pipeline.jobs figure figures.radius --parameters '{…}' \\
         --table volume=results/paper/volume.csv --output volume.pdf volume.png
 
-Modules are named from the package on, and found by their name, so that an edit of one of them does
-not concern the jobs of the others. Parameters are one JSON object, or @path of a file that holds
-it; their entry ``box`` becomes a ``Box``.
+Modules are named from the package on. Those that some jobs run and others do not are found by their
+name, those named here too, so that an edit of one of them does not concern the jobs of the others;
+``code`` in the workflow says which job runs which. Parameters are one JSON object, or @path of a
+file that holds it; their entry ``box`` becomes a ``Box``.
 """
 
 import inspect
@@ -38,10 +39,9 @@ def module_of(name):
 
 def table_of(name, beside=""):
     """Return the ``Table`` called ``name``, of a scene, beside a module or of a study."""
-    from twodiscs.comparison.scene_tables import SCENE_TABLES
-
-    if name in SCENE_TABLES:
-        return SCENE_TABLES[name]
+    of_scenes = module_of("comparison.scene_tables").SCENE_TABLES
+    if name in of_scenes:
+        return of_scenes[name]
     places = beside.rpartition(".")[0], f"studies.{name}", f"studies.{name.rpartition('_')[0]}"
     for place in filter(None, places):
         try:
@@ -134,8 +134,7 @@ def figure(options):
     """Draw the figure of a module."""
     draw = module_of(options.module).draw
     given, tables = parameters(options.parameters), read_tables(options.table)
-    from twodiscs.figures.kit import style
-
+    style = module_of("figures.kit.style")
     with style.context():
         drawn = call(draw, given, tables=tables)
         for path in options.output:
@@ -146,8 +145,7 @@ def animation(options):
     """Draw the animation of a trajectory."""
     animate = module_of(options.module).animate
     given, tables = parameters(options.parameters), read_tables(options.table)
-    from twodiscs.figures.kit import style
-
+    style = module_of("figures.kit.style")
     with style.context():
         call(animate, given, rows=tables["trajectory"], paths=options.output)
 

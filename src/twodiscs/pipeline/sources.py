@@ -36,6 +36,18 @@ def imported(*modules):
     return sorted(_file(name) for name in found)
 
 
+def modules():
+    """Return all modules of this package, tuples of names below it, sorted; the package is ()."""
+    paths = (path.relative_to(PACKAGE).with_suffix("") for path in PACKAGE.rglob("*.py"))
+    return sorted(p.parts[:-1] if p.name == "__init__" else p.parts for p in paths)
+
+
+def imports_of(module):
+    """Return the modules that the code of one imports itself, named as by ``modules``."""
+    parents = {module[:depth] for depth in range(len(module) + 1)}
+    return [name for name in _imports(module) if name not in parents]
+
+
 @cache
 def fingerprint(*modules):
     """Return 16 hexadecimal digits that change with the code of ``modules`` and what they import.

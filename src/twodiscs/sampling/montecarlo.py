@@ -191,20 +191,15 @@ def shell_thickness(scene, event, fraction):
     fraction = proportion("fraction", fraction)
     if scene.has_effects:
         return fraction * _weighted_thickness(scene, event)
-    room = abs(_vanishing(scene, DECLARED[event]) - scene.radius)
+    hop = DECLARED[event].kind == "hop"
+    vanishing = Box.of(scene).blocking_radius(event) if hop else scene.largest_radius
+    room = abs(vanishing - scene.radius)
     sides = {"x": scene.width, "y": scene.height}
     long, short = max(sides.values()), min(sides.values())
     ahead = long if event == "disc_collision" else sides[AXIS[event]]
-    if long > 2 * short and ahead == long and DECLARED[event].kind != "hop":
+    if long > 2 * short and ahead == long and not hop:
         room = long - 4 * scene.radius
     return fraction * (min(scene.radius, room) if room > 0 else scene.radius)
-
-
-def _vanishing(scene, event):
-    """Return the radius at which the surface of an ``Event`` vanishes: w/4 and h/4 for hops."""
-    if event.kind != "hop":
-        return scene.largest_radius
-    return (scene.width if event.axis == "y" else scene.height) / 4
 
 
 def _weighted_thickness(scene, event):

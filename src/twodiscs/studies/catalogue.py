@@ -277,10 +277,8 @@ STUDIES = {
                     Error bars are one standard error.
                     """,
                     "studies.thresholds.figure",
-                    tables=(
-                        "distributions",
-                        "thresholds",
-                    ),
+                    tables=("distributions", "thresholds"),
+                    main_tables=("mean_times",),
                 ),
             },
             parameters=lambda configuration: {

@@ -67,6 +67,7 @@ SETTINGS = {
     "figure.dpi": DPI,
     "savefig.dpi": DPI,
     "pdf.fonttype": 42,
+    "svg.hashsalt": "twodiscs",
 }
 
 # The files of Computer Modern bear dates that fontTools finds odd, and says so for each.
@@ -90,7 +91,7 @@ def new_figure(height, width=COLUMN):
 
 
 def save(figure, path):
-    """Write ``figure`` to ``path``, a .pdf or .png file without dates or names of programs in it.
+    """Write ``figure`` to ``path`` (.pdf, .png or .svg) without dates or names of programs in it.
 
     Raises ``ValueError`` for a file name with another ending.
     """
@@ -98,7 +99,8 @@ def save(figure, path):
     metadata = {
         "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
         "png": {"Software": None},
+        "svg": {"Creator": None, "Date": None},
     }
     if kind not in metadata:
-        raise ValueError(f"output must be a .pdf or .png file, not {str(path)!r}")
+        raise ValueError(f"output must be a .pdf, .png or .svg file, not {str(path)!r}")
     figure.savefig(path, format=kind, metadata=metadata[kind])

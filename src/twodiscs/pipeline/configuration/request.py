@@ -13,6 +13,10 @@ STAGES = {
     "intervals": "dynamics.intervals",
 }
 
+#: The thickness of shells in jobs that sample no area: any will do, and so an edit of the
+#: configured one does not concern them.
+NO_SHELL = 0.5
+
 
 @dataclass(frozen=True)
 class Watch:
@@ -103,9 +107,11 @@ class SceneRequest:
         radii = self.keys[stage]
         if key not in radii:
             raise ValueError(f"key must be one of {', '.join(radii) or 'none'}, not {key!r}")
+        sampled = {"areas": list(self.watch.areas), "volume": self.watch.volume}
         settings = {
             "monte_carlo": self.monte_carlo
-            | {"areas": list(self.watch.areas), "volume": self.watch.volume},
+            | sampled
+            | ({} if self.watch.areas else {"shell": NO_SHELL}),
             "dynamics": self.dynamics,
             "intervals": self.histogram,
         }

@@ -615,8 +615,8 @@ def reversal_rows(box, seed):
 def coverage_rows(box, seed, repetitions=REPETITIONS):
     """Yield how often the 95 % interval of a mean time covers the exact one, event by event.
 
-    A repetition is one block of ``dynamics.run_blocks``. Where most of them have too few events for
-    an interval (``statistics.is_honest``), that is all that is said.
+    A repetition is one block of ``counting.run_blocks``. Where most of them have too few events for
+    an interval (``estimates.is_honest``), that is all that is said.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):

@@ -8,7 +8,7 @@ import mpmath
 from mpmath import mpf
 
 from twodiscs.dynamics.trajectory import follow
-from twodiscs.theory import exact
+from twodiscs.theory.exact import event_rate
 
 WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")
 
@@ -17,7 +17,7 @@ def exact_path(scene, state):
     """Yield (time, name) of all that happens, hops included, for ever.
 
     ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
-    taken for exactly what they are. Names are those of ``dynamics.follow``. Of events at the same
+    taken for exactly what they are. Names are those of ``trajectory.follow``. Of events at the same
     time, walls come first. Call it under ``mpmath.workdps``.
     """
     x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]
@@ -58,7 +58,7 @@ def compare(scene, state, number):
     the comparison ends where the clocks are a hundredth of the mean time between events apart.
     Events within 1e-10 of it from one another may come in either order.
     """
-    unit = 1 / exact.event_rate(scene)
+    unit = 1 / event_rate(scene)
     with mpmath.workdps(50):
         exact = list(islice(exact_path(scene, state), number))
         found = [(row[0], row[5]) for row in islice(follow(scene, state, math.inf), number + 1)][1:]

@@ -1,0 +1,81 @@
+"""Intervals between hops: exact draws, whose mean and density at zero are known."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from effect_scenes import SCENES
+
+from twodiscs.dynamics import intervals
+from twodiscs.dynamics.law import law_of
+from twodiscs.model.box import Box
+from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import origins
+from twodiscs.theory.exact import mean_times
+from twodiscs.theory.tails import density_at_zero
+
+PAPER = Scene(1.5, 1.0, 0.2)
+
+
+def check_mean(scene, event, number):
+    found = intervals.hop_intervals(scene, event, number, 9)
+    assert abs(found["mean"] - mean_times(scene)[event]) <= 5 * found["stderr"]
+    assert sum(found["counts"]) + found["overflow"] == found["intervals"] >= number
+    assert math.frexp(found["bin_width"])[0] == 0.5  # a power of two
+
+
+@pytest.mark.parametrize("event", HOPS)
+@pytest.mark.parametrize("radius", [0.05, 0.2])
+def test_hop_intervals_have_the_exact_mean(event, radius):
+    check_mean(PAPER.with_radius(radius), event, 2_000_000)
+
+
+def test_horizontal_hops_in_a_field_have_the_exact_mean():
+    """This box cannot be turned by a quarter: its horizontal hops have starts of their own."""
+    check_mean(SCENES["field"], "horizontal_hop", 500_000)
+
+
+@pytest.mark.parametrize(("event", "side"), [("vertical_hop", 1.0), ("horizontal_hop", 1.5)])
+def test_hop_intervals_have_the_exact_density_at_zero(event, side):
+    """p(0⁺) = 3√2 / (16 (side − 2r))."""
+    scene = PAPER.with_radius(0.1)
+    found = intervals.hop_intervals(scene, event, 8_000_000, 10)
+    width, n = found["bin_width"], found["intervals"]
+    counts = np.array(found["counts"][:3])
+    density, error = counts / (n * width), np.sqrt(counts) / (n * width)
+    # A parabola through the first three bins, at 0: its coefficients follow from the bin means.
+    at_zero = np.array([11.0, -7.0, 2.0]) / 6
+    exact = 3 * math.sqrt(2) / (16 * (side - 0.2))
+    assert density_at_zero(scene, event) == pytest.approx(exact, rel=1e-15)
+    # Correlated intervals within a chain widen the binomial error; twice is generous.
+    assert abs(density @ at_zero - exact) <= 10 * math.sqrt(np.sum((error * at_zero) ** 2))
+
+
+def test_hop_chains_do_not_depend_on_lanes():
+    results = []
+    for lanes in (5, 64):
+        histogram = np.zeros(65, np.int64)
+        totals = intervals.record_returns(
+            np.uint64(1), 0, 2, 64, lanes, 16, law_of(PAPER), *origins(PAPER), None, 0.25, histogram
+        )
+        results.append((totals, histogram))
+    for few, many in zip(*results, strict=True):
+        assert np.array_equal(few, many)
+
+
+def test_a_job_takes_plain_values():
+    found = intervals.job(Box(1.5, 1.0), 0.2, "vertical_hop", 1, 9)
+    assert found == intervals.hop_intervals(PAPER, "vertical_hop", 1, 9)
+    assert json.loads(json.dumps(found)) == found
+    # A chain is the least: so many intervals of each of the chains that share a stream.
+    assert found[intervals.WORK] == intervals.CHAINS * intervals.RETURNS
+
+
+def test_bad_intervals_are_refused():
+    for event, number, seed in (("wall", 1, 1), ("vertical_hop", 0, 1), ("vertical_hop", 1, None)):
+        with pytest.raises(ValueError, match="must"):
+            intervals.hop_intervals(PAPER, event, number, seed)
+    with pytest.raises(ValueError, match="blocked"):
+        intervals.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)

@@ -1,0 +1,63 @@
+"""One trajectory, event by event: the kernels in slow motion."""
+
+import math
+
+import pytest
+from effect_scenes import SCENES
+
+from twodiscs.comparison.scene_tables import Trajectory
+from twodiscs.dynamics import trajectory
+from twodiscs.model.box import Box
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import state_in, states
+from twodiscs.studies.accuracy_cost import scalar
+from twodiscs.theory.exact import event_rate, mean_times
+
+PAPER = Scene(1.5, 1.0, 0.2)
+
+
+def test_following_one_trajectory_is_the_kernel_in_slow_motion():
+    start = state_in(states(PAPER, 1, 5), 0)
+    rows = list(trajectory.follow(PAPER, start, 64.0))
+    names = [row[5] for row in rows]
+    times = [row[0] for row in rows]
+    assert times == sorted(times)
+    assert names[0] == "start"
+    assert names[-1] == "end"
+    assert times[-1] == pytest.approx(64.0)
+    counts = scalar.count_replica(
+        *start, 64.0, PAPER.range_x / 2, PAPER.range_y / 2, PAPER.contact_distance
+    )
+    for event in ("vertical_hop", "horizontal_hop", "disc_collision"):
+        assert names.count(event) == counts[scalar.COUNTED.index(event)] > 0
+    for row in rows:
+        if row[5] == "vertical_hop":
+            assert abs(row[2] - row[4]) < 1e-14
+        if row[5] == "horizontal_hop":
+            assert abs(row[1] - row[3]) < 1e-14
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.3, 0.3749, 0.38])
+def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
+    """Eight mean times of the rarest hop that is open, or 6000 events, to a factor of √2."""
+    scene = PAPER.with_radius(radius)
+    rows = trajectory.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows == trajectory.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows != trajectory.rows(Box(1.5, 1.0), radius, seed=4)
+    hops = [mean_times(scene)[hop] for hop in ("vertical_hop", "horizontal_hop")]
+    eight = 8 * max((time for time in hops if time), default=math.inf)
+    expected = min(eight, 6000 / event_rate(scene))
+    assert (
+        expected / math.sqrt(2) <= rows[-1]["time"] * (1 + 1e-12) <= 1.001 * expected * math.sqrt(2)
+    )
+
+
+@pytest.mark.parametrize("name", ["channel", "balls"])
+def test_rows_are_those_of_the_table(name, tmp_path):
+    scene = SCENES[name]
+    rows = trajectory.rows(Box.of(scene), scene.radius, seed=1)
+    Trajectory.write(tmp_path / "trajectory.csv", rows)
+    assert Trajectory.read(tmp_path / "trajectory.csv") == rows
+    deep = scene.depth is not None
+    assert all((row["z1"] is not None) == (row["z2"] is not None) == deep for row in rows)
+    assert {row["event"] for row in rows} >= {"start", "disc_collision", "vertical_hop", "end"}

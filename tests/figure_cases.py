@@ -1,0 +1,158 @@
+"""What tests of figures share: boxes, tables drawn from the exact theory, the texts that show."""
+
+from functools import cache
+from importlib import import_module
+from itertools import combinations, pairwise
+from unittest.mock import patch
+
+import numpy as np
+from matplotlib.text import Text
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model import radii
+from twodiscs.model.box import Box
+from twodiscs.theory import exact
+
+BOXES = {
+    "paper": Box(1.5, 1.0),
+    "long": Box(3.0, 1.0),
+    "square": Box(1.0, 1.0),
+    "tall": Box(1.0, 1.5),
+    "double": Box(2.0, 1.0),
+    "nearly square": Box(1.05, 1.0),
+    "very long": Box(40.0, 1.0),
+    "very tall": Box(0.1, 1.0),
+}
+PAPER = BOXES["paper"]
+
+
+def draw(name, box, tables):
+    """Draw a figure of the catalogue as its job does, with the tables that it reads."""
+    entry = FIGURES[name]
+    given = {table: tables[table] for table in entry.tables}
+    return import_module(f"twodiscs.{entry.module}").draw(box, given, **entry.options)
+
+
+# Tables -------------------------------------------------------------------------------------------
+
+
+@cache
+def tables_of(name):
+    """Return {name: rows} of all tables that figures of one of ``BOXES`` read.
+
+    They are exact values with Gaussian noise. Hops that take too long are cut off as the engine
+    does: too few for an error, or none seen.
+    """
+    rng, box, relative = np.random.default_rng(20), BOXES[name], 3e-3
+    found = {name: [] for name in ("volume", "areas", "mean_times", "hop_histogram")}
+    for radius in radii.radii(box.width, box.height, 0.02 * box.shortest, 18):
+        scene = box.scene(radius)
+        found["volume"].append(sampled(rng, radius, "volume", exact.volume(scene), relative))
+        for event, area in exact.areas(scene).items():
+            found["areas"].append(sampled(rng, radius, f"{event}_area", area, relative))
+        for event, time in exact.mean_times(scene).items():
+            found["mean_times"].append(simulated(rng, scene, event, time, relative))
+        if scene.vertical_hops and len(found["hop_histogram"]) < 4 * 512:
+            found["hop_histogram"] += histogram(rng, scene)
+    found["trajectory"] = trajectory(rng)
+    for table, rows in found.items():
+        assert all(row.keys() == SCENE_TABLES[table].columns().keys() for row in rows)
+    return found
+
+
+def noisy(rng, exact, relative):
+    """Return estimate, standard error, z."""
+    z = rng.standard_normal()
+    return {"estimate": exact * (1 + relative * z), "stderr": exact * relative, "z": z}
+
+
+def sampled(rng, radius, quantity, exact, relative):
+    """Return a row of volume.csv or areas.csv."""
+    row = {"radius": radius, "quantity": quantity, "method": "monte_carlo", "exact": exact}
+    row |= {"samples": 10**7, "hits": 10**6, "epsilon": 0.001, "expectation": exact, "bias": 0.0}
+    if exact == 0:
+        nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
+        return row | nothing | {"status": "impossible", "test": "certain"}
+    return row | noisy(rng, exact, relative) | {"status": "sampled", "test": "normal"}
+
+
+def simulated(rng, scene, event, exact, relative):
+    """Return a row of mean_times.csv."""
+    row = {"radius": scene.radius, "event": event, "exact": exact, "count": 1000}
+    row |= {"replicas": 1000, "duration": 100.0, "target": relative, "bound": None}
+    row |= {"ergodic_components": scene.ergodic_components, "relative_stderr": relative}
+    nothing = {"estimate": None, "stderr": None, "relative_stderr": None, "count": 0}
+    if exact is None:
+        return row | nothing | {"z": 0.0, "status": "impossible", "test": "certain"}
+    if exact > 1e5:
+        bound = {"bound": exact / 2, "z": None, "status": "none-seen", "test": None}
+        return row | nothing | bound
+    row |= noisy(rng, exact, relative) | {"status": "reached", "test": "normal"}
+    if exact > 1e4:
+        row |= {"stderr": None, "relative_stderr": None, "status": "too-few"}
+    return row
+
+
+def histogram(rng, scene, intervals=10**6, bins=512):
+    """Return the rows of hop_histogram.csv of one radius, with exponential intervals."""
+    mean = exact.mean_times(scene)["vertical_hop"]
+    edges = mean / 16 * np.arange(bins + 1)
+    chances = -np.diff(np.exp(-edges / mean))
+    counts = rng.multinomial(intervals, [*chances, 1 - chances.sum()])
+    row = {"radius": scene.radius, "event": "vertical_hop", "intervals": intervals}
+    row |= {"exact_mean": mean, "mean": mean, "mean_stderr": mean / 1000, "z": 0.0}
+    return [
+        row
+        | {"left": float(left), "right": float(right), "count": int(n)}
+        | {"density": 16 * n / (mean * intervals), "stderr": 16 * n**0.5 / (mean * intervals)}
+        for (left, right), n in zip(pairwise(edges), counts[:-1], strict=True)
+    ]
+
+
+def trajectory(rng, events=400):
+    """Return rows of a trajectory that stays on one side and hops now and then."""
+    side = np.where(np.arange(events) // 90 % 2, 1, -1)
+    rows = []
+    for i, x in enumerate(side * rng.uniform(0.1, 0.4, events)):
+        if i > 0 and side[i] != side[i - 1]:
+            for event in ("horizontal_hop", "vertical_hop"):
+                place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
+                rows.append({"time": i - 0.5, "event": event, **place, "z1": None, "z2": None})
+        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, "z1": None, "z2": None}
+        rows.append({"time": float(i), "event": "wall_x1", **place})
+    return rows
+
+
+# Texts --------------------------------------------------------------------------------------------
+
+
+def shown_texts(figure):
+    """Return the visible texts of a figure, each with its box in inches."""
+    found = []
+    draw_text = Text.draw
+
+    def record(text, renderer):
+        if text.get_visible() and text.get_text().strip():
+            box = Text.get_window_extent(text, renderer)
+            found.append((text.get_text(), box.transformed(text.figure.dpi_scale_trans.inverted())))
+        return draw_text(text, renderer)
+
+    with patch.object(Text, "draw", record):
+        figure.draw_without_rendering()
+    return found
+
+
+def unclear(figure, slack=0.02):
+    """Return the texts that reach beyond a figure, and the pairs that overlap by more than a rim.
+
+    ``slack`` is the width of the rim, in inches.
+    """
+    texts = shown_texts(figure)
+    width, height = figure.get_size_inches()
+    beyond = [t for t, b in texts if b.x0 < 0 or b.y0 < 0 or b.x1 > width or b.y1 > height]
+    return beyond + [
+        (s, t)
+        for (s, a), (t, b) in combinations(texts, 2)
+        if min(a.x1, b.x1) - max(a.x0, b.x0) > slack and min(a.y1, b.y1) - max(a.y0, b.y0) > slack
+    ]

@@ -1,0 +1,86 @@
+"""Panels: labels that keep clear of each other, and a symbol for every kind of row."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from figure_cases import PAPER
+from hypothesis import given
+from hypothesis import strategies as st
+
+from twodiscs.figures.kit import panels, style
+from twodiscs.model.box import Box
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 200), st.floats(1, 30)), min_size=1, max_size=4),
+    st.floats(1, 8),
+)
+def test_labels_are_moved_apart(labels, gap):
+    labels.sort()
+    wanted, widths = zip(*labels, strict=True)
+    places = panels.spread(wanted, widths, gap, 210)
+    intervals = [(p - w / 2, p + w / 2) for p, w in zip(places, widths, strict=True)]
+    assert intervals[-1][1] <= 210 + 1e-9
+    apart = [b[0] - a[1] for a, b in pairwise(intervals)]
+    assert all(distance >= gap - 1e-9 for distance in apart)
+
+
+def test_labels_with_room_stay_where_they_belong():
+    assert panels.spread([20, 60, 100], [10, 20, 10], 4, 200) == [20, 60, 100]
+    assert panels.spread([50, 50], [10, 10], 4, 200) == [43, 57]
+
+
+def row(radius, **values):
+    shown = {"radius": radius, "estimate": None, "stderr": None, "z": None, "bound": None}
+    return shown | {"test": "normal"} | values
+
+
+def drawn_lines(rows):
+    """Draw ``rows`` of one series and return {(panel, marker): abscissae and ordinates}."""
+    with style.context():
+        _, main, lower = panels.panels(PAPER, "")
+        before = set(main.lines) | set(lower.lines)
+        one = panels.Series("", rows, np.array([1.0, 1.0]))
+        panels.draw_series(main, lower, np.array([0.1, 0.2]), [one])
+        found = {}
+        for name, axes in (("main", main), ("lower", lower)):
+            for line in set(axes.lines) - before:
+                if len(line.get_xdata()) and line.get_linestyle() == "None":
+                    points = zip(line.get_xdata(), line.get_ydata(), strict=True)
+                    found[name, line.get_marker()] = sorted(points)
+        return found
+
+
+def test_every_status_has_its_symbol():
+    found = drawn_lines(
+        [
+            row(0.1, estimate=1.0, stderr=0.1, z=1.0),
+            row(0.15, estimate=1.2, z=-0.5),
+            row(0.2, bound=3.0),
+            row(0.25, z=0.0, test="certain"),
+            row(0.3, estimate=2.0, stderr=0.1, z=9.0),
+            row(0.35, estimate=2.0, stderr=0.1, z=-40.0),
+        ]
+    )
+    assert found["main", "o"] == [(0.1, 1.0), (0.3, 2.0), (0.35, 2.0)]
+    assert found["main", "x"] == [(0.15, 1.2)]
+    (caret,) = [points for (_, marker), points in found.items() if not isinstance(marker, str)]
+    assert [x for x, _ in caret] == [0.2]
+    assert found["lower", "o"] == [(0.1, 1.0), (0.15, -0.5)]
+    assert found["lower", "^"] == [(0.3, 0.97 * panels.LARGEST_RESIDUAL)]
+    assert found["lower", "v"] == [(0.35, -0.97 * panels.LARGEST_RESIDUAL)]
+
+
+@pytest.mark.parametrize(
+    ("effects", "symbols"),
+    [
+        ({}, []),
+        ({"periodic": "xy"}, ["$x$, $y$ periodic"]),
+        ({"field": 1.5}, ["$g=1.5$"]),
+        ({"mass_ratio": 2, "radius_ratio": 0.5}, ["$r_2/r_1=0.5$", "$m_2/m_1=2$"]),
+    ],
+    ids=str,
+)
+def test_effects_are_written_in_symbols(effects, symbols):
+    assert sorted(panels.effects(Box(1.5, 1.0, effects))) == sorted(symbols)

@@ -1,0 +1,111 @@
+"""Files of figures: the same bytes whatever the machine is set to, and none for a mistake."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import matplotlib
+import pytest
+from fabricated import command
+from figure_cases import PAPER, tables_of
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import style
+from twodiscs.pipeline import jobs
+
+
+def words_of(folder, name, outputs):
+    """Write the tables that a figure reads and return the command line of its job."""
+    entry, tables = FIGURES[name], []
+    for table in entry.tables:
+        path = folder / f"{table}.csv"
+        SCENE_TABLES[table].write(path, tables_of("paper")[table])
+        tables.append(f"{table}={path}")
+    given = json.dumps({"box": PAPER.parameters(), **entry.options})
+    outputs = [str(folder / output) for output in outputs]
+    words = ["figure", entry.module, "--parameters", given, "--table", *tables]
+    return [*words, "--output", *outputs]
+
+
+@pytest.mark.parametrize("name", ["integration_regimes", "mean_hop_time"])
+def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path):
+    style_file = tmp_path / "matplotlibrc"
+    style_file.write_text("font.size: 20\nlines.linewidth: 7\npdf.fonttype: 3\n")
+    contents = []
+    for turn, environment in enumerate(
+        ({"PYTHONHASHSEED": "1"}, {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)})
+    ):
+        folder = tmp_path / str(turn)
+        folder.mkdir()
+        words = words_of(folder, name, ["a.pdf", "a.png"])
+        finished = subprocess.run(
+            [sys.executable, "-m", "twodiscs.pipeline.jobs", *words],
+            env=os.environ | {"TZ": f"UTC{turn}"} | environment,
+            capture_output=True,
+            text=True,
+        )
+        assert (finished.returncode, finished.stderr) == (0, "")
+        contents.append([(folder / f).read_bytes() for f in ("a.pdf", "a.png")])
+    assert contents[0] == contents[1]
+    pdf, png = contents[0]
+    assert not re.search(rb"Date|Creator|Producer|Matplotlib", pdf)
+    assert b"/Subtype /Type0" in pdf or b"/Subtype /TrueType" in pdf
+    assert b"/FontFile2" in pdf
+    assert b"/Type3" not in pdf
+    width = float(re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", pdf)[1])
+    assert width == pytest.approx(72 * style.COLUMN)
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    assert not re.search(rb"tEXt|tIME|iTXt", png)
+    assert int.from_bytes(png[16:20], "big") == round(style.DPI * style.COLUMN)
+
+
+def test_settings_are_restored():
+    before = dict(matplotlib.rcParams)
+    with style.context():
+        assert matplotlib.rcParams["font.size"] == style.SETTINGS["font.size"]
+    assert dict(matplotlib.rcParams) == before
+
+
+BOX = '{"box": {"width": 1.5, "height": 1.0}}'
+
+
+@pytest.mark.parametrize(
+    ("module", "options", "sentence"),
+    [
+        ("figures.portrait", {}, "module must be one of the package twodiscs"),
+        ("portrait", {}, "module must be one of the package twodiscs"),
+        ("../model", {}, "module must be one of the package twodiscs"),
+        ("figures.geometry.model", {"--parameters": "{}"}, "missing a required argument: 'box'"),
+        ("figures.geometry.model", {"--parameters": '{"box": {"width": 1.5}}'}, "box must have"),
+        (
+            "figures.geometry.model",
+            {"--parameters": '{"box": {"width": -1, "height": 1}}'},
+            "width must be",
+        ),
+        ("figures.geometry.model", {"--parameters": "1.5"}, "must be a JSON object"),
+        ("figures.geometry.model", {"--parameters": BOX[:-1] + ', "colour": 1}'}, "'colour'"),
+        ("figures.geometry.model", {"--table": "volume"}, "must be given as NAME=VALUE"),
+        ("figures.geometry.model", {"--table": "volumes=a.csv"}, "there is no table called 'a'"),
+        ("figures.geometry.model", {"--table": "a=volume.csv"}, "volume.csv: No such file"),
+        ("figures.radius", {}, "missing a required argument: 'names'"),
+        (
+            "figures.geometry.model",
+            {"--output": "a.bmp"},
+            "file, not 'a.bmp'",
+        ),
+    ],
+)
+def test_mistakes_are_told_in_one_sentence(
+    module, options, sentence, monkeypatch, capsys, tmp_path
+):
+    monkeypatch.chdir(tmp_path)
+    given = {"--parameters": BOX, "--output": "a.png"} | options
+    words = [word for pair in given.items() for word in pair]
+    assert command(monkeypatch, jobs, "figure", module, *words) == 2
+    error = capsys.readouterr().err
+    assert sentence in error
+    assert error.count("\n") == 1
+    assert not any(tmp_path.iterdir())

@@ -1,0 +1,127 @@
+"""The catalogue of figures: every entry can be drawn, is of use when it says so, and reads well."""
+
+import ast
+import re
+import subprocess
+import sys
+from inspect import signature
+from pathlib import Path
+
+import pytest
+
+import twodiscs
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures.catalogue import (
+    ANIMATION,
+    FIGURES,
+    LINES,
+    LINES_WITH_EFFECTS,
+    NOTES,
+    Entry,
+)
+from twodiscs.model.events import EVENTS
+from twodiscs.pipeline.jobs import module_of
+from twodiscs.studies.catalogue import STUDY_FIGURES, STUDY_TABLES
+
+ALL = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
+QUANTITIES = {
+    "volume",
+    "hop_histogram",
+    "trajectory",
+    *(f"{event}_{kind}" for event in EVENTS for kind in ("area", "time")),
+}
+EFFECTS = {"field": 1.5}
+
+
+def test_the_modules_that_draw_are_those_of_the_entries():
+    folder = Path(twodiscs.__file__).parent
+    drawing = {
+        ".".join(path.relative_to(folder).with_suffix("").parts)
+        for floor in ("figures", "studies")
+        for path in (folder / floor).rglob("*.py")
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.FunctionDef) and node.name == "draw"
+    }
+    assert drawing == {entry.module for entry in (FIGURES | STUDY_FIGURES).values()}
+
+
+@pytest.mark.parametrize("name", FIGURES | STUDY_FIGURES)
+def test_the_options_are_those_that_the_module_takes(name):
+    entry = ALL[name]
+    signature(module_of(entry.module).draw).bind(None, {}, **entry.options)
+
+
+def test_only_the_animation_animates():
+    assert callable(module_of(ANIMATION.module).animate)
+    assert (ANIMATION.tables, ANIMATION.of_plain) == (("trajectory",), True)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_an_entry_is_complete(name):
+    entry = ALL[name]
+    tables = SCENE_TABLES | STUDY_TABLES if name in STUDY_FIGURES else SCENE_TABLES
+    assert {*entry.tables, *entry.main_tables} <= set(tables)
+    assert set(entry.main_tables) <= set(SCENE_TABLES)
+    assert entry.needs <= QUANTITIES
+    if name not in STUDY_FIGURES:
+        assert bool(entry.needs) == bool(entry.tables)
+    assert entry.note in {None, *NOTES}
+    assert list(entry.labels) == ["figure"]
+    assert entry.labels["figure"] == entry.title
+
+
+@pytest.mark.parametrize("effects", [{}, EFFECTS], ids=["plain", "effects"])
+@pytest.mark.parametrize("name", ALL)
+def test_captions_are_plain_text_in_whole_sentences(name, effects):
+    entry = ALL[name]
+    own, full = entry.own_caption(effects), entry.full_caption(effects)
+    assert full.startswith(own)
+    assert own.startswith(entry.caption)
+    for caption in (own, full):
+        assert caption.endswith(".")
+        assert not re.search(r"[\\${}_]{2}|\\|\$|\s\s|\n|\.\.|\. [a-z]", caption)
+
+
+def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
+    called = [entry for entry in FIGURES.values() if entry.needs]
+    for entry in called:
+        plain, other = entry.full_caption(), entry.full_caption(EFFECTS)
+        assert entry.plain in plain
+        assert entry.with_effects in other
+        assert not re.search(r"[wh]/4|square box|Dashed|four times", other)
+        assert (LINES in plain) == ("r_v and horizontal ones" in other) == bool(entry.note)
+        assert "r_v" not in plain
+    assert sum(bool(entry.plain) for entry in called) >= 4
+    assert any(entry.with_effects for entry in called)
+
+
+def test_a_note_is_said_besides_the_own_caption():
+    entry = Entry("a", "b", "One\n  two.", "c", plain="Three.", with_effects="Four.", note="shells")
+    assert (entry.own_caption(), entry.own_caption(EFFECTS)) == (
+        "One two. Three.",
+        "One two. Four.",
+    )
+    assert entry.full_caption() == f"One two. Three. {NOTES['shells'].plain}"
+    assert entry.full_caption(EFFECTS) == f"One two. Four. {NOTES['shells'].with_effects}"
+    assert " ".join(LINES_WITH_EFFECTS.split()) in entry.full_caption(EFFECTS)
+
+
+def test_a_figure_is_called_for_by_what_it_shows():
+    called = {n for n, entry in FIGURES.items() if entry.is_called({"right_wall_time"})}
+    drawings = {n for n, entry in FIGURES.items() if not entry.tables}
+    assert called == drawings | {"mean_wall_time"}
+    assert all(entry.is_called(QUANTITIES) for entry in FIGURES.values())
+
+
+def test_scenes_with_effects_have_no_drawings_and_no_animation():
+    called = {n for n, entry in FIGURES.items() if entry.is_called(QUANTITIES, EFFECTS)}
+    assert called == {n for n, entry in FIGURES.items() if entry.tables}
+    assert ANIMATION.is_called(QUANTITIES)
+    assert not ANIMATION.is_called(QUANTITIES, EFFECTS)
+
+
+def test_catalogues_are_quick_to_import():
+    code = "import sys, twodiscs.studies.catalogue; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+    assert "twodiscs.figures.catalogue" in loaded.split()
+    assert not {"numpy", "matplotlib", "mpmath", "scipy", "numba"} & set(loaded.split())

@@ -1,0 +1,78 @@
+"""Every figure of a scene draws for every box and every table, with no text upon another."""
+
+import pytest
+from figure_cases import BOXES, PAPER, draw, tables_of, unclear
+
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
+
+
+def pairs():
+    """Yield (figure, box): drawings in all boxes, the others where labels could meet."""
+    for name, entry in FIGURES.items():
+        yield from ((name, box) for box in (("paper", "nearly square") if entry.tables else BOXES))
+    yield from ((name, "long") for name in ("mean_collision_time", "mean_hop_time"))
+    yield from ((name, "tall") for name in ("hopping_trajectory", "wall_area"))
+    yield from ((name, "square") for name in ("mean_wall_time", "horizontal_hop_area"))
+
+
+@pytest.mark.parametrize(("name", "box"), list(pairs()))
+def test_texts_stand_clear(name, box):
+    with style.context():
+        figure = draw(name, BOXES[box], tables_of(box))
+        assert unclear(figure) == []
+    width, height = figure.get_size_inches()
+    assert width == style.COLUMN
+    assert height < 6.5
+
+
+def test_what_would_not_be_clear_is_found():
+    with style.context():
+        figure = draw("model", PAPER, {})
+        figure.text(0.5, 0.5, "one")
+        figure.text(0.5, 0.5, "two")
+        figure.text(-0.5, 0.5, "beyond")
+        assert unclear(figure) == ["beyond", ("one", "two")]
+
+
+def test_tables_with_little_in_them():
+    """A single radius, a single event, and no estimate at all."""
+    read = tables_of("paper")
+    few = {
+        "volume": read["volume"][:1],
+        "areas": [r for r in read["areas"] if r["quantity"] == "top_wall_area"][:2],
+        "mean_times": [r for r in read["mean_times"] if r["event"] == "horizontal_hop"][-2:],
+        "hop_histogram": read["hop_histogram"][:512],
+        "trajectory": read["trajectory"][:3],
+    }
+    assert [r["status"] for r in few["mean_times"]] == ["impossible"] * 2
+    with style.context():
+        for name in ("volume", "wall_area", "mean_hop_time", "hop_histogram", "hopping_trajectory"):
+            draw(name, PAPER, few).draw_without_rendering()
+        with pytest.raises(ValueError, match=r"areas\.csv has no row of disc_collision"):
+            draw("collision_area", PAPER, few)
+        with pytest.raises(ValueError, match=r"mean_times\.csv has no row of right_wall"):
+            draw("mean_wall_time", PAPER, few)
+
+
+@pytest.mark.parametrize("effects", [{"field": 1.5}, {"radius_ratio": 0.5}], ids=str)
+@pytest.mark.parametrize("name", [name for name, entry in FIGURES.items() if entry.tables])
+def test_laws_of_plain_scenes_are_not_drawn_with_effects(name, effects):
+    """No law for small discs, none near the end, no density at 0; the effects are named instead."""
+    box = Box(1.5, 1.0, effects)
+    with style.context():
+        figures = [draw(name, one, tables_of("paper")) for one in (PAPER, box)]
+    dashed, marks = (
+        [sum(wanted(line) for axes in figure.axes for line in axes.lines) for figure in figures]
+        for wanted in (
+            lambda line: line.get_zorder() == 6,
+            lambda line: line.get_linewidth() == 1.8,
+        )
+    )
+    assert dashed[1] == marks[1] == 0
+    assert bool(dashed[0]) == ("laws" in FIGURES[name].options)
+    assert bool(marks[0]) == (name == "hop_histogram")
+    texts = [text.get_text() for axes in figures[1].axes for text in axes.texts]
+    symbol = "g=1.5" if "field" in effects else "r_2/r_1=0.5"
+    assert any(symbol in text for text in texts)

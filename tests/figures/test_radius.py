@@ -1,0 +1,90 @@
+"""Quantities over the radius: what is drawn are the estimates, the exact curves and the laws."""
+
+import numpy as np
+import pytest
+from figure_cases import PAPER, draw, tables_of
+
+from twodiscs.figures import radius
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import curves, style
+from twodiscs.theory.exact import mean_times
+from twodiscs.theory.laws import leading_law, small_radius_time
+
+OVER_RADIUS = [name for name, entry in FIGURES.items() if entry.module == "figures.radius"]
+
+
+@pytest.fixture(scope="module")
+def figures():
+    with style.context():
+        return {name: draw(name, PAPER, tables_of("paper")) for name in OVER_RADIUS}
+
+
+@pytest.mark.parametrize("name", OVER_RADIUS)
+def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
+    """In the order of the catalogue, which is that of colours and markers."""
+    radii, exact = curves.exact(PAPER)
+    names, main = FIGURES[name].options["names"], figures[name].axes[1]
+    drawn = [line for line in main.lines if len(line.get_xdata()) == len(radii)]
+    assert len(drawn) == len(names)
+    for line, quantity, (colour, marker) in zip(drawn, names, style.SERIES, strict=False):
+        np.testing.assert_array_equal(line.get_ydata(), exact[quantity])
+        assert line.get_color() == (style.BLACK if len(names) == 1 else colour)
+        (table,) = FIGURES[name].tables
+        found = {
+            (row["radius"], row["estimate"])
+            for row in tables_of("paper")[table]
+            if radius._quantity(row) == quantity and row["stderr"]
+        }
+        symbols = {
+            point
+            for one in main.lines
+            if (one.get_color(), one.get_marker()) == (colour, marker)
+            for point in zip(one.get_xdata(), one.get_ydata(), strict=True)
+        }
+        assert found
+        assert found <= symbols
+    legend = [text.get_text() for text in main.get_legend().get_texts()]
+    single = FIGURES[name].options.get("single")
+    assert legend == (["exact", single] if single else list(names.values()))
+    assert main.get_ylabel() == FIGURES[name].options["label"]
+    assert main.get_yscale() == ("linear" if FIGURES[name].options.get("linear") else "log")
+
+
+def test_blocked_hop_area_is_shown_as_zero(figures):
+    points = {
+        (x, y)
+        for line in figures["horizontal_hop_area"].axes[1].lines
+        if line.get_marker() == "o"
+        for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
+    }
+    blocked = [r["radius"] for r in tables_of("paper")["volume"] if r["radius"] > 0.25]
+    assert blocked
+    assert {(r, 0.0) for r in blocked} <= points
+
+
+def asymptotes(axes):
+    """Return the dashed lines of the limiting laws, as (abscissae, ordinates)."""
+    return [line.get_data() for line in axes.lines if line.get_zorder() == 6]
+
+
+def test_limiting_laws_run_into_the_curves(figures):
+    """The law for small discs begins at the limit r → 0, and that of the end ends on the curve."""
+    small, last = asymptotes(figures["mean_collision_time"].axes[1])
+    assert small[0][-1] == radius.SMALL * PAPER.largest_radius
+    assert small[1][0] == small_radius_time(PAPER, "disc_collision", small[0][0])
+    time = mean_times(PAPER.scene(float(last[0][-1])))["disc_collision"]
+    assert last[1][-1] == pytest.approx(time, rel=1e-3)
+    assert len(asymptotes(figures["mean_hop_time"].axes[1])) == 2
+
+
+def test_times_approach_the_end_of_their_hop(figures):
+    """The panel beneath: curves, estimates and laws over the distance from w/4 or h/4."""
+    lower = figures["mean_hop_time"].axes[2]
+    ends = {"vertical_hop": 0.375, "horizontal_hop": 0.25}
+    for (event, end), (distances, times) in zip(ends.items(), asymptotes(lower), strict=True):
+        law = leading_law(PAPER, event)
+        np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
+        assert distances.max() < radius.LAW
+    rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
+    shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
+    assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}

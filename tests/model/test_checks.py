@@ -1,0 +1,57 @@
+"""Checks of plain arguments: what is allowed is returned as it is used, the rest is named."""
+
+import math
+import re
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from twodiscs.model.checks import ascending, length, number, one_of, proportion, whole
+
+
+def test_what_is_allowed_is_returned_in_its_plain_type():
+    for found, expected in (
+        (number("x", np.float32(0.5), 0.1, 1), 0.5),
+        (length("x", Fraction(1, 4)), 0.25),
+        (proportion("x", np.float64(0.5)), 0.5),
+        (whole("x", np.int64(3)), 3),
+        (whole("x", 0, 0), 0),
+        (whole("x", 2**63 - 1), 2**63 - 1),
+        (one_of("x", "a", ("a", "b")), "a"),
+        (ascending("x", np.array([1, 2])), [1.0, 2.0]),
+    ):
+        assert found == expected
+        assert type(found) is type(expected)
+
+
+@pytest.mark.parametrize(
+    ("check", "arguments", "sentence"),
+    [
+        (number, (2.0, 0.1, 1.0), "x must lie between 0.1 and 1.0, not 2.0"),
+        (number, (0, 0.1, 1.0, "ratio"), "x must be a positive, finite ratio, not 0.0"),
+        (length, ("1",), "x must be a positive number, not '1'"),
+        (length, (1e61,), "x must lie between 1e-60 and 1e+60, not 1e+61"),
+        (whole, (1.0,), "x must be an integer of at least 1, not 1.0"),
+        (whole, (True,), "x must be an integer of at least 1, not True"),
+        (whole, (0,), "x must be an integer from 1 to 2^63 - 1, not 0"),
+        (whole, (2**63,), f"x must be an integer from 1 to 2^63 - 1, not {2**63}"),
+        (whole, (6, 2, 5), "x must be an integer from 2 to 5, not 6"),
+        (proportion, ("0.5",), "x must be a number between 0 and 1, not '0.5'"),
+        (proportion, (True,), "x must be a number between 0 and 1, not True"),
+        *(
+            (proportion, (bad,), f"x must lie between 0 and 1, ends excluded, not {bad!r}")
+            for bad in (0, 1.0, -0.5, math.nan, math.inf)
+        ),
+        (one_of, ("c", ("a", "b")), "x must be one of a, b, not 'c'"),
+        (ascending, ("12",), "x must be a sequence of numbers, not '12'"),
+        (ascending, (1.0,), "x must be a sequence of numbers, not 1.0"),
+        (ascending, ([],), "x must ascend, and there must be some, not []"),
+        (ascending, ([2, 1],), "x must ascend, and there must be some, not [2.0, 1.0]"),
+        (ascending, ([1, 1],), "x must ascend, and there must be some, not [1.0, 1.0]"),
+        (ascending, ([0, 1],), "x must be a positive, finite number, not 0.0"),
+    ],
+)
+def test_what_is_not_allowed_is_named_in_one_sentence(check, arguments, sentence):
+    with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
+        check("x", *arguments)

@@ -1,0 +1,67 @@
+"""Streams of random numbers: the law of the draws, and that no two streams are the same."""
+
+import math
+
+import numpy as np
+from sampling.uniformity import assert_uniform
+
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.streams import (
+    GOLDEN,
+    largest_of,
+    next_bits,
+    open_stream,
+    second_largest_of,
+    signed_uniform,
+    splitmix,
+    uniform,
+)
+
+
+@compiled
+def order_statistics(seed, n, many):
+    state = open_stream(seed, 0)
+    found = np.empty((3, many))
+    for i in range(many):
+        found[0, i] = uniform(state)
+        found[1, i] = largest_of(state, n)
+        found[2, i] = second_largest_of(state, n)
+    return found
+
+
+def test_order_statistics():
+    for n in (2, 3, 6):
+        single, largest, second = order_statistics(np.uint64(n), n, 100_000)
+        assert_uniform(single)
+        assert_uniform(largest**n)
+        assert_uniform(n * second ** (n - 1) - (n - 1) * second**n)
+
+
+def test_streams_differ_by_seed_and_by_block():
+    states = [tuple(open_stream(np.uint64(s), b)) for s in range(40) for b in range(40)]
+    assert len(set(states)) == len(states)
+    bits = np.array(states, dtype=np.uint64).view(np.uint8)
+    ones = np.unpackbits(bits).mean()
+    assert abs(ones - 0.5) <= 5 / (2 * math.sqrt(bits.size * 8))
+
+
+def test_the_generators_are_those_of_their_authors():
+    """First numbers of the reference implementations in C."""
+    state = np.array([1, 2, 3, 4], np.uint64)
+    assert [int(next_bits(state)) for _ in range(5)] == [
+        41943041, 58720359, 3588806011781223, 3591011842654386, 9228616714210784205
+    ]  # fmt: skip
+    with np.errstate(over="ignore"):
+        counters = [np.uint64(1234567) + np.uint64(i) * GOLDEN for i in (1, 2)]
+    assert [int(splitmix(counter)) for counter in counters] == [
+        6457827717110365317, 3203168211198807973
+    ]  # fmt: skip
+
+
+def test_uniform_numbers_are_multiples_of_two_to_the_minus_53():
+    state = open_stream(np.uint64(1), 0)
+    for low, draw in ((0, uniform), (-1, signed_uniform)):
+        found = np.array([draw(state) for _ in range(1000)])
+        assert np.all((low <= found) & (found < 1))
+        assert np.array_equal(found * 2**53, np.round(found * 2**53))
+    assert uniform(np.array([0, 0, 0, 0], np.uint64)) == 0.0

@@ -1,0 +1,81 @@
+"""The order of the house: which room may import which, and how much stands in each."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from twodiscs.pipeline.documents import architecture
+from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
+
+REPOSITORY = Path(__file__).parents[1]
+
+
+def entries(folder):
+    """Return what stands in a folder of the package, without what Python and tools put there."""
+    return [
+        path.name
+        for path in folder.iterdir()
+        if path.name not in ("__pycache__", "__init__.py") and not path.name.endswith(".egg-info")
+    ]
+
+
+def test_imports_between_rooms_point_down():
+    upwards = [
+        f"{room} imports {other}"
+        for room, found in architecture.arrows().items()
+        for other in found
+        if architecture.ROOMS.index(other) > architecture.ROOMS.index(room)
+    ]
+    assert upwards == []
+
+
+def test_no_module_imports_itself_by_a_detour():
+    graph = {module: set(imports_of(module)) - {module} for module in modules()}
+    try:
+        tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(f"these modules import each other: {error.args[1]}")
+
+
+def test_every_room_is_known_and_none_is_crowded():
+    rooms = {name.removesuffix(".py") for name in entries(PACKAGE)} - {"py.typed"}
+    assert rooms == set(architecture.ROOMS)
+    assert len(entries(PACKAGE)) + 1 <= 12
+    folders = [path for path in PACKAGE.rglob("*") if path.is_dir() and path.name != "__pycache__"]
+    assert [f.name for f in folders if len(entries(f)) > 8] == []
+
+
+def test_initial_files_hold_a_docstring_only():
+    """An ``__init__`` that imports would make every edit rerun every job."""
+    for path in PACKAGE.rglob("__init__.py"):
+        if path.parent != PACKAGE:
+            body = ast.parse(path.read_text(encoding="utf-8")).body
+            assert len(body) == 1, path
+            assert isinstance(body[0], ast.Expr), path
+
+
+def test_the_model_is_quick_to_import():
+    """It takes the standard library alone: the Snakefile reads it, and so does the command line."""
+    for path in (PACKAGE / "model").glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom):
+                assert node.module.split(".")[0] not in ("numpy", "scipy", "numba"), path
+            elif isinstance(node, ast.Import):
+                assert {alias.name for alias in node.names}.isdisjoint(("numpy", "scipy", "numba"))
+
+
+def test_tests_mirror_the_rooms():
+    tests = REPOSITORY / "tests"
+    folders = {path.parent.relative_to(tests).parts[0] for path in tests.glob("*/**/*.py")}
+    rooms = {name for name in entries(PACKAGE) if (PACKAGE / name).is_dir()}
+    assert rooms <= folders
+    assert folders - rooms == {"workflow"}
+
+
+def test_the_picture_is_made_from_the_imports(tmp_path, monkeypatch):
+    drawn = tmp_path / "architecture.svg"
+    monkeypatch.setattr("sys.argv", ["architecture", str(drawn)])
+    architecture.main()
+    assert drawn.read_bytes() == (REPOSITORY / "docs" / "architecture.svg").read_bytes()
