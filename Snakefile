@@ -10,8 +10,10 @@ from twodiscs.pipeline.configuration.load import ConfigError, load, read
 
 min_version("9.27")
 
-# Where this workflow stands, whoever uses it and from wherever it is run.
-HERE = Path(str(workflow.current_basedir))
+# Where this workflow stands, whoever uses it and from wherever it is run. In its own folder paths are
+# relative, so that the folder may be moved.
+HERE = Path(str(workflow.current_basedir)).resolve()
+HERE = Path() if HERE == Path.cwd() else HERE
 
 if os.path.exists("config/config.yaml"):
 

@@ -1,33 +1,34 @@
-"""The command lines: exact numbers for people and scripts, and mistakes as one sentence."""
+"""The command line: exact numbers for people and scripts, and mistakes as one sentence."""
 
+import argparse
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from fabricated import command
 
-from twodiscs.cli import main
-from twodiscs.model import effects
+from twodiscs import cli
+from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline import arguments
-from twodiscs.theory import exact
+from twodiscs.theory.exact import exact as exact_numbers
 
 BOX = ["--width", "1.5", "--height", "1"]
 
 
 def exact(monkeypatch, capsys, *words):
     """Run ``twodiscs exact`` in this process; return exit status, standard output and error."""
-    monkeypatch.setattr(sys, "argv", ["twodiscs", "exact", *words])
-    with pytest.raises(SystemExit) as caught:
-        main.main()
+    status = command(monkeypatch, cli, "exact", *words)
     shown = capsys.readouterr()
-    return caught.value.code, shown.out, shown.err
+    return status, shown.out, shown.err
 
 
 def test_json_holds_every_digit(monkeypatch, capsys):
     status, out, err = exact(monkeypatch, capsys, *BOX, "--radius", "0.3", "--json")
-    assert status in (None, 0)
+    assert status == 0
     assert err == ""
     numbers = json.loads(out)
     assert set(numbers) == {
@@ -38,7 +39,7 @@ def test_json_holds_every_digit(monkeypatch, capsys):
         "areas",
         "mean_times",
     }
-    assert numbers == exact.exact(Scene(1.5, 1, 0.3))
+    assert numbers == exact_numbers(Scene(1.5, 1, 0.3))
     assert list(numbers["areas"]) == list(numbers["mean_times"]) == list(EVENTS)
     assert numbers["regime"] == "vertical-hops"
     assert numbers["mean_times"]["horizontal_hop"] is None
@@ -46,8 +47,8 @@ def test_json_holds_every_digit(monkeypatch, capsys):
 
 def test_the_table_holds_every_digit(monkeypatch, capsys):
     status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.3")
-    assert status in (None, 0)
-    numbers = exact.exact(Scene(1.5, 1, 0.3))
+    assert status == 0
+    numbers = exact_numbers(Scene(1.5, 1, 0.3))
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line}
     assert rows["volume"] == [repr(numbers["volume"])]
     for event in EVENTS:
@@ -97,17 +98,14 @@ def test_a_mistake_is_one_sentence(monkeypatch, capsys, words, sentence):
     assert err.count("\n") == 1
 
 
-EFFECTS = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
-
-
 def test_effects_are_options(monkeypatch, capsys):
-    assert main.EFFECTS.keys() == effects.EFFECTS.keys()
+    named = {"radius_ratio": 0.5, "mass_ratio": 2.0, "field": 0.5}
     words = ["--radius-ratio", "0.5", "--mass-ratio", "2", "--field", ".5"]
     status, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words, "--json")
-    assert status in (None, 0)
-    assert json.loads(out) == exact.exact(Scene(1.5, 1, 0.1, **EFFECTS))
+    assert status == 0
+    assert json.loads(out) == exact_numbers(Scene(1.5, 1, 0.1, **named))
     _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", *words)
-    assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in EFFECTS.items())
+    assert all(f"{name.replace('_', ' '):<20}{value}" in out for name, value in named.items())
     _, out, _ = exact(monkeypatch, capsys, *BOX, "--radius", "0.1", "--depth", "1.2")
     assert out.startswith("Two balls of radius 0.1 in a box of 1.5 × 1.0 × 1.2\n")
     assert "\nvelocity components 6\n" in out
@@ -117,31 +115,67 @@ def test_effects_are_options(monkeypatch, capsys):
     assert "velocity components" not in out
 
 
-def test_the_installed_command():
-    command = [sys.executable, "-m", "twodiscs.cli.main", "exact", *BOX, "--radius", "1"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_effect_has_an_option_with_its_meaning(name, monkeypatch, capsys):
+    status, out, _ = exact(monkeypatch, capsys, "--help")
+    assert status == 0
+    assert f"--{name.replace('_', '-')}" in out
+    assert EFFECTS[name].meaning in " ".join(out.split())
+
+
+@pytest.mark.parametrize(
+    "program",
+    [[sys.executable, "-m", "twodiscs.cli"], [str(Path(sys.executable).parent / "twodiscs")]],
+)
+def test_the_installed_command(program):
+    done = subprocess.run(
+        [*program, "exact", *BOX, "--radius", "1"], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 2
+    assert done.stdout == ""
     assert done.stderr.startswith("error: radius 1.0 does not fit")
-    assert "Traceback" not in done.stderr
+    assert done.stderr.count("\n") == 1
 
 
-def test_parameters_come_back_from_their_text():
-    value = {"a": [1, 2.5, "x"], "b": {"c": None, "d": True}}
-    assert arguments.parameters(repr(value)) == value
+# Arguments --------------------------------------------------------------------------------------
 
 
-def test_parameters_may_be_optional():
-    for value in ({"a": 1}, {"a": 1, "b": 2}):
-        assert arguments.parameters(repr(value), "a", optional=["b"]) == value
-    for value in ({"b": 1}, {"a": 1, "c": 2}):
-        with pytest.raises(ValueError, match="parameters must be a, not"):
-            arguments.parameters(repr(value), "a", optional=["b"])
+def test_parameters_come_back_from_their_text_or_from_a_file(tmp_path):
+    value = {"a": [1, 2.5, "x", 0.1 + 0.2], "b": {"c": None, "d": True}}
+    text = json.dumps(value)
+    assert arguments.parameters(text) == value
+    (tmp_path / "parameters.json").write_text(text)
+    assert arguments.parameters(f"@{tmp_path / 'parameters.json'}") == value
+    with pytest.raises(FileNotFoundError):
+        arguments.parameters("@absent.json")
 
 
-@pytest.mark.parametrize("text", ["", "1", "[1]", "{", "{a: 1}", "dict()", "{[]: 1}", "(" * 500])
-def test_text_that_is_no_dict_is_refused(text):
-    with pytest.raises(ValueError, match="parameters must be a Python dict"):
+@pytest.mark.parametrize(
+    "text",
+    ["", "1", "[1]", "{", "{a: 1}", "{'a': 1}", "dict()", '{"a": NaN}', '{"a": Infinity}',
+     "null", "[" * 10**5],
+)  # fmt: skip
+def test_text_that_is_no_object_is_refused(text):
+    with pytest.raises(ValueError, match="parameters must be a JSON object, not ") as caught:
         arguments.parameters(text)
+    assert len(str(caught.value)) < 200
+
+
+def test_named_values_come_back_from_their_texts():
+    assert arguments.named(["a=b", "c/d=e=f"], "--table") == {"a": "b", "c/d": "e=f"}
+    assert arguments.named([], "--table") == {}
+
+
+@pytest.mark.parametrize("text", ["", "a", "a=", "=b", "="])
+def test_a_value_without_a_name_is_refused(text):
+    with pytest.raises(ValueError, match=f"--table must be given as NAME=VALUE, not '{text}'"):
+        arguments.named(["a=b", text], "--table")
+
+
+def test_a_number_is_a_float_or_a_mistake_of_the_caller():
+    assert arguments.number("1e-3") == 1e-3
+    with pytest.raises(argparse.ArgumentTypeError, match="must be a number, not 'x'"):
+        arguments.number("x")
 
 
 @pytest.mark.parametrize(

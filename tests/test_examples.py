@@ -17,13 +17,15 @@ from functools import cache
 
 import pytest
 import yaml
-from workflow.checkout import REPOSITORY, fresh
+from checkout import REPOSITORY, fresh
+from fabricated import command
 
 import twodiscs
-from twodiscs.cli import check, dynamics, main, montecarlo, theory
-from twodiscs.cli import tables as table
-from twodiscs.comparison import tables
+from twodiscs import cli
+from twodiscs.comparison.scene_tables import Check
+from twodiscs.pipeline import jobs
 from twodiscs.pipeline.configuration import load
+from twodiscs.pipeline.configuration.request import STAGES
 
 PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
 NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
@@ -82,9 +84,9 @@ def scenes(name):
     ]
 
 
-def with_examples(path):
-    """Return the configuration at ``path`` with the scenes of all pages."""
-    mapping = load.read(path)
+def with_examples():
+    """Return the default configuration with the scenes of all pages."""
+    mapping = load.read(DEFAULT)
     mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
     return mapping
 
@@ -162,14 +164,11 @@ def test_python_runs(name, tmp_path):
 # Commands ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("command", commands("twodiscs"))
-def test_exact_numbers_are_those_of_the_page(command, monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", shlex.split(command))
-    with pytest.raises(SystemExit) as caught:
-        main.main()
-    assert caught.value.code in (None, 0)
+@pytest.mark.parametrize("example", commands("twodiscs"))
+def test_exact_numbers_are_those_of_the_page(example, monkeypatch, capsys):
+    assert command(monkeypatch, cli, *shlex.split(example)[1:]) == 0
     found = capsys.readouterr().out
-    for printed in commands("twodiscs")[command]:
+    for printed in commands("twodiscs")[example]:
         assert printed == "" or same(printed, found), found
 
 
@@ -186,9 +185,9 @@ def test_numbers_in_the_text_are_those_of_the_examples(name):
         assert any(f"{float(x):.{digits}f}" == number for x in known), number
 
 
-@pytest.mark.parametrize("command", commands("make"))
-def test_make_knows_what_to_do(command):
-    make, *words = shlex.split(command)
+@pytest.mark.parametrize("example", commands("make"))
+def test_make_knows_what_to_do(example):
+    make, *words = shlex.split(example)
     run = subprocess.run(
         [make, "--dry-run", *words], cwd=REPOSITORY, capture_output=True, text=True
     )
@@ -198,13 +197,13 @@ def test_make_knows_what_to_do(command):
 def targets():
     """Return {options that matter: targets} of all snakemake commands; without any, it is all."""
     found = {}
-    for command in commands("snakemake"):
+    for example in commands("snakemake"):
         options = argparse.ArgumentParser(exit_on_error=False)
         options.add_argument("--cores")
         options.add_argument("--dry-run", action="store_true")
         options.add_argument("--configfile")
         options.add_argument("targets", nargs="*")
-        given = options.parse_args(shlex.split(command)[1:])
+        given = options.parse_args(shlex.split(example)[1:])
         chosen = ("--configfile", given.configfile) if given.configfile else ()
         found.setdefault(chosen, set()).update(given.targets or ["all"])
     return found
@@ -212,10 +211,9 @@ def targets():
 
 @pytest.fixture(scope="module")
 def checkout(tmp_path_factory):
-    """A checkout whose configuration has the scenes of all pages."""
+    """A checkout whose configuration is the default one with the scenes of all pages."""
     checkout = fresh(tmp_path_factory.mktemp("examples") / "checkout")
-    mapping = with_examples(checkout.configuration)
-    checkout.configuration.write_text(yaml.safe_dump(mapping))
+    checkout.configuration.write_text(yaml.safe_dump(with_examples()))
     return checkout
 
 
@@ -239,13 +237,13 @@ def test_snakemake_knows_every_target(dry):
 
 
 def agreement(folder, scene):
-    """Return the row of the table of agreement for a ``Scene`` of a configuration, as text."""
-    rows = tables.read(folder / scene.name / "check.csv", "check")
+    """Return the row of the table of agreement for a ``SceneRequest``, as text."""
+    rows = Check.read(folder / scene.name / "check.csv")
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
     events = sum(point["events"] for point in points.values())
     counts = f"{len(points)} | {len(compared)} | {max(compared):.1f} | {events:.1e}"
-    return f"| {scene.width:g} × {scene.height:g} | {counts.replace('e+', 'e')} |"
+    return f"| {scene.box.width:g} × {scene.box.height:g} | {counts.replace('e+', 'e')} |"
 
 
 def test_table_of_agreement_is_that_of_the_expected_results():
@@ -264,9 +262,7 @@ def test_table_of_agreement_is_that_of_the_expected_results():
 def test_scenes_are_understood():
     names = [scene["name"] for name in NAMES for scene in scenes(name)]
     assert {"square", "double", "corridor", "look"} <= set(names)
-    assert [scene.name for scene in load.load(with_examples(DEFAULT)).scenes][-len(names) :] == (
-        names
-    )
+    assert [scene.name for scene in load.load(with_examples()).scenes][-len(names) :] == (names)
 
 
 @pytest.mark.parametrize("scene", ["double", "corridor"])
@@ -294,33 +290,35 @@ def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, 
 @pytest.fixture(scope="module")
 def checked(tmp_path_factory):
     """Run the jobs of the scene ``look``; return the path of its check.csv."""
-    folder = tmp_path_factory.mktemp("look")
-    scene = load.load(with_examples(DEFAULT)).scene("look")
+    folder = tmp_path_factory.mktemp("results") / "look"
+    points = folder / "points"
+    scene = load.load(with_examples()).scene("look")
 
-    def job(module, output, *words):
+    def job(kind, module, given, output, *words):
+        output.parent.mkdir(parents=True, exist_ok=True)
+        words = ("--parameters", given, *words, "--output", output)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sys, "argv", ["", *words, "--output", str(folder / output)])
-            assert not module.main()
-        return str(folder / output)
+            assert command(patch, jobs, kind, module, *words) == 0
+        return output
 
-    points = [
-        job(module, f"{module.__name__}-{key}.json", "--parameters", repr(parameters(key)))
-        for module, parameters in (
-            (montecarlo, scene.monte_carlo_parameters),
-            (dynamics, scene.dynamics_parameters),
-        )
-        for key in scene.keys
-    ]
-    exact = job(theory, "theory.csv", "--parameters", repr(scene.theory_parameters()))
-    box = repr({"areas": list(scene.watch.areas), **scene.scene_parameters()})
-    return job(table, "check.csv", "check", "--scene", box, "--theory", exact, "--points", *points)
+    for stage, module in STAGES.items():
+        for key in scene.keys[stage]:
+            job("point", module, scene.job(stage, key), points / stage / f"{key}.json")
+    theory = job(
+        "table", "comparison.exact_rows", scene.theory_job(), folder / "theory.csv",
+        "--function", "theory_rows",
+    )  # fmt: skip
+    return job(
+        "table", "comparison.gather", scene.table_job(STAGES), folder / "check.csv",
+        "--function", "check_rows", "--table", f"theory={theory}", "--points", points,
+    )  # fmt: skip
 
 
 def test_rows_of_the_check_are_those_of_the_page(checked):
     with open(checked, newline="", encoding="utf-8") as file:
         found = list(csv.DictReader(file))
     lines = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("docs/reading-check.md"), re.MULTILINE)
-    assert [name for name, _ in lines] == tables.TABLES["check"].names
+    assert [name for name, _ in lines] == list(Check.columns())
     cells = [[cell.strip() for cell in line.split("|")] for _, line in lines]
     key = ("comparison", "quantity", "radius", "method")
     for values in zip(*cells, strict=True):
@@ -334,7 +332,7 @@ def test_rows_of_the_check_are_those_of_the_page(checked):
 
 
 def test_numbers_of_rows_are_those_of_the_page(checked):
-    rows = tables.read(checked, "check")
+    rows = Check.read(checked)
     at_a_radius = [row for row in rows if row["radius"] is not None]
     text = " ".join(page("docs/reading-check.md").split())
     counts = (len(at_a_radius), len({row["radius"] for row in at_a_radius}))
@@ -343,7 +341,7 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
     assert int(said[3]) == len(rows) - counts[0]
 
 
-def test_the_example_passes(checked, tmp_path):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "argv", ["", checked, "--output", str(tmp_path / "check.passed")])
-        assert not check.main()
+def test_the_example_passes(checked, monkeypatch, tmp_path):
+    words = ("--table", f"look={checked}", "--output", tmp_path / "check.passed")
+    assert command(monkeypatch, jobs, "verdict", "comparison.check", *words) == 0
+    assert (tmp_path / "check.passed").read_text().startswith("look: ")

@@ -4,16 +4,18 @@ import math
 
 import numpy as np
 import pytest
-from fabricated import BOX, RADII, Laws, command, scenes, store, theory_rows
+from effect_scenes import SCENES
+from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
 
-from twodiscs.cli import check as cli_check
-from twodiscs.cli import tables as cli_tables
-from twodiscs.comparison import check, rows, scores, tables
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.comparison import check, exact_rows, rows, scores
+from twodiscs.comparison.scene_tables import Check
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.pipeline import jobs
+from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
-SCENE = Scene(**BOX, radius=0.2)
+SCENE = BOX.scene(0.2)
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
 
 
@@ -32,20 +34,20 @@ def points(laws):
     }
 
 
-def table_of(points, exact, alarm=scores.FALSE_ALARM):
-    rows = check.comparisons(
-        SCENE,
-        rows.volume_rows(exact, points["monte_carlo"]),
-        rows.area_rows(SCENE, exact, points["monte_carlo"]),
-        rows.mean_time_rows(SCENE, exact, points["dynamics"]),
-        rows.histogram_rows(exact, points["intervals"]),
-        points["dynamics"],
+def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
+    found = check.comparisons(
+        scene,
+        rows.volume_rows(theory, points.get("monte_carlo", [])),
+        rows.area_rows(scene, theory, points.get("monte_carlo", [])),
+        rows.mean_time_rows(scene, theory, points.get("dynamics", [])),
+        rows.histogram_rows(theory, points.get("intervals", [])),
+        points.get("dynamics", []),
     )
-    return check.check_rows(rows, alarm)
+    return check.check_rows(found, alarm)
 
 
 @pytest.fixture
-def exact():
+def theory():
     return rows.exact_values(theory_rows())
 
 
@@ -60,14 +62,14 @@ def failed(rows):
 # When all is right ----------------------------------------------------------------------------
 
 
-def test_all_that_was_measured_is_compared(points, exact):
-    rows = table_of(points, exact)
-    assert all(row["passed"] for row in rows)
+def test_all_that_was_measured_is_compared(points, theory):
+    found = table_of(points, theory)
+    assert all(row["passed"] for row in found)
     by_name = {}
-    for row in rows:
+    for row in found:
         by_name.setdefault(row["comparison"], []).append(row)
     n = len(RADII)
-    assert {name: len(found) for name, found in by_name.items()} == {
+    assert {name: len(some) for name, some in by_name.items()} == {
         "volume": n,
         "area": 6 * n,
         "mean_time": 6 * n,
@@ -76,33 +78,31 @@ def test_all_that_was_measured_is_compared(points, exact):
         "z_mean": 15,
         "z_spread": 15,
     }
-    at_a_radius = rows[:-30]
+    at_a_radius = found[:-30]
     assert [row["radius"] for row in at_a_radius] == sorted(row["radius"] for row in at_a_radius)
     assert {row["bound"] for row in at_a_radius} == {
         scores.bonferroni_bound(len(at_a_radius), 5e-4)
     }
-    assert {row["bound"] for row in rows[-30:]} == {scores.bonferroni_bound(30, 5e-4)}
-    for row in rows:
+    assert {row["bound"] for row in found[-30:]} == {scores.bonferroni_bound(30, 5e-4)}
+    for row in found:
         assert row["p"] == scores.two_sided_p(row["z"])
     for row in by_name["sum_rule"]:
         assert row["estimate"] == pytest.approx(1, abs=6 * row["stderr"])
 
 
-def test_false_alarms_are_as_rare_as_stated(laws, exact, monkeypatch):
+def test_false_alarms_are_as_rare_as_stated(laws, theory, monkeypatch):
     # A large probability, so that alarms can be counted. Bonferroni's is an upper bound; where most
     # tests are continuous and nearly independent it is not far from the truth.
     alarm, trials, radii = 0.2, 400, RADII[1:6]
     shells = {
-        (law.scene.radius, event): law.parts[f"{event}_area"]
-        for law in laws
-        for event in EVENTS[:5]
+        (law.scene.radius, event): law.parts[f"{event}_area"] for law in laws for event in SHELLS
     }
 
     def shell_expectation(scene, event, epsilon):
         probability, measure, _ = shells[scene.radius, event]
         return probability * measure
 
-    monkeypatch.setattr(comparison, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
     rng = np.random.default_rng(2)
     chosen = [law for law in laws if law.scene.radius in radii]
     alarms = 0
@@ -112,7 +112,7 @@ def test_false_alarms_are_as_rare_as_stated(laws, exact, monkeypatch):
             "dynamics": [law.dynamics(rng, replicas=128, relative=1e-2) for law in chosen],
             "intervals": [law.intervals(rng) for law in chosen[:3]],
         }
-        alarms += bool(failed(table_of(found, exact, alarm)))
+        alarms += bool(failed(table_of(found, theory, alarm)))
     spread = math.sqrt(trials * alarm * (1 - alarm))
     assert trials * alarm * 0.5 - 5 * spread < alarms < trials * alarm + 5 * spread
     assert alarms > 0
@@ -127,10 +127,10 @@ def possible_radii(event):
 
 @pytest.mark.parametrize("event", EVENTS)
 @pytest.mark.parametrize("factor", [0.99, 1.01])
-def test_a_mean_time_off_by_one_percent_is_named(points, exact, event, factor):
+def test_a_mean_time_off_by_one_percent_is_named(points, theory, event, factor):
     for radius in possible_radii(event):
-        exact[radius, f"{event}_time"] *= factor
-    found = failed(table_of(points, exact))
+        theory[radius, f"{event}_time"] *= factor
+    found = failed(table_of(points, theory))
     wrong = {("mean_time", f"{event}_time", radius) for radius in possible_radii(event)}
     assert wrong <= found
     assert {quantity for _, quantity, _ in found - wrong} <= {
@@ -139,53 +139,52 @@ def test_a_mean_time_off_by_one_percent_is_named(points, exact, event, factor):
     }
 
 
-@pytest.mark.parametrize("event", EVENTS[:5])
-def test_an_area_off_by_one_percent_is_named(points, exact, event, monkeypatch):
+@pytest.mark.parametrize("event", SHELLS)
+def test_an_area_off_by_one_percent_is_named(points, theory, event, monkeypatch):
     def shell_expectation(scene, name, epsilon):
         return exact.shell_expectation(scene, name, epsilon) * (1.01 if name == event else 1)
 
-    monkeypatch.setattr(comparison, "shell_expectation", shell_expectation)
-    found = failed(table_of(points, exact))
-    radii = possible_radii(event) if event in EVENTS[:2] else set(RADII)
+    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
+    found = failed(table_of(points, theory))
+    radii = possible_radii(event) if event in HOPS else set(RADII)
     assert {("area", f"{event}_area", radius) for radius in radii} <= found
-    walls = {"right_wall", "top_wall"}
-    also = {"any_wall_area"} if event in walls else set()
+    also = {"any_wall_area"} if event in WALLS else set()
     assert {quantity for _, quantity, _ in found} <= {f"{event}_area"} | also
 
 
-def test_a_volume_off_by_one_percent_is_named(points, exact):
+def test_a_volume_off_by_one_percent_is_named(points, theory):
     for radius in RADII:
-        exact[radius, "volume"] *= 1.01
-    found = failed(table_of(points, exact))
+        theory[radius, "volume"] *= 1.01
+    found = failed(table_of(points, theory))
     assert {("volume", "volume", radius) for radius in RADII} <= found
     assert {quantity for _, quantity, _ in found} == {"volume"}
 
 
-def test_one_point_off_by_one_percent_is_named(points, exact):
-    exact[0.3, "disc_collision_time"] *= 1.01
-    assert ("mean_time", "disc_collision_time", 0.3) in failed(table_of(points, exact))
+def test_one_point_off_by_one_percent_is_named(points, theory):
+    theory[0.3, "disc_collision_time"] *= 1.01
+    assert ("mean_time", "disc_collision_time", 0.3) in failed(table_of(points, theory))
 
 
-def test_the_sum_rule_sees_collisions_that_were_missed(laws, exact):
+def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
     law = Laws(laws[2].scene)
     law.times["disc_collision"] *= 1.01
     point = law.dynamics(np.random.default_rng(3))
-    found = table_of({"monte_carlo": [], "dynamics": [point], "intervals": []}, exact)
+    found = table_of({"dynamics": [point]}, theory)
     assert ("sum_rule", "mean_times", 0.2) in failed(found)
 
 
-def test_what_is_blocked_must_not_be_seen(points, exact):
+def test_what_is_blocked_must_not_be_seen(points, theory):
     point = next(p for p in points["dynamics"] if p["radius"] == 0.38)
     seen = {
         **point,
         "counts": {**point["counts"], "vertical_hop": 1},
         "products": {**point["products"], "vertical_hop*vertical_hop": 1},
     }
-    rows = table_of({**points, "dynamics": [seen]}, exact)
-    assert failed(rows) == {("mean_time", "vertical_hop_time", 0.38)}
+    found = table_of({**points, "dynamics": [seen]}, theory)
+    assert failed(found) == {("mean_time", "vertical_hop_time", 0.38)}
 
 
-def test_what_is_due_must_be_seen(points, exact):
+def test_what_is_due_must_be_seen(points, theory):
     def silenced(point):
         event = "vertical_hop"
         return {
@@ -196,7 +195,7 @@ def test_what_is_due_must_be_seen(points, exact):
 
     dynamics = [silenced(point) for point in points["dynamics"]]
     radii = possible_radii("vertical_hop")
-    assert failed(table_of({**points, "dynamics": dynamics}, exact)) == {
+    assert failed(table_of({**points, "dynamics": dynamics}, theory)) == {
         ("mean_time", "vertical_hop_time", radius) for radius in radii
     }
     monte_carlo = [
@@ -204,7 +203,7 @@ def test_what_is_due_must_be_seen(points, exact):
         for p in points["monte_carlo"]
     ]
     assert ("volume", "volume", 0.38) in failed(
-        table_of({**points, "monte_carlo": monte_carlo}, exact)
+        table_of({**points, "monte_carlo": monte_carlo}, theory)
     )
 
 
@@ -222,19 +221,19 @@ def errors_times(factor, point):
 def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(4)
-    exact = rows.exact_values(theory_rows(radii))
+    theory = rows.exact_values(theory_rows(radii))
     dynamics = [
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
     ]
-    rows = table_of({"monte_carlo": [], "dynamics": dynamics, "intervals": []}, exact)
-    found = failed(rows)
-    assert {(name, quantity) for name, quantity, radius in found if radius is None} >= {
+    found = table_of({"dynamics": dynamics}, theory)
+    names = failed(found)
+    assert {(name, quantity) for name, quantity, radius in names if radius is None} >= {
         ("z_spread", "right_wall_time"),
         ("z_spread", "any_wall_time"),
     }
-    assert not any(name == "z_mean" for name, _, _ in found)
-    for row in rows:
+    assert not any(name == "z_mean" for name, _, _ in names)
+    for row in found:
         if row["comparison"] == "z_spread":
             assert math.copysign(1, row["z"]) == sign
 
@@ -242,80 +241,141 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
 def test_a_common_shift_below_one_error_shows_in_the_mean():
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(5)
-    exact = rows.exact_values(theory_rows(radii))
+    theory = rows.exact_values(theory_rows(radii))
     dynamics = [
         Laws(scene).dynamics(rng, 1024, 3e-4, ("disc_collision",)) for scene in scenes(radii)
     ]
     for radius in radii:
-        exact[radius, "disc_collision_time"] *= 1 + 1.6e-4  # ¾ of an error
-    rows = table_of({"monte_carlo": [], "dynamics": dynamics, "intervals": []}, exact)
-    assert failed(rows) == {("z_mean", "disc_collision_time", None)}
+        theory[radius, "disc_collision_time"] *= 1 + 1.6e-4  # ¾ of an error
+    found = table_of({"dynamics": dynamics}, theory)
+    assert failed(found) == {("z_mean", "disc_collision_time", None)}
 
 
-def test_what_cannot_be_compared_is_there_and_not_passed(laws, exact):
+def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
     rng = np.random.default_rng(6)
     interval = {**laws[1].intervals(rng), "chains": 50}
     dynamics = laws[1].dynamics(rng, replicas=64, relative=1e-2)
-    rows = table_of({"monte_carlo": [], "dynamics": [dynamics], "intervals": [interval]}, exact)
-    untested = [row for row in rows if row["passed"] is None]
+    found = table_of({"dynamics": [dynamics], "intervals": [interval]}, theory)
+    untested = [row for row in found if row["passed"] is None]
     assert {row["comparison"] for row in untested} == {"hop_interval", "sum_rule"}
     for row in untested:
         assert row["status"] == "too-few"
         assert row["z"] is row["p"] is row["bound"] is row["test"] is None
-    assert {row["status"] for row in rows if row["comparison"] == "mean_time"} == {"too-few"}
+    assert {row["status"] for row in found if row["comparison"] == "mean_time"} == {"too-few"}
 
 
-# Command line ---------------------------------------------------------------------------------
+# With effects ---------------------------------------------------------------------------------
 
 
-def write_check(folder, monkeypatch, points, rows):
-    folder.mkdir()
-    tables.write(folder / "theory.csv", "theory", rows)
-    keys = [repr(radius) for radius in RADII]
-    paths = []
-    for kind, found in points.items():
-        paths += store(folder / kind, dict(zip(keys, found, strict=False)))
-    status = command(
-        monkeypatch, cli_tables, "check", "--scene", BOX, "--theory", folder / "theory.csv",
-        "--points", *paths, "--output", folder / "check.csv",
-    )  # fmt: skip
-    assert status == 0
-    return folder / "check.csv"
+def theory_of(scene):
+    return rows.exact_values(exact_rows.theory_rows(Box.of(scene), [scene.radius]))
 
 
-def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, points):
-    good = write_check(tmp_path / "good", monkeypatch, points, theory_rows())
-    perturbed = theory_rows()
-    for row in perturbed:
-        if row["quantity"] == "top_wall_time" and row["radius"] in (0.1, 0.3):
-            row["exact"] *= 0.99
-    bad = write_check(tmp_path / "bad", monkeypatch, points, perturbed)
+def test_the_sum_rule_is_for_plain_scenes():
+    for scene, expected in ((SCENE, ["sum_rule"]), (SCENES["rough"], [])):
+        point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
+        found = check.comparisons(scene, [], [], [], [], [point])
+        assert [row["comparison"] for row in found] == expected
 
-    out = tmp_path / "check.passed"
-    assert command(monkeypatch, cli_check, good, "--output", out) == 0
-    text = out.read_text()
-    assert text == capsys.readouterr().out
-    assert text.startswith("good: 132 comparisons passed, largest |z| ")
-    assert text.count("\n") == 1
 
+def test_the_check_takes_all_rows_of_a_scene_with_effects(tmp_path):
+    scene = SCENES["balls"]
+    quantities = ["volume", *(f"{event}_area" for event in scene.events)]
+    points = {
+        "monte_carlo": [montecarlo.better_point(scene, quantities, 1, 0.1, 7)],
+        "dynamics": [Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)],
+    }
+    found = table_of(points, theory_of(scene), scene=scene)
+    assert len(found) == 1 + 2 * len(scene.events)
+    Check.write(tmp_path / "check.csv", found)
+    bound = scores.bonferroni_bound(len(found), scores.FALSE_ALARM / 2)
+    assert all(row["passed"] and row["bound"] == bound for row in found)
+
+
+# The verdict ----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def good(points, theory):
+    return table_of(points, theory)
+
+
+@pytest.fixture
+def bad(points, theory):
+    wrong = {
+        (radius, "top_wall_time"): 0.99 * theory[radius, "top_wall_time"] for radius in (0.1, 0.3)
+    }
+    return table_of(points, theory | wrong)
+
+
+def test_a_verdict_sums_up_what_passed(good):
+    failures, text = check.verdict({"good": good, "again": good})
+    assert failures == []
+    largest = max(abs(row["z"]) for row in good)
+    line = f"132 comparisons passed, largest |z| {largest:.3g}; "
+    few = sum(row["status"] in ("too-few", "none-seen") for row in good)
+    line += f"{few} of them had too few events for an error, 0 more could not be compared\n"
+    assert text == f"good: {line}again: {line}"
+    assert check.verdict({}) == ([], "")
+
+
+def test_a_verdict_says_what_could_not_be_compared(laws, theory):
+    dynamics = laws[1].dynamics(np.random.default_rng(6), replicas=64, relative=1e-2)
+    failures, text = check.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)})
+    assert failures == []
+    assert text.startswith("scene: 6 comparisons passed, ")
+    assert text.endswith(
+        "6 of them had too few events for an error, 1 more could not be compared\n"
+    )
+
+
+def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):
+    failures, _ = check.verdict({"good": good, "bad": bad})
+    wrong = [row for row in bad if row["passed"] is False]
+    assert len(failures) == len(wrong) >= 2
+    assert all(line.startswith("bad: ") and "top_wall_time" in line for line in failures)
+    for radius in (0.1, 0.3):
+        (row,) = (row for row in wrong if row["radius"] == radius)
+        assert (
+            f"bad: mean_time of top_wall_time at radius {radius} by dynamics has "
+            f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
+        ) in failures
+    row = {**wrong[0], "radius": None, "comparison": "z_mean"}
+    assert check.failure("bad", row).startswith(
+        "bad: z_mean of top_wall_time over all radii by dynamics has z = "
+    )
+
+
+def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, good, bad):
+    out, tables = tmp_path / "check.passed", []
+    for name, found in {"good": good, "bad": bad}.items():
+        (tmp_path / name).mkdir()
+        path = tmp_path / name / "check.csv"
+        Check.write(path, found)
+        tables.append(f"{name}={path}")
+
+    def judge(*tables):
+        return command(
+            monkeypatch, jobs, "verdict", "comparison.check", "--table", *tables, "--output", out
+        )
+
+    assert judge(tables[0]) == 0
+    assert out.read_text() == capsys.readouterr().out == check.verdict({"good": good})[1]
     out.unlink()
-    assert command(monkeypatch, cli_check, good, bad, "--output", out) == 1
-    lines = capsys.readouterr().err.splitlines()
+    assert judge(*tables) == 1
+    assert capsys.readouterr().err.splitlines() == check.verdict({"bad": bad})[0]
     assert not out.exists()
-    assert any(
-        line.startswith("bad: mean_time of top_wall_time at radius 0.1 by dyn") for line in lines
-    )
-    assert any(
-        line.startswith("bad: mean_time of top_wall_time at radius 0.3 by dyn") for line in lines
-    )
-    assert all("top_wall_time" in line for line in lines)
 
 
-def test_check_of_what_is_no_table(tmp_path, monkeypatch, capsys):
-    (tmp_path / "check.csv").write_text("radius\n")
-    for path in ("check.csv", "absent.csv"):
-        assert command(monkeypatch, cli_check, tmp_path / path, "--output", tmp_path / "out") == 2
-        error = capsys.readouterr().err
-        assert path in error
-        assert error.count("\n") == 1
+@pytest.mark.parametrize("name", ["wrong", "absent"])
+def test_a_verdict_on_what_is_no_table(tmp_path, monkeypatch, capsys, name):
+    path = tmp_path / name / "check.csv"
+    if name == "wrong":
+        path.parent.mkdir()
+        path.write_text("radius\n")
+    words = ("--table", f"{name}={path}", "--output", tmp_path / "out")
+    assert command(monkeypatch, jobs, "verdict", "comparison.check", *words) == 2
+    error = capsys.readouterr().err
+    assert str(path) in error
+    assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()

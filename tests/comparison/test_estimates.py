@@ -1,4 +1,4 @@
-"""Estimates, errors and deviates: against enumeration, mpmath, numpy and seeded simulation."""
+"""Estimates and their errors: against enumeration, mpmath, numpy, scipy and seeded simulation."""
 
 import math
 from fractions import Fraction
@@ -6,20 +6,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from scipy.special import ndtr, ndtri, stdtr
+from scipy.stats import linregress, sem
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import Estimate
+from twodiscs.comparison.estimates import Estimate, Line, mean_of
 from twodiscs.model.scene import Scene
-
-DEVIATES = (1.0, 2.0, 3.0, 4.0, 5.0)
-
-
-def five_sigma(probability, trials):
-    """Return the interval of counts that a binomial law leaves once in two million times."""
-    width = 5 * math.sqrt(trials * probability * (1 - probability))
-    return trials * probability - width, trials * probability + width
-
 
 # Estimates ------------------------------------------------------------------------------------
 
@@ -36,10 +27,12 @@ def test_estimate_gives_its_interval():
 
 def test_coverage_of_normal_estimates_is_the_confidence():
     rng = np.random.default_rng(1)
-    estimates = [Estimate(value, 2.0, 9) for value in 3 + 2 * rng.standard_normal(1600)]
+    found = [Estimate(value, 2.0, 9) for value in 3 + 2 * rng.standard_normal(1600)]
     for confidence in (0.5, 0.95):
-        low, high = five_sigma(confidence, 1600)
-        assert low <= 1600 * estimates.coverage(estimates, 3.0, confidence) <= high
+        covered = sum(one.covers(3.0, confidence) for one in found)
+        assert abs(covered - 1600 * confidence) <= 5 * math.sqrt(
+            1600 * confidence * (1 - confidence)
+        )
 
 
 def test_combination_agrees_with_the_replicas_themselves():
@@ -84,81 +77,79 @@ def test_combination_names_what_is_missing():
         estimates.combination({"a": 1.0}, {"a": 100}, {"a*a": 10}, 10)
 
 
-# Tails ----------------------------------------------------------------------------------------
+# Means and lines ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("degrees", [99, 511, 10_000])
-@pytest.mark.parametrize("t", [0.0, 0.3, -1.0, 2.5, -5.0, 8.0])
-def test_student_deviate_has_the_tail_of_students_law(t, degrees):
-    z = scores.student_deviate(t, degrees)
-    # Wallace's formula is stated to 1e-3; it is better than that.
-    assert z == pytest.approx(-math.copysign(ndtri(stdtr(degrees, -abs(t))), -t), abs=1e-3)
+def test_a_mean_has_the_error_of_its_spread():
+    values = np.random.default_rng(10).exponential(3.0, (50, 4))
+    for column, found in zip(values.T, mean_of(values), strict=True):
+        assert found.value == pytest.approx(column.mean(), rel=1e-14)
+        assert found.stderr == pytest.approx(sem(column), rel=1e-14)
+        assert found.n == 50
+        assert mean_of(column).value == pytest.approx(found.value, rel=1e-14)
+        assert mean_of(list(column)).stderr == pytest.approx(found.stderr, rel=1e-14)
+    assert mean_of([1, 2]) == Estimate(1.5, 0.5, 2)
 
 
-def test_student_deviate_does_not_underflow():
-    assert 100 < scores.student_deviate(1e6, 1023) < 1e3
+@pytest.mark.parametrize("values", [[], [1.0], [[1.0, 2.0]]])
+def test_one_value_has_no_mean_with_an_error(values):
+    with pytest.raises(ValueError, match=f"values must be at least two, not {len(values)}"):
+        mean_of(values)
 
 
-@pytest.mark.parametrize(
-    ("hits", "samples", "p"),
-    [(0, 1000, 1e-3), (3, 10**6, 1e-6), (12, 10**6, 1e-6), (40, 400, 0.2), (995, 1000, 0.99)],
-)
-def test_exact_tail_is_the_doubled_binomial_tail(hits, samples, p):
-    with mpmath.workdps(40):
-        q = mpmath.mpf(p)
-
-        def pmf(k):
-            return mpmath.binomial(samples, k) * q**k * (1 - q) ** (samples - k)
-
-        low = mpmath.fsum(pmf(k) for k in range(hits + 1))
-        high = 1 - low + pmf(hits)
-        doubled = float(min(1, 2 * min(low, high)))
-    z, test = scores.binomial_z(hits, samples, p)
-    assert test == "exact-tail"
-    assert scores.two_sided_p(z) == pytest.approx(doubled, rel=1e-9)
-    assert z == 0 or (z > 0) == (hits > samples * p)
-    assert repr(scores.binomial_z(0, 10, 0.001)[0]) == "0.0"  # not -0.0
+X = np.array([1.0, 2.0, 4.0, 5.0, 9.0])
+Y = 0.3 - 2 * X + np.array([0.1, -0.2, 0.05, 0.0, 0.1])
 
 
-@pytest.mark.parametrize(("samples", "p"), [(50, 0.3), (400, 0.01), (2000, 0.45), (1500, 0.999)])
-def test_exact_tail_never_rejects_more_often_than_it_says(samples, p):
-    assert scores.binomial_z(0, samples, p)[1] == "exact-tail"
-    k = np.arange(samples + 1)
-    log_choose = np.array(
-        [math.lgamma(samples + 1) - math.lgamma(i + 1) - math.lgamma(samples - i + 1) for i in k]
-    )
-    law = np.exp(log_choose + k * math.log(p) + (samples - k) * math.log1p(-p))
-    size = np.abs([scores.binomial_z(int(i), samples, p)[0] for i in k])
-    for c in DEVIATES:
-        assert law[size >= c].sum() <= 2 * ndtr(-c) * (1 + 1e-9)
+def test_a_line_without_errors_is_that_of_scipy():
+    line, expected = Line(X, Y), linregress(X, Y)
+    assert line.slope.value == pytest.approx(expected.slope, rel=1e-13)
+    assert line.slope.stderr == pytest.approx(expected.stderr, rel=1e-12)
+    assert line.constant == pytest.approx(expected.intercept, rel=1e-12)
+    assert (line.slope.n, line.chi2) == (5, None)
 
 
-def test_binomial_z_is_normal_where_hits_and_misses_are_many():
-    z, test = scores.binomial_z(10_400, 10**6, 0.01)
-    assert test == "normal"
-    assert z == pytest.approx(400 / math.sqrt(1e4 * 0.99), rel=1e-12)
-    assert scores.binomial_z(10**6 - 10_400, 10**6, 0.99)[0] == pytest.approx(-z, rel=1e-9)
-    assert scores.binomial_z(5, 10**6, 0.000_999)[1] == "exact-tail"
-    assert scores.binomial_z(5, 10**6, 0.999_001)[1] == "exact-tail"
+def test_a_line_with_errors_is_that_of_the_normal_equations():
+    errors = np.array([0.1, 0.2, 0.1, 0.4, 0.3])
+    line, w = Line(X, Y, errors), errors**-2
+    mean_x, mean_y = np.average(X, weights=w), np.average(Y, weights=w)
+    curvature = w @ (X - mean_x) ** 2
+    slope = w @ ((X - mean_x) * (Y - mean_y)) / curvature
+    assert line.slope.value == pytest.approx(slope, rel=1e-13)
+    assert line.slope.stderr == pytest.approx(curvature**-0.5, rel=1e-13)
+    assert line.constant == pytest.approx(mean_y - slope * mean_x, rel=1e-11)
+    residuals = (Y - mean_y - slope * (X - mean_x)) / errors
+    assert line.chi2 == pytest.approx(residuals @ residuals, rel=1e-11)
 
 
-def test_binomial_z_stays_finite_far_beyond_the_smallest_double():
-    for hits, p in ((900, 1e-9), (10**8, 1e-9), (10**8 - 900, 1 - 1e-9)):
-        z, test = scores.binomial_z(hits, 10**8, p)
-        assert test == "exact-tail"
-        assert math.isfinite(z)
-        assert abs(z) > 38
-    # Where Chernoff's bound takes over from the exact tail, z falls back a little, not more.
-    scores = [scores.binomial_z(hits, 10**6, 1e-4)[0] for hits in range(600, 700)]
-    assert scores[0] < 34 < 38 < scores[-1]
-    assert (np.abs(np.diff(scores) - 0.05) < 0.15).all()
+def test_one_error_for_all_changes_the_error_of_the_slope_only():
+    line, same = Line(X, Y, 0.1), Line(X, Y, [0.1] * 5)
+    assert line.slope.value == pytest.approx(Line(X, Y).slope.value, rel=1e-13)
+    assert line.slope.stderr == pytest.approx(0.1 / math.sqrt(5 * X.var()), rel=1e-13)
+    assert (line.slope, line.constant, line.chi2) == (same.slope, same.constant, same.chi2)
 
 
-def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
-    assert scores.binomial_z(0, 100, 0.0) == (0.0, "certain")
-    assert scores.binomial_z(1, 100, 0.0) == (math.inf, "certain")
-    assert scores.binomial_z(100, 100, 1.0)[0] == 0
-    assert scores.binomial_z(99, 100, 1.0) == (-math.inf, "certain")
+def test_a_point_with_a_large_error_hardly_counts():
+    line = Line([1, 2, 3, 4], [3.0, 5.0, 7.0, 99.0], [0.1, 0.1, 0.1, 1e6])
+    assert line.slope.value == pytest.approx(2.0)
+
+
+def test_two_points_have_a_line_whose_error_needs_theirs():
+    line = Line([1.0, 3.0], [2.0, 6.0])
+    assert line.slope.value == pytest.approx(2.0, rel=1e-14)
+    assert line.slope.stderr == 0
+    line = Line([1.0, 3.0], [2.0, 6.0], 0.5)
+    assert line.slope.stderr == pytest.approx(0.5 * math.sqrt(2) / 2, rel=1e-13)
+    assert line.chi2 == pytest.approx(0, abs=1e-20)
+
+
+@pytest.mark.parametrize(("x", "y"), [([], []), ([1.0], [1.0]), ([1.0, 2.0], [1.0])])
+def test_one_point_has_no_line(x, y):
+    with pytest.raises(ValueError, match="two points at least"):
+        Line(x, y)
+
+
+# Counts ---------------------------------------------------------------------------------------
 
 
 def test_binomial_estimate():
@@ -166,40 +157,6 @@ def test_binomial_estimate():
     found = estimates.binomial_estimate(25, 100, 2.0)
     assert (found.value, found.n) == (0.5, 100)
     assert found.stderr == pytest.approx(2 * math.sqrt(0.25 * 0.75 / 100))
-
-
-def test_two_shells_that_overlap_have_a_normal_sum():
-    rng = np.random.default_rng(4)
-    samples, trials = 10**6, 2000
-    measures, both = (3.0, 5.0), 0.01
-    only = (0.02, 0.005)
-    counts = rng.multinomial(samples, [both, *only, 1 - both - sum(only)], trials)
-    scores = [
-        scores.shells_z(
-            (int(n + a), int(n + b)), int(n), samples, measures, (both + only[0], both + only[1])
-        )
-        for n, a, b, _ in counts
-    ]
-    assert {test for _, test in scores} == {"normal"}
-    z = [score for score, _ in scores]
-    assert abs(scores.z_mean(z)) < 5
-    assert abs(scores.z_spread(z)) < 5
-
-
-def test_union_never_rejects_more_often_than_it_says():
-    rng = np.random.default_rng(5)
-    first, noise = rng.standard_normal((2, 20_000))
-    for correlation in (-1.0, 0.0, 0.7):
-        second = correlation * first + math.sqrt(1 - correlation**2) * noise
-        size = np.abs([scores.union_z(pair, 1) for pair in zip(first, second, strict=True)])
-        for c in (1.0, 2.0, 3.0):
-            assert (size >= c).sum() <= five_sigma(2 * ndtr(-c), size.size)[1]
-    assert scores.union_z([0.1, -0.2], -1) == 0
-    assert scores.union_z([60.0, 1.0], -3) == pytest.approx(-60, abs=0.1)
-    assert scores.union_z([math.inf, 1.0], 1) == math.inf
-
-
-# Mean times -----------------------------------------------------------------------------------
 
 
 def moments(counts):
@@ -232,37 +189,6 @@ def test_no_event_and_no_spread_divide_by_nothing():
     assert math.isfinite(scores.mean_time_z(10**9, 10**15, 1000, 10.0, 1e9)[0])
 
 
-def test_an_impossible_event_must_not_be_seen():
-    assert scores.mean_time_z(0, 0, 10, 1.0, None) == (0.0, "certain")
-    assert scores.mean_time_z(1, 1, 10, 1.0, None) == (-math.inf, "certain")
-
-
-def law_of_total(replica_law, replicas):
-    """Return the law of the sum over independent replicas, by repeated convolution."""
-    law = np.ones(1)
-    for _ in range(replicas):
-        law = np.convolve(law, replica_law)
-    return law
-
-
-@pytest.mark.parametrize("sizes", [{1: 1.0}, {1: 0.6, 2: 0.3, 3: 0.1}, {4: 1.0}, {1: 0.5, 4: 0.5}])
-@pytest.mark.parametrize("seen", [0.003, 0.05])
-def test_cluster_bound_never_rejects_more_often_than_it_says(sizes, seen):
-    replicas = 300
-    law = np.zeros(5)
-    law[0] = 1 - seen
-    for size, share in sizes.items():
-        law[size] = seen * share
-    total = law_of_total(law, replicas)
-    exact = 1 / float(law @ np.arange(5))
-    # Σ N² = Σ N makes the allowance its smallest, K = 4. Totals of 200 and more count as rejected.
-    scores = [scores.mean_time_z(n, n, replicas, 1.0, exact) for n in range(200)]
-    assert {test for _, test in scores} == {"cluster-bound"}
-    size = np.abs([z for z, _ in scores])
-    for c in DEVIATES:
-        assert total[:200][size >= c].sum() + total[200:].sum() <= 2 * ndtr(-c)
-
-
 def test_bound_from_no_event_holds_for_clusters():
     replicas, duration = 400, 7.0
     bound = estimates.mean_time_bound(replicas, duration)
@@ -282,13 +208,11 @@ def test_the_interval_of_clustered_counts_covers_as_it_says(effective):
     mean = effective * dispersion / replicas
     clusters = rng.poisson(mean * (1 - tail), (repetitions, replicas))
     counts = clusters + rng.negative_binomial(np.maximum(clusters, 1), 1 - tail) * (clusters > 0)
-    estimates, scores = [], []
-    for row in counts:
-        sums = moments(row)
-        estimates.append(estimates.mean_time(*sums, 5.0))
-        scores.append(scores.mean_time_z(*sums, 5.0, 5.0 / mean)[0])
-    assert 0.92 <= estimates.coverage(estimates, 5.0 / mean) <= 0.98
-    assert np.mean(np.abs(scores) > estimates.normal_quantile(0.95)) <= 0.08
+    sums = [moments(row) for row in counts]
+    times = [estimates.mean_time(*one, 5.0) for one in sums]
+    assert 0.92 <= np.mean([time.covers(5.0 / mean) for time in times]) <= 0.98
+    z = [scores.mean_time_z(*one, 5.0, 5.0 / mean)[0] for one in sums]
+    assert np.mean(np.abs(z) > estimates.normal_quantile(0.95)) <= 0.08
 
 
 def exact_rates(width, height, radius):
@@ -321,96 +245,7 @@ def test_sum_rule_holds_for_the_exact_rates(radius):
     assert found.stderr == pytest.approx(math.sqrt((second - 1) / replicas), rel=1e-7)
 
 
-# Many comparisons -----------------------------------------------------------------------------
-
-
-def test_bonferroni_bound():
-    assert scores.bonferroni_bound(1, 0.05) == pytest.approx(1.959964, abs=1e-6)
-    assert scores.bonferroni_bound(1000, 5e-4) == pytest.approx(-ndtri(2.5e-7))
-
-
-@pytest.mark.parametrize("n", [2, 5, 52])
-@pytest.mark.parametrize("test", [scores.z_mean, scores.z_spread])
-def test_scores_of_scores_are_standard_normal(test, n):
-    rng = np.random.default_rng(8)
-    trials = 10_000
-    found = np.array([test(row) for row in rng.standard_normal((trials, n))])
-    for c in (1.0, 2.0, 3.0):
-        low, high = five_sigma(2 * ndtr(-c), trials)
-        assert low <= (np.abs(found) >= c).sum() <= high
-
-
-def test_scores_of_scores_see_shift_and_spread():
-    z = np.random.default_rng(9).standard_normal(52)
-    assert abs(scores.z_mean(z)) < 4
-    assert scores.z_mean(z + 1) > 5
-    assert scores.z_mean(z - 1) < -5
-    assert abs(scores.z_spread(z)) < 4
-    assert scores.z_spread(2 * z) > 5
-    assert scores.z_spread(z / 3) < -5
-    assert scores.z_spread(z * 1e3) > 100
-    assert math.isfinite(scores.z_spread(z * 1e3))
-    assert scores.z_spread([0.0] * 52) == -math.inf
-
-
-# Mistakes -------------------------------------------------------------------------------------
-
-WRONG_NUMBERS = [math.nan, math.inf, -1.0, "1", None, True]
-
-
-@pytest.mark.parametrize("wrong", WRONG_NUMBERS)
-@pytest.mark.parametrize(
-    ("name", "call"),
-    [
-        ("stderr", lambda x: Estimate(1.0, x, 1)),
-        ("confidence", lambda x: estimates.normal_quantile(x)),
-        ("measure", lambda x: estimates.binomial_estimate(1, 2, x)),
-        ("probability", lambda x: scores.binomial_z(1, 2, x)),
-        ("duration", lambda x: estimates.mean_time(1, 1, 5, x)),
-        ("duration", lambda x: scores.mean_time_z(1, 1, 5, x, 1.0)),
-        ("duration", lambda x: estimates.mean_time_bound(5, x)),
-        ("duration", lambda x: estimates.sum_rule(Scene(1, 1, 0.1), x, 5, {}, {})),
-        ("alarm", lambda x: scores.bonferroni_bound(5, x)),
-    ],
-)
-def test_wrong_numbers_are_named(name, call, wrong):
-    with pytest.raises(ValueError, match=name):
-        call(wrong)
-
-
-@pytest.mark.parametrize("wrong", [math.nan, math.inf, -1, 1.5, "1", None, True])
-@pytest.mark.parametrize(
-    ("name", "call"),
-    [
-        ("n", lambda x: Estimate(1.0, 1.0, x)),
-        ("hits", lambda x: scores.binomial_z(x, 20, 0.5)),
-        ("samples", lambda x: estimates.binomial_estimate(0, x, 1.0)),
-        ("total", lambda x: estimates.mean_time(x, 1, 5, 1.0)),
-        ("squares", lambda x: estimates.effective_count(1, x, 5)),
-        ("replicas", lambda x: estimates.mean_time(1, 1, x, 1.0)),
-        ("replicas", lambda x: estimates.mean_time_bound(x, 1.0)),
-        ("degrees", lambda x: scores.student_deviate(1.0, x)),
-        ("comparisons", lambda x: scores.bonferroni_bound(x)),
-    ],
-)
-def test_wrong_integers_are_named(name, call, wrong):
-    with pytest.raises(ValueError, match=name):
-        call(wrong)
-
-
 def test_sums_must_be_possible():
-    with pytest.raises(ValueError, match="hits must not exceed"):
-        scores.binomial_z(3, 2, 0.5)
-    with pytest.raises(ValueError, match="squares"):
-        estimates.mean_time(10, 9, 5, 1.0)
-    with pytest.raises(ValueError, match="squares"):
-        estimates.mean_time(10, 19, 5, 1.0)
-    with pytest.raises(ValueError, match="exact"):
-        scores.mean_time_z(1, 1, 5, 1.0, 0.0)
-    for empty in (scores.z_mean, scores.z_spread):
-        with pytest.raises(ValueError, match="z must not be empty"):
-            empty([])
-        with pytest.raises(ValueError, match="z must be"):
-            empty([1.0, math.nan])
-    with pytest.raises(ValueError, match="estimates"):
-        estimates.coverage([], 1.0)
+    for squares in (9, 19):
+        with pytest.raises(ValueError, match="squares"):
+            estimates.mean_time(10, squares, 5, 1.0)

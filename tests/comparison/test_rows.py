@@ -1,29 +1,278 @@
-"""Rows of scenes with effects: the same tables, from points of their own kind."""
+"""Rows say honestly what the points hold, of plain scenes and of those with effects."""
 
 import math
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from fabricated import BOX, Laws
+from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
-from twodiscs.comparison import check, rows, scores, tables
+from twodiscs.comparison import estimates, exact_rows, rows
+from twodiscs.comparison.scene_tables import Areas, Grid, MeanTimes, Theory, Volume
+from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact
+from twodiscs.theory.exact import exact, rate
+
+SCENE = BOX.scene(0.2)
+
+
+@pytest.fixture(scope="module")
+def theory():
+    return rows.exact_values(theory_rows())
+
+
+@pytest.fixture(scope="module")
+def laws():
+    return [Laws(scene) for scene in scenes()]
+
+
+def test_an_exact_value_that_is_not_there_is_named(theory, laws):
+    point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
+    with pytest.raises(ValueError, match=r"theory\.csv has no volume at radius 0\.11"):
+        rows.volume_rows(theory, [{**point, "radius": 0.11}])
+
+
+def test_a_radius_must_not_come_twice(theory, laws):
+    point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
+    with pytest.raises(ValueError, match=r"points must not contain radius 0\.02 twice"):
+        rows.volume_rows(theory, [point, point])
+
+
+# Exact rows -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("box", [BOX, Box(1.5, 1.0, {"periodic": "x", "field": 0.3})])
+def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
+    radii = (0.3, 0.1)
+    found = exact_rows.theory_rows(box, radii)
+    Theory.write(tmp_path / "theory.csv", found)
+    assert Theory.read(tmp_path / "theory.csv") == found
+    values = iter(found)
+    for radius in radii:
+        numbers = exact(box.scene(radius))
+        expected = [("volume", numbers["volume"])]
+        expected += [(f"{event}_area", numbers["areas"][event]) for event in EVENTS]
+        expected += [(f"{event}_time", numbers["mean_times"][event]) for event in EVENTS]
+        for quantity, value in expected:
+            assert next(values) == {"radius": radius, "quantity": quantity, "exact": value}
+    assert next(values, None) is None
+
+
+def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
+    found = exact_rows.grid_rows(BOX, RADII)
+    Grid.write(tmp_path / "grid.csv", found)
+    assert [row["radius"] for row in found] == list(RADII)
+    regimes = {row["radius"]: (row["regime"], row["ergodic_components"]) for row in found}
+    assert regimes[0.2] == ("all-hops", 1)
+    assert regimes[0.3] == ("vertical-hops", 2)
+    assert regimes[0.38] == ("no-hops", 4)
+    assert {row["largest_radius"] for row in found} == {BOX.largest_radius}
+
+
+# Monte Carlo ----------------------------------------------------------------------------------
+
+
+def test_rows_of_monte_carlo(theory, laws):
+    rng = np.random.default_rng(1)
+    points = [law.monte_carlo(rng, 10**8) for law in laws]
+    volume = rows.volume_rows(theory, points[::-1])
+    assert [row["radius"] for row in volume] == list(RADII)
+    areas = rows.area_rows(SCENE, theory, points[::-1])
+    assert [(row["radius"], row["quantity"]) for row in areas] == [
+        (radius, f"{event}_area") for radius in RADII for event in EVENTS
+    ]
+    for row in volume + areas:
+        if row["status"] == "sampled":
+            assert row["estimate"] == pytest.approx(row["expectation"], abs=6 * row["stderr"])
+            assert abs(row["z"]) < 6
+        assert row["bias"] == row["expectation"] - row["exact"]
+    for row in areas:
+        blocked = row["exact"] == 0
+        assert (row["status"] == "impossible") == blocked
+        hop = row["quantity"].removesuffix("_area")
+        assert blocked == (not BOX.scene(row["radius"]).is_possible(hop))
+
+
+def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
+    point = laws[1].monte_carlo(np.random.default_rng(2), 10**7)
+    found = {row["quantity"]: row for row in rows.area_rows(SCENE, theory, [point])}
+    right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
+    assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
+    assert whole["expectation"] == 4 * (right["expectation"] + top["expectation"])
+    # In these points the two shells are hit independently, so variances add up.
+    assert whole["stderr"] == pytest.approx(
+        4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
+    )
+    correlated = {**point, "right_and_top": min(right["hits"], top["hits"])}
+    found = {row["quantity"]: row for row in rows.area_rows(SCENE, theory, [correlated])}
+    assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
+
+
+def test_only_watched_areas_have_rows(theory, laws):
+    point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
+    found = rows.area_rows(SCENE, theory, [point], ("any_wall", "vertical_hop"))
+    assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
+    assert rows.volume_rows(theory, [{**point, "quantities": {}}]) == []
+
+
+def part_row(hits, samples, expectation=0.5, exact=0.5):
+    part = {"hits": hits, "measure": 1.0, "epsilon": 0.1}
+    point = {"radius": 0.1, "method": "monte_carlo", "samples": samples, "quantities": {"it": part}}
+    return rows._sampled_row(point, "it", exact, expectation)
+
+
+@pytest.mark.parametrize(
+    ("hits", "status"),
+    [(0, "none-seen"), (1, "too-few"), (99, "too-few"), (100, "sampled"), (900, "sampled"),
+     (901, "too-few"), (1000, "too-few")],
+)  # fmt: skip
+def test_few_hits_or_misses_show_no_error(hits, status):
+    row = part_row(hits, 1000)
+    assert row["status"] == status
+    assert (row["estimate"] is None) == (hits == 0)
+    assert (row["stderr"] is None) == (status != "sampled")
+    assert row["test"] == "exact-tail"
+    assert row["z"] is not None
+
+
+def test_the_shell_of_a_blocked_hop_must_be_as_empty_as_it_is():
+    assert part_row(0, 1000, 0.0, 0.0)["z"] == 0
+    assert part_row(1, 1000, 0.0, 0.0)["z"] == math.inf
+    # A thick shell reaches beyond the blocked surface itself.
+    row = part_row(500, 1000, 0.5, 0.0)
+    assert (row["status"], row["bias"]) == ("impossible", 0.5)
+    assert abs(row["z"]) < 1
+
+
+# Molecular dynamics ---------------------------------------------------------------------------
+
+
+def time_row(event="vertical_hop", radius=0.37, exact=50.0, **change):
+    point = {
+        "radius": radius,
+        "duration": 10.0,
+        "eligible": {event: 2048},
+        "counts": {event: 0},
+        "products": {f"{event}*{event}": 0},
+        "target": {event: 3e-4},
+        "status": {event: "budget"},
+    }
+    for key, value in change.items():
+        point[key] = value if key == "duration" else {**point[key], **value}
+    exact = {(radius, f"{event}_time"): exact}
+    (row,) = rows.mean_time_rows(BOX.scene(radius), exact, [point])
+    return row
+
+
+def counted(total, squares, event="vertical_hop"):
+    return {"counts": {event: total}, "products": {f"{event}*{event}": squares}}
+
+
+def test_rows_of_mean_times(theory, laws):
+    rng = np.random.default_rng(3)
+    points = [law.dynamics(rng) for law in laws]
+    found = rows.mean_time_rows(SCENE, theory, points[::-1])
+    assert [(row["radius"], row["event"]) for row in found] == [
+        (r, e) for r in RADII for e in EVENTS
+    ]
+    for row in found:
+        scene = BOX.scene(row["radius"])
+        assert row["ergodic_components"] == scene.ergodic_components
+        if scene.is_possible(row["event"]):
+            assert row["status"] == "reached"
+            assert row["estimate"] == pytest.approx(row["exact"], abs=6 * row["stderr"])
+            assert row["relative_stderr"] == pytest.approx(row["stderr"] / row["estimate"])
+            assert row["relative_stderr"] < 4e-4
+            assert row["bound"] is None
+            t = (row["estimate"] - row["exact"]) / row["stderr"]
+            assert row["z"] == pytest.approx(t, abs=0.03)  # Student's law, and the count's side
+        else:
+            assert row["status"] == "impossible"
+            assert row["z"] == row["count"] == 0
+            assert row["estimate"] is row["stderr"] is row["exact"] is None
+
+
+def test_a_wall_that_half_the_replicas_reach_counts_those(theory, laws):
+    law = laws[RADII.index(0.3)]
+    point = law.dynamics(np.random.default_rng(4))
+    assert point["eligible"]["right_wall"] == point["replicas"] // 2
+    found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
+    assert found["right_wall"]["replicas"] == 512
+    assert abs(found["right_wall"]["z"]) < 5
+    # Averaged over all initial conditions the right wall is hit half as often.
+    assert found["right_wall"]["exact"] == pytest.approx(0.5 / rate(law.scene, "right_wall"))
+
+
+def test_none_seen_gives_a_bound_and_no_estimate():
+    row = time_row(exact=5e4)
+    assert row["status"] == "none-seen"
+    assert row["estimate"] is row["stderr"] is row["relative_stderr"] is None
+    assert row["bound"] == estimates.mean_time_bound(2048, 10.0)
+    assert abs(row["z"]) < 2
+    # Where 400 were due, even four to a replica, to see none is wrong.
+    assert time_row(exact=51.2)["z"] > 10
+    nobody = time_row("right_wall", eligible={"right_wall": 0})
+    assert nobody["status"] == "none-seen"
+    assert nobody["z"] is nobody["bound"] is None
+
+
+def test_too_few_events_show_no_error():
+    row = time_row(exact=20480 / 60, **counted(60, 90))
+    assert row["status"] == "too-few"
+    assert row["estimate"] == pytest.approx(20480 / 60)
+    assert row["stderr"] is row["relative_stderr"] is row["bound"] is None
+    assert (row["z"], row["test"]) == (0.0, "cluster-bound")
+    # 180 events in clusters of three are as good as 60.
+    assert time_row(**counted(180, 540))["status"] == "too-few"
+    row = time_row(**counted(300, 350))
+    assert row["status"] == "budget"
+    assert row["test"] == "cluster-bound"
+    assert row["stderr"] > 0
+    assert time_row(**counted(2000, 3000))["test"] == "normal"
+
+
+def test_few_replicas_show_no_error():
+    few = counted(10**6, 2 * 10**10)
+    assert time_row(eligible={"vertical_hop": 99}, **few)["status"] == "too-few"
+
+
+def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
+    row = time_row(radius=0.38, exact=None, **counted(1, 1))
+    assert (row["status"], row["z"], row["count"]) == ("impossible", -math.inf, 1)
+
+
+# Histogram ------------------------------------------------------------------------------------
+
+
+def test_rows_of_the_histogram(theory, laws):
+    rng = np.random.default_rng(5)
+    points = [laws[i].intervals(rng) for i in (2, 1)]
+    found = rows.histogram_rows(theory, points)
+    assert [row["radius"] for row in found] == [0.1] * 12 + [0.2] * 12
+    for row in found:
+        tau = row["exact_mean"]
+        left, right = row["left"], row["right"]
+        density = (math.exp(-left / tau) - math.exp(-right / tau)) / (right - left)
+        assert row["density"] == pytest.approx(density, abs=5 * row["stderr"])
+        assert abs(row["z"]) < 5
+        assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
+    empty = {**points[0], "counts": [0, 5]}
+    first, second = rows.histogram_rows(theory, [empty])
+    assert (first["density"], first["stderr"]) == (0.0, None)
+    assert second["stderr"] > 0
+    few = rows.histogram_rows(theory, [{**points[0], "chains": 99}])
+    assert few[0]["z"] is few[0]["mean_stderr"] is None
+
+
+# With effects -----------------------------------------------------------------------------------
 
 
 def exact_of(*scenes):
     """Return the exact values as theory.csv has them: of all events, whatever has a place."""
-    found = {}
-    for scene in scenes:
-        exact = exact.exact(scene)
-        found[scene.radius, "volume"] = exact["volume"]
-        for event in EVENTS:
-            found[scene.radius, f"{event}_area"] = exact["areas"][event]
-            found[scene.radius, f"{event}_time"] = exact["mean_times"][event]
-    return found
+    radii = [scene.radius for scene in scenes]
+    return rows.exact_values(exact_rows.theory_rows(Box.of(scenes[0]), radii))
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -32,11 +281,11 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     scenes = [scene.with_radius(radius) for radius in (0.1, scene.radius)]
     points = [montecarlo.better_point(s, quantities, 1, 0.1, 7) for s in scenes]
-    exact = exact_of(*scenes)
-    volume = rows.volume_rows(exact, points[::-1])
-    areas = rows.area_rows(scene, exact, points[::-1])
-    tables.write(tmp_path / "volume.csv", "volume", volume)
-    tables.write(tmp_path / "areas.csv", "areas", areas)
+    theory = exact_of(*scenes)
+    volume = rows.volume_rows(theory, points[::-1])
+    areas = rows.area_rows(scene, theory, points[::-1])
+    Volume.write(tmp_path / "volume.csv", volume)
+    Areas.write(tmp_path / "areas.csv", areas)
     assert [row["radius"] for row in volume] == [s.radius for s in scenes]
     assert [(row["radius"], row["quantity"]) for row in areas] == [
         (s.radius, f"{event}_area") for s in scenes for event in scene.events
@@ -65,10 +314,10 @@ def test_all_walls_have_counts_of_their_own():
 def test_mean_times_of_what_is_counted(name, tmp_path):
     scene = SCENES[name]
     point = Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)
-    rows = rows.mean_time_rows(scene, exact_of(scene), [point])
-    tables.write(tmp_path / "mean_times.csv", "mean_times", rows)
-    assert [row["event"] for row in rows] == list(scene.events)
-    for row in rows:
+    found = rows.mean_time_rows(scene, exact_of(scene), [point])
+    MeanTimes.write(tmp_path / "mean_times.csv", found)
+    assert [row["event"] for row in found] == list(scene.events)
+    for row in found:
         assert row["ergodic_components"] == scene.ergodic_components
         if row["exact"] is None:
             assert (row["status"], row["z"], row["estimate"]) == ("impossible", 0.0, None)
@@ -82,46 +331,17 @@ def test_an_event_out_of_reach_must_not_be_seen():
     scene = Scene(1.5, 1.0, 0.1, field=1.0)
     events = ("top_wall", "right_wall")
     point = Laws(scene).dynamics(np.random.default_rng(3), events=events)
-    exact = exact_of(scene)
-    rows = {row["event"]: row for row in rows.mean_time_rows(scene, exact, [point])}
-    assert (rows["top_wall"]["status"], rows["top_wall"]["z"]) == ("impossible", 0.0)
+    theory = exact_of(scene)
+    _, row = rows.mean_time_rows(scene, theory, [point])
+    assert (row["event"], row["status"], row["z"]) == ("top_wall", "impossible", 0.0)
     point["counts"]["top_wall"] = point["products"]["top_wall*top_wall"] = 1
-    rows = {row["event"]: row for row in rows.mean_time_rows(scene, exact, [point])}
-    assert rows["top_wall"]["z"] == -math.inf
-
-
-def test_the_sum_rule_is_for_plain_scenes():
-    plain = Scene(**BOX, radius=0.2)
-    for scene, expected in ((plain, ["sum_rule"]), (SCENES["rough"], [])):
-        point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
-        rows = check.comparisons(scene, [], [], [], [], [point])
-        assert [row["comparison"] for row in rows] == expected
-
-
-def test_the_check_takes_all_rows_of_a_scene_with_effects(tmp_path):
-    scene = SCENES["balls"]
-    exact = exact_of(scene)
-    quantities = ["volume", *(f"{event}_area" for event in scene.events)]
-    sampled = montecarlo.better_point(scene, quantities, 1, 0.1, 7)
-    counted = Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)
-    rows = check.comparisons(
-        scene,
-        rows.volume_rows(exact, [sampled]),
-        rows.area_rows(scene, exact, [sampled]),
-        rows.mean_time_rows(scene, exact, [counted]),
-        [],
-        [counted],
-    )
-    assert len(rows) == 1 + 2 * len(scene.events)
-    judged = check.check_rows(rows)
-    tables.write(tmp_path / "check.csv", "check", judged)
-    bound = scores.bonferroni_bound(len(rows), scores.FALSE_ALARM / 2)
-    assert all(row["passed"] and row["bound"] == bound for row in judged)
+    _, row = rows.mean_time_rows(scene, theory, [point])
+    assert row["z"] == -math.inf
 
 
 def test_plain_points_keep_to_right_and_top():
     """All walls of a plain scene join two shells, which its point holds."""
-    plain = Scene(**BOX, radius=0.2)
+    plain = BOX.scene(0.2)
     point = montecarlo.better_point(plain, ["any_wall_area"], 1, 0.1, 7)
     assert "any_wall_area" not in point["quantities"]
     (row,) = rows.area_rows(plain, exact_of(plain), [point], ("any_wall",))

@@ -175,7 +175,7 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
 def test_mistakes_are_told_in_one_sentence(given, said, rows, tmp_path, monkeypatch, capsys):
     table, output = tmp_path / "trajectory.csv", tmp_path / "a.gif"
     Trajectory.write(table, rows)
-    words = ["--parameters", json.dumps(given), "--table", f"trajectory={table}"]
+    words = ["--parameters", given, "--table", f"trajectory={table}"]
     words = ["animation", "figures.animation", *words, "--output", output]
     assert command(monkeypatch, jobs, *words) == 2
     error = capsys.readouterr().err

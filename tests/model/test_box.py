@@ -104,8 +104,9 @@ def test_a_tiny_scene_is_far_below_every_threshold(effects):
 def test_thresholds_of_a_plain_box(width, height, thresholds):
     box = Box(width, height)
     assert box.thresholds == thresholds
-    assert box.threshold("vertical_hop") == min(width / 4, box.largest_radius)
-    assert box.threshold("horizontal_hop") == min(height / 4, box.largest_radius)
+    for hop, across in zip(HOPS, (width, height), strict=True):
+        assert box.blocking_radius(hop) == across / 4
+        assert box.threshold(hop) == min(across / 4, box.largest_radius)
     assert all(box.threshold(event) == box.largest_radius for event in EVENTS[2:])
     assert box.last_radius == box.largest_radius
 

@@ -95,6 +95,18 @@ def test_unknown_module_is_an_error(package, module):
             function(module)
 
 
+def test_modules_are_left_out_with_what_only_they_import(package):
+    found = sources.imported("chain", "pack.inner", without=["pack"])
+    assert {path.relative_to(package).as_posix() for path in found} == {
+        *("__init__.py", "chain.py", "absolute.py", "alone.py", "pack/inner.py", "pack/sibling.py"),
+    }
+    assert sources.imported("chain", without=["alone", "helper"]) == sources.imported(
+        "chain", without=["alone"]
+    )
+    with pytest.raises(ValueError, match="module must be a module of twodiscs, not 'nothing'"):
+        sources.imported("chain", without=["nothing"])
+
+
 def test_modules_and_what_the_code_of_one_imports(package):
     assert sources.modules()[:2] == [(), ("absolute",)]
     assert {("pack",), ("pack", "inner")} < {*sources.modules()}
@@ -194,6 +206,7 @@ def test_fingerprints_follow_imports_and_names_and_see_no_time_stamps(package, p
 
     before = {name: now(name) for name in CASES}
     assert len(before["chain"]) == 16
+    assert sources.fingerprint("chain", without=("alone",)) != before["chain"]
     assert now("chain", "absolute") == now("absolute", "chain") == before["chain"]
     os.utime(package / "alone.py", (1, 1))
     assert {name: now(name) for name in CASES} == before

@@ -2,33 +2,37 @@
 
 import ast
 import json
-from dataclasses import replace
-from itertools import combinations
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fabricated import Laws, command, store
+from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
-from test_figures import overlap, shown_texts  # noqa: F401
 
 from twodiscs import benchmark
-from twodiscs.cli import effects as commands
-from twodiscs.comparison import estimates, scores, tables
+from twodiscs.comparison import estimates, scores
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
-from twodiscs.figures import effects as drawing
 from twodiscs.figures.kit import style
-from twodiscs.model.box import fits
+from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline.configuration import load
+from twodiscs.pipeline import jobs
+from twodiscs.pipeline.configuration import scene_file
+from twodiscs.pipeline.configuration.load import load, read
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.effects import figure
 from twodiscs.studies.effects import measure as effects
+from twodiscs.studies.effects.table import Effects, EffectsCost
 from twodiscs.theory import exact, tails
 
-FILES = sorted((Path(__file__).parents[1] / "config" / "scenes").glob("*.yaml"))
+FILES = sorted((Path(__file__).parents[2] / "config" / "scenes").glob("*.yaml"))
+NAMES = [path.stem for path in FILES]
+PLAIN = Box(1.5, 1.0)
 ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 SEED = 1908
 
@@ -39,22 +43,16 @@ SEED = 1908
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_scene_has_the_parameters_that_it_has_alone(path):
     """Those of its file laid over config.yaml, as Snakemake lays it."""
-    below = load.read(path.parents[1] / "config.yaml")
-    (alone,) = load.load(below | load.read(path)).scenes
-    assert effects.read(path, below["seed"]) == alone
-    assert effects.read(path, SEED + 1).seed == SEED + 1
-
-
-PLAIN = {"name": "a", "box": {"width": 1.5, "height": 1}, "radii": [0.1]}
-FIELD = PLAIN | {"name": "b", "effects": {"field": 1}}
-
-
-@pytest.mark.parametrize("scenes", [[PLAIN], [FIELD, PLAIN], [FIELD | {"watch": {"volume": True}}]])
-def test_a_file_holds_one_scene_with_effects_and_times(tmp_path, scenes):
-    path = tmp_path / "scene.yaml"
-    path.write_text(json.dumps({"scenes": scenes}))
-    with pytest.raises(ValueError, match=r"scene.yaml must hold one scene, with effects, that"):
-        effects.read(path, SEED)
+    below = read(path.parents[1] / "config.yaml")
+    (alone,) = load(below | read(path)).scenes
+    job = scene_file.effects_job(path, below["seed"])
+    box, dynamics = {"box": job["box"]}, job["dynamics"]
+    keys = alone.keys["dynamics"]
+    assert [box | one for one in dynamics] == [alone.job("dynamics", key) for key in keys]
+    assert (job["name"], job["seed"]) == (path.stem, below["seed"])
+    other = scene_file.effects_job(path, SEED + 1)
+    assert other["seed"] == SEED + 1
+    assert not {one["seed"] for one in other["dynamics"]} & {one["seed"] for one in dynamics}
 
 
 @pytest.mark.parametrize(
@@ -79,7 +77,7 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
         rows = follow(scene, tuple(map(float, start[:components])), times[-1])
         first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
-    law = counting.law_of(scene)
+    law = law_of(scene)
     found = effects.follow_unmet(seed, 0, 1, replicas, np.array(times), law, draw, prism)
     assert list(found) == expected
     assert 0 < expected[0] < replicas
@@ -89,7 +87,7 @@ def test_unmet_starts_add_up_over_blocks_and_times_descend():
     found = effects.unmet(ROUGH, (1.0, 10.0, 100.0), 2, 5)
     assert found == sorted(found, reverse=True)
     draw, prism = origins(ROUGH)
-    arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), counting.law_of(ROUGH), draw, prism
+    arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), law_of(ROUGH), draw, prism
     parts = [effects.follow_unmet(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
     assert found == list(sum(parts))
 
@@ -116,7 +114,7 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
         ((0.2, (1.0,), 1, 1), "scene must be a Scene"),
         ((ROUGH, (), 1, 1), "times must ascend"),
         ((ROUGH, (2.0, 1.0), 1, 1), "times must ascend"),
-        ((ROUGH, (0.0,), 1, 1), "time must"),
+        ((ROUGH, (0.0,), 1, 1), "times must be a positive"),
         ((ROUGH, (1.0,), 0, 1), "blocks must"),
         ((ROUGH, (1.0,), 1, -1), "seed must"),
     ],
@@ -129,39 +127,44 @@ def test_bad_requests_are_refused(arguments, said):
 # The table ----------------------------------------------------------------------------------------
 
 
-def request(name, **changes):
-    """Return the ``SceneRequest`` of a file, with changes."""
-    (path,) = (path for path in FILES if path.stem == name)
-    return replace(effects.read(path, SEED), **changes)
+@cache
+def request(name):
+    """Return the ``SceneRequest`` of a file."""
+    (scene,) = load({"seed": SEED} | read(FILES[NAMES.index(name)])).scenes
+    return scene
+
+
+def rows_of(found, folder):
+    """Return the rows of effects.csv of points, {name: what ``job`` returned}, as if from files."""
+    return list(effects.rows(store(folder, found)))
 
 
 @pytest.mark.parametrize("name", ["rough", "unequal"])
-def test_a_cheap_run_agrees_with_theory(name):
-    """Draft accuracy at a third of the radii: all within Bonferroni's bound for one in 1e6."""
-    asked = request(name)
-    cheap = replace(asked, radii=asked.radii[1::3], event_budget=10**6)
-    found = json.loads(json.dumps(effects.count(cheap, blocks=1)))
-    rows = effects.rows(found)
+def test_a_cheap_run_agrees_with_theory(name, tmp_path):
+    """A small budget at a third of the radii: within Bonferroni's bound for one alarm in 1e6."""
+    asked = scene_file.effects_job(FILES[NAMES.index(name)], SEED)
+    cheap = [one | {"event_budget": 10**6} for one in asked["dynamics"][1::3]]
+    box = Box(**asked["box"])
+    found = effects.job(**asked | {"box": box, "dynamics": cheap}, blocks=1)
+    rows = rows_of({name: found}, tmp_path)
     z = [abs(row["z"]) for row in rows if row["z"] is not None]
     assert max(z) < scores.bonferroni_bound(len(z), 1e-6)
     measured = {(row["radius"], row["quantity"]) for row in rows if row["stderr"]}
-    for radius in cheap.radii:
-        assert {(radius, f"{event}_time") for event in drawing.EVENTS} <= measured
+    for one in cheap:
+        assert {(one["radius"], f"{event}_time") for event in figure.SHOWN_EVENTS} <= measured
     assert bool(found["unmet"]) == (name == "rough")
     # The same job as that of the scene alone: seeds depend on nothing else.
-    job = asked.dynamics_parameters(cheap.keys[0]) | {"event_budget": 10**6}
-    alone = counting.count_events(
-        asked.scene(job["radius"]), job["accuracy"], job["event_budget"], job["seed"]
-    )
-    assert found["dynamics"][0] == alone
+    alone = request(name)
+    given = alone.job("dynamics", list(alone.keys["dynamics"])[1]) | {"event_budget": 10**6}
+    assert found["dynamics"][0] == counting.job(**given | {"box": box})
 
 
 def fabricated(rng, name):
-    """Return what ``count`` would of a scene, drawn from the exact theory."""
+    """Return what ``job`` would of a scene, drawn from the exact theory."""
     asked = request(name)
     points = [
         Laws(scene).dynamics(rng, relative=1e-2, events=scene.events)
-        for scene in map(asked.scene, asked.radii)
+        for scene in map(asked.box.scene, asked.radii)
     ]
     unmet = [
         {"radius": 0.24, "effects": some, "starts": 10**6, "counts": counts}
@@ -169,7 +172,7 @@ def fabricated(rng, name):
     ]
     return {
         "name": name,
-        "box": asked.box_parameters(),
+        "box": asked.box.parameters(),
         "dynamics": points,
         "unmet": unmet if name == "rough" else [],
     }
@@ -179,29 +182,37 @@ def fabricated(rng, name):
 def found():
     """What is counted of the six scenes, fabricated."""
     rng = np.random.default_rng(1)
-    return {path.stem: fabricated(rng, path.stem) for path in FILES}
+    return {name: fabricated(rng, name) for name in NAMES}
 
 
-def test_rows_have_the_exact_times_with_and_without_effects(found):
-    for name, one in found.items():
+@pytest.fixture(scope="module")
+def rows(found, tmp_path_factory):
+    """The rows of effects.csv of the six scenes."""
+    return rows_of(found, tmp_path_factory.mktemp("points"))
+
+
+def test_rows_have_the_exact_times_with_and_without_effects(rows):
+    for name in NAMES:
         asked = request(name)
-        rows = [row for row in effects.rows(one) if row["quantity"] != "never_met_share"]
-        assert [row["radius"] for row in rows] == [
+        own = [r for r in rows if r["scene"] == name and r["quantity"] != "never_met_share"]
+        assert [row["radius"] for row in own] == [
             r for r in asked.radii for _ in asked.watch.mean_times
         ]
-        for row in rows:
+        for row in own:
             assert ast.literal_eval(row["effects"]) == asked.effects
-            event = row["quantity"].removesuffix("_time")
-            assert row["exact"] == exact.mean_times(asked.scene(row["radius"]))[event]
-            box = row["width"], row["height"], row["radius"]
-            plain = exact.mean_times(Scene(*box))[event] if fits(*box) else None
+            event, radius = row["quantity"].removesuffix("_time"), row["radius"]
+            assert row["exact"] == exact.mean_times(asked.box.scene(radius))[event]
+            box = Box(row["width"], row["height"])
+            plain = exact.mean_times(box.scene(radius))[event] if box.fits(radius) else None
             assert row["plain"] == plain
-    assert any(row["plain"] is None for row in effects.rows(found["torus"]))
-    assert {row["status"] for row in effects.rows(found["field"])} == {"reached", "impossible"}
+    assert any(row["plain"] is None for row in rows if row["scene"] == "torus")
+    statuses = {row["status"] for row in rows if row["scene"] == "field"}
+    assert statuses == {"reached", "impossible"}
 
 
-def test_rows_of_shares(found):
-    rows = [row for row in effects.rows(found["rough"]) if row["quantity"] == "never_met_share"]
+def test_rows_of_shares(rows):
+    rows = [row for row in rows if row["quantity"] == "never_met_share"]
+    assert {row["scene"] for row in rows} == {"rough"}
     assert [row["duration"] for row in rows] == 2 * [1e2, 1e3, 1e4]
     rough, smooth = rows[2], rows[3]
     assert rough["estimate"] == pytest.approx(1.9e-3)
@@ -210,20 +221,32 @@ def test_rows_of_shares(found):
     assert smooth["stderr"] is None
     assert rows[5]["estimate"] is None
     # P(none within t) is the integral of P(T > s)/τ beyond t, with P → C/s³.
-    scene, s = Scene(1.5, 1.0, 0.24), np.geomspace(100.0, 1e7, 4001)
+    scene, s = PLAIN.scene(0.24), np.geomspace(100.0, 1e7, 4001)
     tail = tails.tail_constant(scene, "disc_collision") / s**3
     assert smooth["plain"] == pytest.approx(
         np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4
     )
 
 
-def test_the_command_gathers_the_points(found, tmp_path, monkeypatch):
+def test_the_job_of_a_scene_is_that_of_its_file(tmp_path, monkeypatch):
+    """Parameters as the rule hands them on: in a file, with one radius and few events."""
+    asked = scene_file.effects_job(FILES[NAMES.index("unequal")], SEED)
+    asked["dynamics"] = [asked["dynamics"][0] | {"event_budget": 10**5}]
+    parameters, output = tmp_path / "parameters.json", tmp_path / "unequal.json"
+    parameters.write_text(json.dumps(asked))
+    words = ["point", "studies.effects.measure", "--parameters", f"@{parameters}"]
+    assert command(monkeypatch, jobs, *words, "--output", output) == 0
+    point = json.loads(output.read_text())
+    assert point == effects.job(**asked | {"box": Box(**asked["box"])})
+
+
+def test_the_job_of_the_table_gathers_the_points(found, rows, tmp_path, monkeypatch):
     paths = store(tmp_path / "points", found)
     output = tmp_path / "effects.csv"
-    assert command(monkeypatch, commands, "table", *paths, "--output", output) == 0
-    rows = tables.read(output, "effects")
-    assert list(dict.fromkeys(row["scene"] for row in rows)) == [path.stem for path in FILES]
-    assert rows == [row for one in found.values() for row in effects.rows(one)]
+    words = ["table", "studies.effects.measure", "--parameters", {}, "--points", *paths]
+    assert command(monkeypatch, jobs, *words, "--output", output) == 0
+    assert Effects.read(output) == rows
+    assert list(dict.fromkeys(row["scene"] for row in rows)) == NAMES
 
 
 # The figure ---------------------------------------------------------------------------------------
@@ -231,29 +254,28 @@ def test_the_command_gathers_the_points(found, tmp_path, monkeypatch):
 RATIOS = {"plain": 1.0, "plain_walls": 1.05}
 
 
-def costs(names):
+def costs():
     """Return rows of effects_cost.csv: ratios of 0.5, 0.6, … in their order."""
-    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate(names)}
+    ratios = RATIOS | {name: 0.5 + 0.1 * i for i, name in enumerate(NAMES)}
     start = {"benchmark": "effects", "unit": "1/s"}
-    return [start | {"variant": v, "value": 1e8 * x, "ratio": x} for v, x in ratios.items()]
+    return [
+        EffectsCost.empty(**start, variant=name, value=1e8 * ratio, ratio=ratio)
+        for name, ratio in ratios.items()
+    ]
 
 
 @pytest.fixture(scope="module")
-def drawn(found):
-    """The figure of the six scenes and the rows that it shows."""
-    rows = [row for one in found.values() for row in effects.rows(one)]
+def drawn(rows):
+    """The figure of the six scenes."""
     with style.context():
-        return drawing.draw({}, {"effects": rows, "effects_cost": costs(found)}), rows
+        return figure.draw(None, {"effects": rows, "effects_cost": costs()})
 
 
-def test_texts_of_the_figure_stand_clear(drawn, shown_texts):  # noqa: F811
+def test_texts_of_the_figure_stand_clear(drawn):
     with style.context():
-        texts = shown_texts(drawn[0])
-    width, height = drawn[0].get_size_inches()
-    assert not [t for t, b in texts if b.x0 < 0 or b.y0 < 0 or b.x1 > width or b.y1 > height]
-    assert not [(s, t) for (s, a), (t, b) in combinations(texts, 2) if overlap(a, b, 0.02)]
-    said = " ".join(text for text, _ in texts)
-    assert all(f"{path.stem}: " in said for path in FILES)
+        assert unclear(drawn) == []
+        said = " ".join(text for text, _ in shown_texts(drawn))
+    assert all(f"{name}: " in said for name in NAMES)
 
 
 def of_colour(axes, colour):
@@ -261,13 +283,11 @@ def of_colour(axes, colour):
     return [line for line in axes.lines if to_rgba(line.get_color()) == to_rgba(colour)]
 
 
-def test_curves_go_through_the_exact_ratios_and_symbols_are_the_estimates(drawn):
-    figure, rows = drawn
-    names = [path.stem for path in FILES]
-    for i, event in enumerate(drawing.EVENTS):
-        main = figure.axes[2 * i]
-        for name in names:
-            colour = drawing._look(names.index(name))[0]
+def test_curves_go_through_the_exact_ratios_and_symbols_are_the_estimates(drawn, rows):
+    for i, event in enumerate(figure.SHOWN_EVENTS):
+        main = drawn.axes[2 * i]
+        for k, name in enumerate(NAMES):
+            colour = figure._look(k)[0]
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
             (curve,) = [line for line in of_colour(main, colour) if len(line.get_xdata()) > 20]
             x, y = curve.get_data()
@@ -286,32 +306,28 @@ def test_curves_go_through_the_exact_ratios_and_symbols_are_the_estimates(drawn)
 
 
 def test_a_curve_ends_where_its_event_does(drawn):
-    figure, _ = drawn
-    ends = {"vertical_hop": 0.375, "disc_collision": Scene(1.5, 1.0, 0.1).largest_radius}
-    names = [path.stem for path in FILES]
+    ends = {"vertical_hop": 0.375, "disc_collision": PLAIN.largest_radius}
     for i, event in enumerate(ends):
-        for line in figure.axes[2 * i].lines:
+        for line in drawn.axes[2 * i].lines:
             x, y = line.get_data()
             if len(x) > 20 and np.isfinite(y).any():
                 last = x[np.isfinite(y)][-1]
                 assert ends[event] - 1e-3 < last < ends[event]
-    colour = drawing._look(names.index("rough"))[0]
-    rough = next(line for line in of_colour(figure.axes[0], colour) if len(line.get_xdata()) > 20)
+    colour = figure._look(NAMES.index("rough"))[0]
+    rough = next(line for line in of_colour(drawn.axes[0], colour) if len(line.get_xdata()) > 20)
     y = rough.get_ydata()
     np.testing.assert_allclose(y[np.isfinite(y)], 1.25, rtol=1e-12)
 
 
 def test_costs_are_over_the_plain_scene(drawn):
-    axes = drawn[0].axes[-1]
+    axes = drawn.axes[-1]
     shown = [line.get_xdata()[0] for line in axes.lines if line.get_marker() not in ("None", "")]
-    expected = [
-        1 / row["ratio"] for row in costs([p.stem for p in FILES]) if row["variant"] != "plain"
-    ]
+    expected = [1 / row["ratio"] for row in costs() if row["variant"] != "plain"]
     assert shown == pytest.approx(expected)
 
 
 def test_looks_differ_however_many_scenes():
-    looks = [drawing._look(i) for i in range(36)]
+    looks = [figure._look(i) for i in range(36)]
     assert len(set(looks)) == 36
     assert len({colour for colour, _ in looks[:6]}) == len({marker for _, marker in looks[:6]}) == 6
 

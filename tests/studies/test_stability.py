@@ -1,29 +1,31 @@
 """The table and the figure of stability: what is measured is right, and mistakes would show."""
 
 import math
-import sys
-from unittest.mock import patch
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
+from fabricated import command
+from mpmath import mpf
 
-from twodiscs.cli import figure as figure_command
-from twodiscs.cli import stability as command
-from twodiscs.comparison import rows, scores, tables
-from twodiscs.model.box import largest_radius
+from twodiscs.comparison import scores
+from twodiscs.comparison.rows import volume_rows
+from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
-from twodiscs.pipeline import arguments
+from twodiscs.pipeline import jobs
 from twodiscs.sampling import montecarlo
+from twodiscs.sampling.separations import draw_constants
+from twodiscs.studies.stability import figure
 from twodiscs.studies.stability import measure as stability
+from twodiscs.studies.stability.table import LongRuns, Stability
 from twodiscs.theory import exact
 
+PAPER = Box(1.5, 1.0)
 BOXES = [
-    (1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1.98, 1.0), (1e6, 1e-6),
-    (1e-6, 1e6),
+    PAPER, Box(1.0, 1.5), Box(1.0, 1.0), Box(2.0, 1.0), Box(3.0, 1.0), Box(1.98, 1.0),
+    Box(1e6, 1e-6), Box(1e-6, 1e6),
 ]  # fmt: skip
-PAPER = (1.5, 1.0)
+any_box = pytest.mark.parametrize("box", BOXES, ids=lambda box: f"{box.width:g}x{box.height:g}")
 
 
 def failed(rows):
@@ -34,10 +36,10 @@ def failed(rows):
 
 
 def test_radii_of_the_paper():
-    assert stability.ordinary_radii(*PAPER) == [0.05, 0.2, 0.24, 0.3, 0.38]
-    largest = largest_radius(*PAPER)
-    assert stability.limits(*PAPER) == {"h/4": 0.25, "w/4": 0.375, "largest radius": largest}
-    found = stability.hard_radii(*PAPER)
+    assert stability.ordinary_radii(PAPER) == [0.05, 0.2, 0.24, 0.3, 0.38]
+    named = {"h/4": 0.25, "w/4": 0.375, "largest radius": PAPER.largest_radius}
+    assert stability.limits(PAPER) == named
+    found = stability.hard_radii(PAPER)
     assert found[:2] == [("ordinary", None, 0.2), ("tiny", None, 1e-9)]
     assert [(name, distance) for name, distance, _ in found[2:]] == [
         ("h/4", -1e-9), ("h/4", 1e-9), ("w/4", -1e-9), ("w/4", 1e-9),
@@ -46,21 +48,21 @@ def test_radii_of_the_paper():
 
 
 def test_limits_of_other_boxes():
-    assert list(stability.limits(1.0, 1.0)) == ["h/4", "largest radius"]
-    assert list(stability.limits(2.0, 1.0)) == ["h/4", "largest radius"]
-    assert list(stability.limits(1.0, 3.0)) == ["w/4", "largest radius"]
+    assert list(stability.limits(Box(1.0, 1.0))) == ["h/4", "largest radius"]
+    assert list(stability.limits(Box(2.0, 1.0))) == ["h/4", "largest radius"]
+    assert list(stability.limits(Box(1.0, 3.0))) == ["w/4", "largest radius"]
 
 
-@pytest.mark.parametrize("box", BOXES)
+@any_box
 def test_all_radii_fit_and_ordinary_ones_visit_every_regime(box):
-    radii = stability.ordinary_radii(*box)
+    radii = stability.ordinary_radii(box)
     assert radii == sorted(radii)
-    regimes = {Scene(*box, radius).regime for radius in radii}
-    limits = sorted(stability.limits(*box).values())
+    regimes = {box.scene(radius).regime for radius in radii}
+    limits = sorted(stability.limits(box).values())
     middles = [(a + b) / 2 for a, b in zip([0.0, *limits], limits, strict=False)]
-    assert regimes == {Scene(*box, radius).regime for radius in middles}
-    for _, _, radius in stability.hard_radii(*box):
-        Scene(*box, radius)
+    assert regimes == {box.scene(radius).regime for radius in middles}
+    for _, _, radius in stability.hard_radii(box):
+        box.scene(radius)
 
 
 # Rows -------------------------------------------------------------------------------------------
@@ -80,42 +82,9 @@ def test_a_row_passes_within_its_bounds():
     assert passed(math.inf, high=1.0) is False
 
 
-@pytest.mark.parametrize(
-    ("width", "height", "radius"),
-    [(1.5, 1.0, r) for r in (0.2, 0.3, 0.38)] + [(1.0, 1.0, 0.27), (3.0, 1.0, 0.35)],
-)
-def test_references_are_the_integrals_they_stand_for(width, height, radius):
-    """Against quadrature in two dimensions, by the definition of volume and areas."""
-    scene = Scene(width, height, radius)
-    volume, areas, _ = stability.exact_numbers(scene)
-    exact = volume | areas
-    with mp.workdps(18):
-        a, b, s = (mpf(x) for x in (scene.range_x, scene.range_y, scene.contact_distance))
-        edges = sorted({mp.sqrt(max(s * s - b * b, 0)), min(s, a), a})
-
-        def over_rectangle(density):
-            def column(u):
-                k = mp.sqrt(max(s * s - u * u, mpf(0)))
-                return mp.quad(lambda v: density(u, v), [min(k, b), b])
-
-            return mp.quad(column, edges)
-
-        found = {
-            "volume": 4 * over_rectangle(lambda u, v: (a - u) * (b - v)),
-            "right_wall": 2 * over_rectangle(lambda u, v: b - v),
-            "top_wall": 2 * over_rectangle(lambda u, v: a - u),
-            "disc_collision": 4 * mp.sqrt(2) * s * mp.quad(
-                lambda q: (a - s * mp.cos(q)) * (b - s * mp.sin(q)),
-                [mp.acos(min(a / s, 1)), mp.asin(min(b / s, 1))],
-            ),
-        }  # fmt: skip
-        for quantity, value in found.items():
-            assert abs(value / exact[quantity] - 1) < 1e-11, quantity
-
-
-@pytest.mark.parametrize("box", BOXES)
+@any_box
 def test_theory_holds_where_closed_forms_fail(box):
-    rows = list(stability.theory_rows(*box))
+    rows = list(stability.theory_rows(box))
     assert failed(rows) == []
     stable = [row for row in rows if row["method"] == "stable"]
     assert len(stable) >= 100
@@ -126,15 +95,15 @@ def test_theory_holds_where_closed_forms_fail(box):
         if row["method"] == "closed-form" and row["quantity"] == "volume"
         and row["case"] == "largest radius" and row["distance"] == -1e-9
     ]  # fmt: skip
-    if max(box) < 10 * min(box):
+    if max(box.sides) < 10 * min(box.sides):
         # Two powers of the room are lost even where the discs lie in a row.
         assert near[0] > 1e-4
 
 
 def test_an_error_in_a_formula_shows(monkeypatch):
     volume = exact.volume
-    monkeypatch.setattr(theory, "volume", lambda scene: volume(scene) * (1 + 1e-12))
-    wrong = failed(stability.theory_rows(*PAPER))
+    monkeypatch.setattr(exact, "volume", lambda scene: volume(scene) * (1 + 1e-12))
+    wrong = failed(stability.theory_rows(PAPER))
     assert {row["quantity"] for row in wrong} == {"volume"}
 
 
@@ -145,15 +114,15 @@ def test_a_zero_must_be_met_exactly():
     assert stability.relative_error({"a": 1.0}, {}) == math.inf
 
 
-@pytest.mark.parametrize("box", BOXES)
+@any_box
 def test_sampling_and_estimates_hold(box, monkeypatch):
     """Five sigma on every share and estimate: with some 1000 of them a false alarm in 6e-4."""
     monkeypatch.setattr(stability, "SHARE_PROPOSALS", 2**16)
     monkeypatch.setattr(stability, "ESTIMATE_PROPOSALS", 2**18)
-    shares = list(stability.sampling_rows(*box, seed=1))
+    shares = list(stability.sampling_rows(box, seed=1))
     assert failed(shares) == []
     assert all(row["exact"] >= 0.25 for row in shares if row["method"] == "conditioned")
-    estimates = list(stability.estimate_rows(*box, seed=1))
+    estimates = list(stability.estimate_rows(box, seed=1))
     assert failed(estimates) == []
     for row in estimates:
         if row["quantity"] == "volume":
@@ -166,28 +135,28 @@ def test_sampling_and_estimates_hold(box, monkeypatch):
 QUANTITIES = ["volume", *(f"{event}_area" for event in EVENTS)]
 
 
-@pytest.mark.parametrize("box", BOXES)
+@any_box
 @pytest.mark.parametrize("shell", [0.02, 0.5])
 def test_conditioned_estimates_have_their_exact_probability(box, shell):
     """In every regime, beside every limit, thick shells too; five sigma by exact tails."""
-    radii = stability.ordinary_radii(*box) + [r for _, _, r in stability.hard_radii(*box)[1:]]
+    radii = stability.ordinary_radii(box) + [r for _, _, r in stability.hard_radii(box)[1:]]
     for radius in radii:
-        scene = Scene(*box, radius)
+        scene = box.scene(radius)
         point = montecarlo.conditioned_point(scene, QUANTITIES, 2**17, shell, 8)
         for quantity, part in point["quantities"].items():
             if quantity == "volume":
-                exact = exact.volume(scene)
+                expected = exact.volume(scene)
             else:
                 event = quantity.removesuffix("_area")
-                exact = exact.shell_expectation(scene, event, part["epsilon"])
-            probability = min(exact / part["measure"], 1.0)
+                expected = exact.shell_expectation(scene, event, part["epsilon"])
+            probability = min(expected / part["measure"], 1.0)
             z, _ = scores.binomial_z(part["hits"], point["samples"], probability)
             assert abs(z) <= 5, (box, radius, quantity)
 
 
 @pytest.mark.parametrize("radius", [0.1, 0.3, 0.36])
 def test_conditioned_agrees_with_rejection(radius):
-    scene = Scene(*PAPER, radius)
+    scene = PAPER.scene(radius)
     ours = montecarlo.conditioned_point(scene, QUANTITIES, 2**20, 0.3, 1)
     plain = montecarlo.sample_point(scene, QUANTITIES, 2**22, 0.3, 1)
     assert ours.keys() == plain.keys()
@@ -205,19 +174,19 @@ def test_conditioned_agrees_with_rejection(radius):
 def test_the_better_sampler_is_chosen():
     """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
     for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
-        point = montecarlo.better_point(Scene(*PAPER, radius), ["volume"], 2**22, 0.02, 1)
+        point = montecarlo.better_point(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1)
         assert (point["method"], point["samples"]) == (method, samples)
     for distance in (1e-3, 1e-6, 1e-9):
-        scene = Scene(*PAPER, largest_radius(*PAPER) * (1 - distance))
+        scene = PAPER.scene(PAPER.largest_radius * (1 - distance))
         point = montecarlo.better_point(scene, QUANTITIES, 2**24, 0.02, 1)
-        rows = rows.volume_rows({(scene.radius, "volume"): exact.volume(scene)}, [point])
+        rows = volume_rows({(scene.radius, "volume"): exact.volume(scene)}, [point])
         assert abs(rows[0]["estimate"] / exact.volume(scene) - 1) < 1e-3
         assert point["quantities"]["disc_collision_area"]["hits"] > 1000
 
 
 def test_conditioned_blocks_add_up():
-    scene = Scene(*PAPER, 0.38)
-    draw, shells = stability.draw_constants(scene), (0.01,) * 5
+    scene = PAPER.scene(0.38)
+    draw, shells = draw_constants(scene), (0.01,) * 5
     whole = montecarlo.propose_blocks(np.uint64(3), 0, 3, draw, shells)
     parts = [
         montecarlo.propose_blocks(np.uint64(3), a, b, draw, shells) for a, b in ((0, 1), (1, 3))
@@ -226,7 +195,7 @@ def test_conditioned_blocks_add_up():
 
 
 def test_bad_conditioned_requests_are_refused():
-    scene = Scene(*PAPER, 0.2)
+    scene = PAPER.scene(0.2)
     for quantities, samples, shell, seed in (
         ([], 1, 0.02, 1), (["mass"], 1, 0.02, 1), (["volume"], 0, 0.02, 1),
         (["volume"], 1.5, 0.02, 1), (["volume"], 1, 0.0, 1), (["volume"], 1, math.nan, 1),
@@ -239,9 +208,9 @@ def test_bad_conditioned_requests_are_refused():
 # Times of events ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("box", [(1.5, 1.0), (1e6, 1e-6)])
+@pytest.mark.parametrize("box", [PAPER, Box(1e6, 1e-6)], ids=str)
 def test_predicted_times_are_right_to_a_few_roundings(box):
-    rows = list(stability.time_rows(*box, seed=4))
+    rows = list(stability.time_rows(box, seed=4))
     assert len(rows) == 8
     assert all(row["passed"] for row in rows)
     assert all(row["count"] >= 350 for row in rows)
@@ -254,8 +223,8 @@ def test_the_textbook_discriminant_would_not_pass(monkeypatch):
         discriminant = b * b - a * c
         return c, (math.sqrt(discriminant) if discriminant > 0 else math.nan) - b, b < 0
 
-    monkeypatch.setattr(events, "contact_quotient", textbook)
-    rows = {row["case"]: row for row in stability.time_rows(*PAPER, seed=4)}
+    monkeypatch.setattr(stability, "contact_quotient", textbook)
+    rows = {row["case"]: row for row in stability.time_rows(PAPER, seed=4)}
     assert rows["grazing"]["passed"] is False
     assert rows["from very far"]["passed"] is False
 
@@ -265,13 +234,13 @@ def test_misses_and_false_hits_are_infinite_errors(monkeypatch):
     assert stability.contact_error(*hit) < 1
     assert stability.contact_error(*miss) == 0
     assert stability.contact_error(-1.0, 0.4, 1.0, 0.0, 0.4) is None
-    monkeypatch.setattr(events, "contact_quotient", lambda *inputs: (1.0, math.nan, True))
+    monkeypatch.setattr(stability, "contact_quotient", lambda *inputs: (1.0, math.nan, True))
     assert stability.contact_error(*hit) == math.inf
-    monkeypatch.setattr(events, "contact_quotient", lambda *inputs: (1.0, 1.0, True))
+    monkeypatch.setattr(stability, "contact_quotient", lambda *inputs: (1.0, 1.0, True))
     assert stability.contact_error(*miss) == math.inf
 
 
-# Command line and figure --------------------------------------------------------------------------
+# The jobs and the figure --------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -282,71 +251,69 @@ def quick(monkeypatch):
     }.items():  # fmt: skip
         monkeypatch.setattr(stability, name, value)
     rows = stability.coverage_rows
-    monkeypatch.setattr(
-        stability, "coverage_rows", lambda width, height, seed: rows(width, height, seed, 3)
-    )
+    monkeypatch.setattr(stability, "coverage_rows", lambda box, seed: rows(box, seed, 3))
 
 
-def run(words):
-    """Run the command and return its exit status."""
-    with patch.object(sys, "argv", ["stability", *words]), pytest.raises(SystemExit) as end:
-        arguments.run(command.main)
-    return end.value.code
+def run(monkeypatch, path, function="rows", **changes):
+    """Run the job of a table and return its exit status."""
+    given = {"box": PAPER.parameters(), "seed": 1, "ordinary": 2000, "hard": 1000} | changes
+    words = ["table", "studies.stability.measure", "--function", function]
+    words += ["--parameters", given, "--output", path]
+    return command(monkeypatch, jobs, *words)
 
 
-def given(**changes):
-    parameters = {"width": 1.5, "height": 1.0, "seed": 1, "ordinary": 2000, "hard": 1000}
-    return ["--parameters", repr(parameters | changes)]
-
-
-@pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (1e-6, 1e6)])
-def test_table_and_figure_of_any_box(box, quick, tmp_path):
-    paths = [tmp_path / name for name in ("a.csv", "b.csv")]
-    for path in paths:
-        words = given(width=box[0], height=box[1])
-        assert run(["stability", *words, "--output", str(path)]) is None
-    assert paths[0].read_bytes() == paths[1].read_bytes()
-    rows = tables.read(paths[0], "stability")
+@pytest.mark.parametrize("box", [PAPER, Box(1.0, 1.0), Box(1e-6, 1e6)], ids=str)
+def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
+    path = tmp_path / "stability.csv"
+    contents = []
+    for _ in range(2):
+        assert run(monkeypatch, path, box=box.parameters()) == 0
+        contents.append(path.read_bytes())
+    assert contents[0] == contents[1]
+    rows = Stability.read(path)
     parts = {row["part"] for row in rows}
     assert parts == {
         "theory", "sampling", "estimates", "times", "dynamics", "reversal", "coverage"
     }  # fmt: skip
-    drawn = figure_command.drawing("stability")({}, {"stability": rows})
-    drawn.savefig(tmp_path / "figure.png")
+    with style.context():
+        drawn = figure.draw(None, {"stability": rows})
+        style.save(drawn, tmp_path / "figure.png")
     assert len(drawn.axes) == 8
 
 
 def test_a_table_without_rows_is_drawn_empty(tmp_path):
-    figure_command.drawing("stability")({}, {"stability": []}).savefig(tmp_path / "figure.png")
+    with style.context():
+        style.save(figure.draw(None, {"stability": []}), tmp_path / "figure.png")
 
 
-def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path):
+def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path, monkeypatch):
     path = tmp_path / "long_runs.csv"
-    assert run(["long_runs", *given(), "--output", str(path)]) is None
-    rows = tables.read(path, "long_runs")
+    assert run(monkeypatch, path, "dynamics_rows") == 0
+    rows = LongRuns.read(path)
     assert {row["part"] for row in rows} == {"dynamics"}
     assert {row["quantity"] for row in rows} == {
         "energy_error", "smallest_gap", "excess", "lanes_lost"
     }  # fmt: skip
-    assert len(rows) == 4 * len(stability.hard_radii(*PAPER))
+    assert len(rows) == 4 * len(stability.hard_radii(PAPER))
     assert rows[0]["count"] >= 2000
 
 
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"width": -1.0}, "width must be a positive, finite number, not -1.0"),
-        ({"height": "1"}, "height must be a positive number, not '1'"),
+        ({"box": {"width": -1.0, "height": 1.0}}, "width must be a positive, finite number, not"),
+        ({"box": {"width": 1.0, "height": "1"}}, "height must be a positive number, not '1'"),
         ({"seed": -1}, "seed must be an integer from 0"),
         ({"ordinary": 0}, "ordinary must be an integer from 1"),
         ({"hard": 1e6}, "hard must be an integer of at least 1, not 1000000.0"),
-        ({"radius": 0.1}, "parameters must be hard, height, ordinary, seed, width, not"),
+        ({"radius": 0.1}, "parameters of twodiscs.studies.stability.measure: got an unexpected"),
     ],
 )
-def test_mistakes_are_one_sentence(change, sentence, capsys, tmp_path):
-    assert run(["stability", *given(**change), "--output", str(tmp_path / "x.csv")]) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("error: ")
-    assert sentence in said
-    assert said.count("\n") == 1
-    assert not (tmp_path / "x.csv").exists()
+def test_mistakes_are_one_sentence(change, sentence, capsys, tmp_path, monkeypatch):
+    for name, function in (("stability", "rows"), ("long_runs", "dynamics_rows")):
+        assert run(monkeypatch, tmp_path / f"{name}.csv", function, **change) == 2
+        said = capsys.readouterr().err
+        assert said.startswith("error: ")
+        assert sentence in said
+        assert said.count("\n") == 1
+    assert not any(tmp_path.iterdir())

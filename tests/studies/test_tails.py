@@ -9,22 +9,25 @@ import math
 
 import numpy as np
 import pytest
+from fabricated import command
 
-from twodiscs.cli import tails as command
-from twodiscs.comparison import tables
 from twodiscs.dynamics import trajectory
 from twodiscs.dynamics.law import law_of
-from twodiscs.figures import tails as drawing
 from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.pipeline import jobs
 from twodiscs.sampling import starts
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.tails import figure
 from twodiscs.studies.tails import measure as tails
-from twodiscs.theory import exact, tails
+from twodiscs.studies.tails.table import Tails
+from twodiscs.theory import exact
+from twodiscs.theory.tails import tail_constant
 
-PAPER = Scene(1.5, 1.0, 0.24)
+BOX = Box(1.5, 1.0)
+PAPER = BOX.scene(0.24)
 
 
 def in_mean_times(scene, event, times):
@@ -68,7 +71,7 @@ def test_tails_are_cubic(radius, event, approach):
     scene = PAPER.with_radius(radius)
     times = in_mean_times(scene, event, (1000,))
     estimate = tails.tail(scene, event, times, 50, 4)[0]
-    law = tails.tail_constant(scene, event) / times[0] ** 3
+    law = tail_constant(scene, event) / times[0] ** 3
     assert estimate.relative_stderr < 0.05
     assert abs(estimate.value - law) <= 5 * estimate.stderr + approach / 1000 * law
 
@@ -83,8 +86,8 @@ def test_drifts_cover_the_sphere_evenly():
     assert np.abs(np.sum(v**2, axis=1) - 1).max() < 8 * 2.0**-52
     moments = [(v[:, i] ** 2, 1 / 4) for i in range(4)] + [(v[:, i] ** 4, 1 / 8) for i in range(4)]
     moments += [(v[:, i] ** 2 * v[:, j] ** 2, 1 / 24) for i in range(4) for j in range(i)]
-    for values, exact in moments:
-        assert abs(values.mean() - exact) <= 5 * values.std() / math.sqrt(len(values))
+    for values, due in moments:
+        assert abs(values.mean() - due) <= 5 * values.std() / math.sqrt(len(values))
 
 
 @pytest.mark.parametrize("event", ["disc_collision", "vertical_hop"])
@@ -158,35 +161,54 @@ def test_the_rate_of_decay_is_that_of_the_counts():
 
 
 def test_cases_of_other_boxes():
-    assert tails.cases(1.5, 1.0) == [
+    assert tails.cases(BOX) == [
         ("disc_collision", 0.24), ("vertical_hop", 0.1), ("vertical_hop", 0.3)
     ]  # fmt: skip
-    assert [event for event, _ in tails.cases(1.0, 3.0)] == ["disc_collision", *2 * HOPS[1:]]
-    assert len(tails.cases(1.0, 1.0)) == 2
-    for bad in (0, -1, math.nan, "1", True):
-        with pytest.raises(ValueError, match="must"):
-            tails.cases(bad, 1.0)
+    assert [event for event, _ in tails.cases(Box(1.0, 3.0))] == ["disc_collision", *2 * HOPS[1:]]
+    assert len(tails.cases(Box(1.0, 1.0))) == 2
 
 
-def test_the_command_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+def run(monkeypatch, path, parameters):
+    """Run the job of the table and return its exit status."""
+    words = ["table", "studies.tails.measure", "--parameters", parameters]
+    return command(monkeypatch, jobs, *words, "--output", path)
+
+
+PARAMETERS = {"box": BOX.parameters(), "samples": 5, "replicas": 2000, "seed": 1}
+
+
+def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
     monkeypatch.setattr(tails, "WEIGHTED", (5, 50))
-    out = tmp_path / "tails.csv"
-    parameters = {"width": 1.5, "height": 1.0, "samples": 5, "replicas": 2000, "seed": 1}
-    monkeypatch.setattr("sys.argv", ["x", "--parameters", repr(parameters), "--output", str(out)])
-    command.main()
-    rows = tables.read(out, "tails")
+    path = tmp_path / "tails.csv"
+    assert run(monkeypatch, path, PARAMETERS) == 0
+    rows = Tails.read(path)
     assert [row["quantity"] for row in rows].count("rate") == 1
     assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
     with style.context():
-        whole, ratio, alone = drawing.draw({}, {"tails": rows}).axes
+        whole, ratio, alone = figure.draw(None, {"tails": rows}).axes
     law = next(line for line in whole.lines if line.get_linestyle() == "-")
-    _, y = law.get_data()
     times = np.array(in_mean_times(PAPER, "disc_collision", (5, 50)))
-    exact = tails.tail_constant(PAPER, "disc_collision") / times**3
-    np.testing.assert_allclose(y, exact, rtol=1e-12)
+    due = tail_constant(PAPER, "disc_collision") / times**3
+    np.testing.assert_allclose(law.get_ydata(), due, rtol=1e-12)
     names = [text.get_text() for text in alone.get_legend().get_texts()]
     assert any("fit, rate" in name for name in names)
     assert len(ratio.containers) == 4
-    monkeypatch.setattr("sys.argv", ["x", "--parameters", "{'width': 1}", "--output", str(out)])
-    with pytest.raises(ValueError, match="parameters must be a dict of height, replicas"):
-        command.main()
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"box": {"width": 0, "height": 1.0}}, "width must be"),
+        ({"box": {"width": 1.5, "height": "1"}}, "height must be"),
+        ({"box": {"width": 1.5}}, "box must have width, height"),
+        ({"seed": -1}, "seed must be"),
+        ({"samples": 0}, "samples must be"),
+        ({"radius": 0.1}, "parameters of twodiscs.studies.tails.measure: got an unexpected"),
+    ],
+)
+def test_mistakes_are_one_sentence(changes, sentence, tmp_path, monkeypatch, capsys):
+    assert run(monkeypatch, tmp_path / "tails.csv", PARAMETERS | changes) == 2
+    said = capsys.readouterr().err
+    assert sentence in said
+    assert said.count("\n") == 1
+    assert not any(tmp_path.iterdir())

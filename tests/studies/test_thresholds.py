@@ -1,32 +1,38 @@
-"""Power laws where events die out: laws against exact times, fits against a second method."""
+"""Power laws where events die out: laws against exact times, fits against what they are made of."""
 
 import math
 
 import numpy as np
 import pytest
+from fabricated import command
 
-from twodiscs.cli import thresholds as command
-from twodiscs.comparison import tables
-from twodiscs.figures import thresholds as drawing
+from twodiscs.comparison.scene_tables import MeanTimes
 from twodiscs.figures.kit import style
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
+from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.pipeline import jobs
+from twodiscs.studies.catalogue import STUDY_FIGURES
+from twodiscs.studies.distributions.table import Distributions
+from twodiscs.studies.thresholds import figure
 from twodiscs.studies.thresholds import measure as thresholds
+from twodiscs.studies.thresholds.table import Thresholds
 from twodiscs.theory import exact, laws
 
-BOXES = {"paper": (1.5, 1.0), "long": (3.0, 1.0), "double": (2.0, 1.0), "tall": (1.0, 1.5)}
+PAPER, LONG = Box(1.5, 1.0), Box(3.0, 1.0)
+BOXES = [PAPER, LONG, Box(2.0, 1.0), Box(1.0, 1.5), Box(1.0, 1.0), Box(0.3, 2.0)]
 
 
-@pytest.mark.parametrize("box", [*BOXES.values(), (1.0, 1.0), (0.3, 2.0)])
+@pytest.mark.parametrize("box", BOXES, ids=str)
 @pytest.mark.parametrize("event", EVENTS)
 def test_mean_times_come_to_the_law(box, event):
     """At δ = 1e-7 r_c what is left to go is of the order V'δ/V, at most 1e-4 for these boxes."""
-    law = laws.leading_law(*box, event)
-    limit = law.limit if law else Scene(*box, 0.01).largest_radius
-    near = Scene(*box, limit * (1 - 1e-7))
+    law = laws.leading_law(box, event)
+    limit = law.limit if law else box.largest_radius
+    near = box.scene(limit * (1 - 1e-7))
     time = exact.mean_times(near)[event]
     if law is None:
-        assert time > 0.1 * abs(box[0] - 2 * box[1]) or box[0] < box[1]
+        assert time > 0.1 * abs(box.width - 2 * box.height) or box.width < box.height
         assert time == pytest.approx(laws.threshold_time(near, event), rel=1e-4)
         return
     assert law.power in (-2, 1)
@@ -34,52 +40,54 @@ def test_mean_times_come_to_the_law(box, event):
 
 
 def test_laws_of_the_paper_s_box():
-    law = laws.leading_law(1.5, 1.0, "vertical_hop")
-    critical = exact.volume(Scene(1.5, 1.0, 0.375))
+    law = laws.leading_law(PAPER, "vertical_hop")
+    critical = exact.volume(PAPER.scene(0.375))
     assert (law.limit, law.power) == (0.375, -2)
     due = 3 * math.pi / 4 * critical / (16 * math.sqrt(2) * (1 - 0.75))
     assert law.coefficient == pytest.approx(due, rel=1e-12)
-    law = laws.leading_law(1.5, 1.0, "disc_collision")
-    largest = Scene(1.5, 1.0, 0.3).largest_radius
+    law = laws.leading_law(PAPER, "disc_collision")
     assert law.power == 1
-    due = 3 * math.pi / 4 * math.sqrt(1.5) / (2 * largest)
+    due = 3 * math.pi / 4 * math.sqrt(1.5) / (2 * PAPER.largest_radius)
     assert law.coefficient == pytest.approx(due, rel=1e-8)
-    assert laws.leading_law(3.0, 1.0, "disc_collision") is None
-    assert laws.leading_law(3.0, 1.0, "vertical_hop").power == 1
+    assert laws.leading_law(LONG, "disc_collision") is None
+    assert laws.leading_law(LONG, "vertical_hop").power == 1
 
 
-def test_line_is_that_of_polyfit():
-    rng = np.random.default_rng(1)
-    x, errors = rng.uniform(-3, 1, 9), rng.uniform(0.1, 2, 9)
-    y = 2 - 1.5 * x + errors * rng.standard_normal(9)
-    constant, slope, error, chi2 = thresholds.line(x, y, errors)
-    (a, b), covariance = np.polyfit(x, y, 1, w=1 / errors, cov="unscaled")
-    assert (slope, constant) == pytest.approx((a, b), rel=1e-12)
-    assert error == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-12)
-    assert chi2 == pytest.approx(np.sum(((y - a * x - b) / errors) ** 2), rel=1e-12)
-    with pytest.raises(ValueError, match="at least 3 points, not 2"):
-        thresholds.line(x[:2], y[:2], errors[:2])
-
-
-def times_of(event, radii, noise=0.0, relative=1e-3, box=(1.5, 1.0), seed=2):
+def times_of(event, radii, noise=0.0, relative=1e-3, box=PAPER, seed=2):
     """Return rows of mean_times.csv, as far as they are used: exact times with noise."""
     rng = np.random.default_rng(seed)
     rows = []
     for radius in radii:
-        exact = exact.mean_times(Scene(*box, radius))[event]
-        value = exact * (1 + noise * relative * rng.standard_normal())
-        row = dict.fromkeys(tables.TABLES["mean_times"].names)
-        row |= {"radius": radius, "event": event, "exact": exact, "estimate": value}
-        rows.append(row | {"stderr": relative * exact})
+        time = exact.mean_times(box.scene(radius))[event]
+        value = time * (1 + noise * relative * rng.standard_normal())
+        rows.append(
+            MeanTimes.empty(
+                radius=radius, event=event, exact=time, estimate=value, stderr=relative * time
+            )
+        )
     return rows
+
+
+def passages_of(name, box, rows, last=None):
+    """Return rows of distributions.csv: first passages half as long again as the mean times."""
+    return [
+        Distributions.empty(
+            scene=name, width=box.width, height=box.height, radius=row["radius"],
+            event=row["event"], quantity="first_passage", last=last, exact_mean=row["exact"],
+            estimate=1.5 * row["exact"], stderr=row["stderr"], count=9,
+        )
+        for row in rows
+    ]  # fmt: skip
 
 
 RADII = (0.21, 0.22, 0.23, 0.24, 0.245, 0.248)
 
 
-def fitted(rows, box=(1.5, 1.0), passages=()):
+def fitted(rows, box=PAPER, passages=()):
     """Return {(quantity, form, parameter): row} of the fits of one scene."""
-    found = thresholds.rows({"paper": box}, {"paper": rows}, list(passages))
+    read = {"paper/mean_times": rows, "distributions": list(passages)}
+    found = list(thresholds.rows(read, {"paper": box.parameters()}))
+    assert all((row["width"], row["height"]) == (box.width, box.height) for row in found)
     return {(row["quantity"], row["form"], row["parameter"]): row for row in found}
 
 
@@ -103,12 +111,12 @@ def test_exact_times_have_the_exact_power():
 
 def test_noise_is_in_the_errors():
     """200 fits: scores of exponent and coefficient have mean 0 and variance 1, χ² its degrees."""
-    rng, law = np.random.default_rng(2), laws.leading_law(1.5, 1.0, "horizontal_hop")
-    exact = np.array([row["exact"] for row in times_of("horizontal_hop", RADII)])
+    rng, law = np.random.default_rng(2), laws.leading_law(PAPER, "horizontal_hop")
+    due = np.array([row["exact"] for row in times_of("horizontal_hop", RADII)])
     found = {"exponent": [], "coefficient": []}
     for noise in rng.standard_normal((200, len(RADII))):
-        times = exact * (1 + 1e-3 * noise)
-        for row in thresholds.fits(law, "mean_time", RADII, times, 1e-3 * exact, exact):
+        times = due * (1 + 1e-3 * noise)
+        for row in thresholds.fits(law, "mean_time", RADII, times, 1e-3 * due, due):
             if row["form"] == "reduced":
                 found[row["parameter"]].append(row)
     for fits in found.values():
@@ -130,16 +138,16 @@ def test_fits_keep_to_one_regime_and_to_honest_errors():
     assert fitted(rows)["mean_time", "plain", "exponent"]["points"] == 3
     rows[-2]["stderr"] = None
     assert fitted(rows) == {}
-    assert fitted(times_of("disc_collision", (0.42, 0.45, 0.48), box=(3.0, 1.0)), (3.0, 1.0)) == {}
+    assert fitted(times_of("disc_collision", (0.42, 0.45, 0.48), box=LONG), LONG) == {}
 
 
 def test_first_passages_are_fitted_without_a_curve():
+    """Those that are cut are left out, and so are those of another scene."""
+    rows = times_of("horizontal_hop", RADII)
     passages = [
-        {"scene": "paper", "event": "horizontal_hop", "quantity": "first_passage", "last": last}
-        | {"exact_mean": row["exact"], "radius": row["radius"], "estimate": 1.5 * row["exact"]}
-        | {"stderr": row["stderr"]}
-        for row in times_of("horizontal_hop", RADII)
-        for last in (None, 1.0)
+        *passages_of("paper", PAPER, rows),
+        *passages_of("paper", PAPER, rows, last=1.0),
+        *passages_of("other", PAPER, rows),
     ]
     found = fitted([], passages=passages)
     assert set(found) == {("first_passage", form, "exponent") for form in ("plain", "reduced")}
@@ -149,49 +157,72 @@ def test_first_passages_are_fitted_without_a_curve():
     assert row["points"] == len(RADII)
 
 
-@pytest.mark.parametrize("bad", [0, -1, math.nan, "1", True, None])
-def test_bad_requests_are_refused(bad):
-    with pytest.raises(ValueError, match="must"):
-        laws.leading_law(bad, 1.0, "vertical_hop")
-    with pytest.raises(ValueError, match="event must be one of"):
-        laws.leading_law(1.5, 1.0, bad)
+# The table and the figure -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("box", ["paper", "long"])
-def test_the_command_writes_the_table_and_the_figure_reads_it(box, tmp_path, monkeypatch):
-    width, height = BOXES[box]
-    rows = times_of("horizontal_hop", RADII, noise=1.0, box=BOXES[box])
-    for row in rows:
-        row |= {"count": 9, "ergodic_components": 1, "replicas": 9, "duration": 1.0}
-        row |= {"relative_stderr": 1e-3, "target": 1e-3, "status": "reached", "z": 0.0}
-    passages = [
-        dict.fromkeys(tables.TABLES["distributions"].names)
-        | {"scene": "a", "width": width, "height": height, "event": "horizontal_hop"}
-        | {"exact_mean": row["exact"], "radius": row["radius"], "estimate": row["exact"]}
-        | {"stderr": row["stderr"], "quantity": "first_passage", "count": 9}
-        for row in rows
-    ]
-    paths = {name: str(tmp_path / f"{name}.csv") for name in ("mean_times", "distributions", "out")}
-    tables.write(paths["mean_times"], "mean_times", rows)
-    tables.write(paths["distributions"], "distributions", passages)
-    words = ["x", "--scenes", repr({"a": BOXES[box]}), "--distributions", paths["distributions"]]
-    words += ["--output", paths["out"]]
-    monkeypatch.setattr("sys.argv", [*words, "--times", f"a={paths['mean_times']}"])
-    command.main()
-    found = tables.read(paths["out"], "thresholds")
+@pytest.fixture(params=[PAPER, LONG], ids=str)
+def box(request):
+    return request.param
+
+
+@pytest.fixture
+def read(box):
+    """Tables of a box as the study reads them, {name: rows}."""
+    rows = times_of("horizontal_hop", RADII, noise=1.0, box=box)
+    return {"a/mean_times": rows, "distributions": passages_of("a", box, rows)}
+
+
+def run(monkeypatch, folder, box, read):
+    """Run the job of the table and return its exit status; ``read`` is {name: rows}."""
+    words = []
+    for name, rows in read.items():
+        path = folder / f"{name}.csv"
+        path.parent.mkdir(exist_ok=True)
+        (MeanTimes if name.endswith("mean_times") else Distributions).write(path, rows)
+        words.append(f"{name}={path}")
+    given = {"scenes": {"a": box.parameters()}}
+    words = ["table", "studies.thresholds.measure", "--parameters", given, "--table", *words]
+    return command(monkeypatch, jobs, *words, "--output", folder / "thresholds.csv")
+
+
+def test_the_job_writes_the_table_and_the_figure_reads_it(box, read, tmp_path, monkeypatch):
+    assert run(monkeypatch, tmp_path, box, read) == 0
+    found = Thresholds.read(tmp_path / "thresholds.csv")
+    assert found == list(thresholds.rows(read, {"a": box.parameters()}))
     assert {row["quantity"] for row in found} == {"mean_time", "first_passage"}
-    read = {"mean_times": rows, "distributions": passages, "thresholds": found}
+    shown = read | {"thresholds": found, "mean_times": read["a/mean_times"]}
+    entry = STUDY_FIGURES["thresholds"]
+    shown = {name: shown[name] for name in (*entry.tables, *entry.main_tables)}
     with style.context():
-        hops, ratios = drawing.draw({"width": width, "height": height}, read).axes
-    assert "first passages" in hops.get_legend_handles_labels()[1]
-    law = laws.leading_law(width, height, "horizontal_hop")
+        hops, ratios = figure.draw(box, shown).axes
+    law = laws.leading_law(box, "horizontal_hop")
     dashed = [line for line in hops.lines if line.get_linestyle() == "--"][-1]
     distance, time = dashed.get_data()
     np.testing.assert_allclose(time, law.coefficient * (law.limit * distance) ** -2, rtol=1e-9)
-    assert len(ratios.containers) == sum(
-        laws.leading_law(width, height, event) is not None for event in drawing.LOOKS
-    )
-    for text in ("b=x.csv", "a"):
-        monkeypatch.setattr("sys.argv", [*words, "--times", text])
-        with pytest.raises(ValueError, match="times must be SCENE=PATH"):
-            command.main()
+    events = [event for event in SHELLS if laws.leading_law(box, event)]
+    assert len(ratios.containers) == len(events)
+
+    # What is measured is there: mean times in both panels, first passages among the hops.
+    def points(axes, marker):
+        lines = (line for line in axes.lines if line.get_marker() == marker)
+        return [point for line in lines for point in zip(*line.get_data(), strict=True)]
+
+    marker = LOOKS["horizontal_hop"][1]
+    for axes, unit in ((hops, lambda radius: 1), (ratios, law)):
+        due = [
+            (1 - row["radius"] / law.limit, row["estimate"] / unit(row["radius"]))
+            for row in read["a/mean_times"]
+        ]
+        np.testing.assert_allclose(points(axes, marker), due, rtol=1e-12)
+    assert len(points(hops, "x")) == len(RADII)
+    assert "first passages" in hops.get_legend_handles_labels()[1]
+
+
+def test_without_times_there_are_first_passages(box, read, tmp_path, monkeypatch):
+    """The main scene may measure no mean times; then the fits are those of the passages."""
+    passages = {"distributions": read["distributions"]}
+    assert run(monkeypatch, tmp_path, box, passages) == 0
+    found = Thresholds.read(tmp_path / "thresholds.csv")
+    assert {row["quantity"] for row in found} == {"first_passage"}
+    with style.context():
+        figure.draw(box, passages | {"thresholds": found}).draw_without_rendering()

@@ -1,4 +1,4 @@
-"""Rates of scenes with effects, against integrals done another way.
+"""Scenes with effects, against integrals done another way.
 
 The reference integrates over the signed separations with 40 digits, from the definition of each
 density: the range of the common motion and the energy left at its ends. It knows nothing of slacks.
@@ -6,8 +6,6 @@ What the areas mean is tested by throwing discs and velocities (``test_flux``).
 """
 
 import math
-import subprocess
-import sys
 from fractions import Fraction
 from itertools import pairwise, product
 
@@ -16,11 +14,12 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
+from theory.antiderivatives import relative_error
 
-from twodiscs.model import events
-from twodiscs.model.events import AXIS, EVENTS, HOPS
+from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact, laws, tails, weighted
+from twodiscs.theory import exact, weighted
+from twodiscs.theory.laws import TURNED
 
 BOUND = 1e-13
 
@@ -35,13 +34,6 @@ def digits():
 def numbers(scene):
     """Return {name: volume or area} of a scene."""
     return {"volume": weighted.volume(scene)} | weighted.areas(scene)
-
-
-def relative_error(value, exact):
-    """Return |value/exact − 1|; an exact zero must be met exactly."""
-    if exact == 0:
-        return 0.0 if value == 0 else math.inf
-    return float(abs(mpf(value) / mpf(exact) - 1))
 
 
 def assert_close(found, expected, bound=BOUND):
@@ -217,8 +209,8 @@ def test_constant():
     for components in range(2, 8):
         power = mpf(components - 2)
         mean = mp.quad(lambda a, p=power: mp.cos(a) * mp.sin(a) ** p, [0, mp.pi / 2])
-        exact = mean / mp.quad(lambda a, p=power: mp.sin(a) ** p, [0, mp.pi / 2])
-        assert relative_error(weighted.constant(components), exact) < 1e-15
+        mean /= mp.quad(lambda a, p=power: mp.sin(a) ** p, [0, mp.pi / 2])
+        assert relative_error(weighted.constant(components), mean) < 1e-15
     assert math.isclose(weighted.constant(4) / 2, 2 / (3 * math.pi), rel_tol=1e-15)
 
 
@@ -228,7 +220,7 @@ FRACTIONS = (1e-6, 0.1, 0.5, 0.65, 0.9, 1 - 1e-6, 1 - 1e-12)
 
 @pytest.mark.parametrize("box", BOXES, ids=str)
 def test_plain_scenes(box):
-    """Without effects everything is as in ``theory``, up to the largest radius."""
+    """Without effects everything is as in ``exact``, up to the largest radius."""
     largest = Scene(*box, min(box) / 10).largest_radius
     radii = [largest * fraction for fraction in FRACTIONS]
     radii += [side / 4 * (1 + shift) for side in box for shift in (-1e-9, 0.0, 1e-9)]
@@ -236,7 +228,7 @@ def test_plain_scenes(box):
         scene = Scene(*box, radius)
         expected = {"volume": exact.volume(scene)} | exact.areas(scene)
         assert_close(numbers(scene), expected, 1e-14)
-        for event in events.SHELLS:
+        for event in SHELLS:
             for epsilon in (radius * 1e-5, radius / 2):
                 found = weighted.shell_expectation(scene, event, epsilon)
                 expected = exact.shell_expectation(scene, event, epsilon)
@@ -440,7 +432,7 @@ def test_turned_box(scene):
         scene.height, scene.width, scene.radius, None, scene.radius_ratio, scene.mass_ratio,
         {"x": "y", "y": "x"}.get(scene.periodic, scene.periodic), 0.0, scene.moment_of_inertia,
     )  # fmt: skip
-    expected = {exact.TURNED.get(name, name): value for name, value in numbers(scene).items()}
+    expected = {TURNED.get(name, name): value for name, value in numbers(scene).items()}
     assert numbers(turned) == pytest.approx(expected, rel=1e-12, abs=0)
 
 
@@ -602,45 +594,7 @@ def test_thick_and_thin_collision_shells():
         assert relative_error(found, (inner - outer) / epsilon) < 1e-11
 
 
-# Hand-over and bad input --------------------------------------------------------------------------
-
-
-def test_theory_hands_over():
-    """``theory`` gives the numbers of ``rates`` for a scene with effects."""
-    scene = Scene(1.5, 1.0, 0.2, radius_ratio=0.5)
-    assert exact.volume(scene) == weighted.volume(scene)
-    assert exact.areas(scene) == weighted.areas(scene)
-    assert list(exact.areas(scene)) == list(EVENTS)
-    exact = exact.exact(scene)
-    for event in EVENTS:
-        assert exact.rate(scene, event) == weighted.rate(scene, event)
-        assert exact["mean_times"][event] == 1 / weighted.rate(scene, event)
-    shell = weighted.shell_expectation(scene, "any_wall", 0.01)
-    assert exact.shell_expectation(scene, "any_wall", 0.01) == shell
-
-
-def test_plain_scenes_need_no_numpy():
-    """The exact numbers of a plain scene take the standard library only."""
-    code = (
-        "import sys; from twodiscs import theory; from twodiscs.scene import Scene;"
-        "theory.exact(Scene(1.5, 1.0, 0.2)); assert 'numpy' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda scene: laws.closed_form(scene),
-        lambda scene: laws.threshold_time(scene, "right_wall"),
-        lambda scene: tails.density_at_zero(scene, "vertical_hop"),
-        lambda scene: tails.tail_constant(scene, "disc_collision"),
-    ],
-)
-def test_limits_are_for_plain_scenes(call):
-    """What holds for plain scenes only says so."""
-    with pytest.raises(ValueError, match=r"must be plain .* it has radius_ratio, field"):
-        call(Scene(1.5, 1.0, 0.2, radius_ratio=0.5, field=0.1))
+# Bad input --------------------------------------------------------------------------------------
 
 
 def test_bad_input():

@@ -14,15 +14,18 @@ PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper")
 
 
 class Checkout:
-    """A copy of the repository at ``path`` whose own sources do the work."""
+    """A folder to build in: a copy of the repository at ``path`` whose own sources do the work.
 
-    def __init__(self, path):
-        self.path = path
+    With ``home``, another checkout, it is a folder anywhere that uses the sources of that one.
+    """
+
+    def __init__(self, path, home=None):
+        self.path, self.home = path, home or self
         self.configuration = path / "config" / "config.yaml"
 
     def snakemake(self, *arguments, passes=True):
         """Run snakemake here; by default it must succeed. Returns the completed process."""
-        environment = os.environ | {"PYTHONPATH": str(self.path / "src")}
+        environment = os.environ | {"PYTHONPATH": str(self.home.path / "src")}
         run = subprocess.run(
             [sys.executable, "-m", "snakemake", *arguments],
             cwd=self.path,
@@ -49,15 +52,21 @@ class Checkout:
         with open(self.path / path, "a", encoding="utf-8") as file:
             file.write(text)
 
+    def replace(self, path, old, new):
+        """Replace what a file says in one place."""
+        text = (self.path / path).read_text(encoding="utf-8")
+        assert text.count(old) == 1, f"{path} must say {old!r} once"
+        (self.path / path).write_text(text.replace(old, new), encoding="utf-8")
+
     def configure(self, change):
         """Pass the configuration, as a mapping, to ``change`` and write it back."""
         mapping = yaml.safe_load(self.configuration.read_text())
         change(mapping)
         self.configuration.write_text(yaml.safe_dump(mapping))
 
-    def results(self):
-        """Return {path: bytes} of everything under results/."""
-        folder = self.path / "results"
+    def results(self, folder="results"):
+        """Return {path: bytes} of everything under ``folder``."""
+        folder = self.path / folder
         files = (path for path in folder.rglob("*") if path.is_file())
         return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 

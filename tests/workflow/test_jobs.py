@@ -26,6 +26,19 @@ def test_touching_everything_reruns_nothing(built):
     assert built.jobs() == []
 
 
+def test_edits_of_comments_and_docstrings_rerun_nothing(built):
+    source = "src/twodiscs"
+    built.edit(f"{source}/dynamics/counting.py", "# a remark\n")
+    built.edit(f"{source}/figures/hop_histogram.py", "\n\n# a remark\n")
+    counting = '"""Return ``count_events`` for plain values: the job of one radius."""'
+    built.replace(f"{source}/dynamics/counting.py", counting, '"""The job\n\n    of a radius."""')
+    meaning = '"""expectation − exact: what the thickness of the shell adds"""'
+    built.replace(f"{source}/comparison/scene_tables.py", meaning, '"""how far off"""')
+    table = '"""One row a radius and quantity: the exact values."""'
+    built.replace(f"{source}/comparison/scene_tables.py", table, '"""The exact values."""')
+    assert built.jobs() == []
+
+
 def test_one_more_radius_is_one_more_job_of_each_kind(built):
     built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
     jobs = built.jobs()
@@ -33,24 +46,81 @@ def test_one_more_radius_is_one_more_job_of_each_kind(built):
     assert [job for job in jobs if any("key=" in part for part in job[1])] == sorted(new)
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
-        *("monte_carlo", "dynamics", "grid", "theory", "table", "check_table", "check"),
-        *("errata", "figure", "paper", "report", "manifest"),
+        *("monte_carlo", "dynamics", "grid", "theory", "table", "check"),
+        *("errata_table", "figure", "paper", "report", "manifest"),
         *("thresholds_table", "shared_figure"),
     }
 
 
-def test_edit_of_a_figure_redraws_that_figure(built):
-    built.edit("src/twodiscs/figures/volume.py", "# a remark\n")
-    assert built.jobs() == expected(
-        ("figure", SIX, "figure=volume"), ("paper",), ("report",), ("manifest",)
+CODE = "\n\nREMARK = 1\n"
+DOCUMENTS = [("paper",), ("report",), ("manifest",)]
+COUNTED = {"monte_carlo", "dynamics", "intervals", "compile", "effects_point", "effects_cost"}
+
+
+@pytest.mark.parametrize(
+    ("module", "drawn"),
+    [
+        ("figures/hop_histogram.py", ("figure", SIX, "figure=hop_histogram")),
+        ("figures/animation.py", ("animate", SIX)),
+        ("studies/tails/figure.py", ("shared_figure", "figure=tails")),
+    ],
+)
+def test_edit_of_a_figure_redraws_that_figure_and_what_contains_it(built, module, drawn):
+    built.edit(f"src/twodiscs/{module}", CODE)
+    # The manuscript shows no animation.
+    contain = [job for job in DOCUMENTS if drawn[0] != "animate" or job != ("paper",)]
+    assert built.jobs() == expected(drawn, *contain)
+
+
+def test_a_source_with_an_older_time_stamp_is_seen(built):
+    path = "src/twodiscs/figures/hop_histogram.py"
+    built.edit(path, CODE)
+    os.utime(built.path / path, (1e9, 1e9))
+    drawn = ("figure", SIX, "figure=hop_histogram")
+    assert built.jobs() == expected(drawn, *DOCUMENTS)
+
+
+def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built):
+    drawn = [job for job in built.results() if job.endswith(".png")]
+    built.edit("src/twodiscs/figures/kit/style.py", CODE)
+    jobs = built.jobs()
+    assert {rule for rule, _ in jobs} == {
+        *("figure", "shared_figure", "animate", "paper", "report", "manifest"),
+    }
+    assert len(jobs) == len(drawn) + len(DOCUMENTS)
+
+
+def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
+    built.edit("src/twodiscs/comparison/scene_tables.py", CODE)
+    rules = {rule for rule, _ in built.jobs()}
+    assert {"grid", "theory", "trajectory", "table", "check", "figure", "paper"} <= rules
+    assert not COUNTED & rules
+
+
+def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
+    built.edit("src/twodiscs/studies/tails/table.py", CODE)
+    tails = [("tails_table",), ("shared_figure", "figure=tails"), ("tails",)]
+    assert built.jobs("tails") == expected(*tails)
+    assert not COUNTED & {rule for rule, _ in built.jobs()}
+
+
+def test_edit_of_a_caption_counts_nothing_again(built):
+    built.replace(
+        "src/twodiscs/studies/catalogue.py", "How often a hop comes", "How often hops come"
     )
+    jobs = built.jobs()
+    assert ("shared_figure", ("figure=distributions",)) in jobs
+    assert {rule for rule, _ in jobs} == {"shared_figure", "paper", "report", "manifest"}
 
 
-def test_comment_in_the_engine_reruns_dynamics_and_what_follows(built):
-    built.edit("src/twodiscs/dynamics.py", "# a remark\n")
+@pytest.mark.parametrize("module", ["counting", "law"])
+def test_edit_of_the_engine_reruns_dynamics_and_what_follows(built, module):
+    built.edit(f"src/twodiscs/dynamics/{module}.py", CODE)
     jobs = built.jobs()
     rules = {rule for rule, _ in jobs}
-    assert {"compile", "dynamics", "intervals", "trajectory", "check", "paper"} <= rules
+    # A trajectory follows the law of events and counts nothing.
+    assert ("trajectory" in rules) == (module == "law")
+    assert {"compile", "dynamics", "intervals", "effects_point", "check", "paper"} <= rules
     assert not {"monte_carlo", "grid", "theory"} & rules
     assert ("compile", ("kernels=montecarlo",)) not in jobs
     assert len([job for job in jobs if job[0] == "dynamics"]) == 6 + 2
@@ -90,7 +160,7 @@ def test_a_third_box_leaves_the_others_alone(built):
 def test_a_scene_that_watches_wall_times_runs_nothing_else(unbuilt):
     jobs = [job for job in unbuilt.jobs() if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
-        *("grid", "theory", "dynamics", "table", "check_table", "figure"),
+        *("grid", "theory", "dynamics", "table", "figure"),
     }
     drawn = {part for rule, wildcards in jobs for part in wildcards if part.startswith("figure=")}
     assert "figure=mean_wall_time" in drawn

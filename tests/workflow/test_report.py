@@ -11,7 +11,8 @@ import subprocess
 
 import pytest
 
-from twodiscs.figures.catalogue import ANIMATION, FIGURES, SHARED
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.studies.catalogue import STUDY_FIGURES
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -129,12 +130,12 @@ def test_every_figure_is_shown_with_its_caption_and_category(seen, complete):
     }
     shown = {path for path, found in seen["results"].items() if found["mime_type"] == "image/png"}
     assert shown == drawn
-    entries = FIGURES | SHARED | {"animation": ANIMATION}
+    entries = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
     for path in shown:
         _, *scene, _, name = path.removesuffix(".png").split("/")
         entry, found = entries[name], seen["results"][path]
         more = f" Scene {scene[0]}." if scene else ""
-        assert plain(found["caption"]) == plain(entry.caption) + more
+        assert plain(found["caption"]) == plain(entry.full_caption()) + more
         assert found["labels"] == entry.labels
         assert found["width"] > 300
         assert path in seen["categories"][entry.category][scene[0] if scene else "all scenes"]
@@ -166,4 +167,4 @@ def test_a_tall_figure_fits_the_window_beside_its_caption(seen):
     place = seen["placed"]
     assert min(place[side] for side in ("left", "top", "right", "bottom")) >= 0
     assert place["left"] > 300
-    assert plain(FIGURES["mean_hop_time"].caption) in plain(place["caption"])
+    assert plain(FIGURES["mean_hop_time"].full_caption()) in plain(place["caption"])

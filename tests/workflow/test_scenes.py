@@ -5,13 +5,11 @@ import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline.configuration import load
+from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.request import STAGES
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
-BLOCKS = {path.stem: load.read(path) for path in FILES}
-
-#: Rules whose jobs run kernels that are worth compiling beforehand.
-KERNELS = {"monte_carlo", "dynamics", "intervals"}
+BLOCKS = {path.stem: read(path) for path in FILES}
 
 #: Rules for all scenes together, whatever else is built once.
 ALWAYS = {"check", "compile", "manifest"}
@@ -79,12 +77,12 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
             rules -= {"animate"}
-            rules |= {"compile_effects"} if rules & KERNELS else set()
+            rules |= {"compile_effects"} if rules & {*STAGES} else set()
         else:
             figures |= DRAWINGS
         if tables:
-            rules |= {"table", "check_table"}
-            tables |= {"cost"}
+            rules |= {"table"}
+            tables |= {"check", "cost"}
         assert of(found, f"s{i}") == (rules | {"grid", "theory", "figure"}, tables, figures)
 
 
@@ -100,32 +98,33 @@ def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
     found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
     assert shared == ALWAYS - {"compile"}  # nothing without effects is compiled
-    for request in load.load({"scenes": scenes}).scenes:
+    for request in load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
         assert figures == CALLED[request.name]
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
         assert rules - {"intervals", "trajectory"} == {
             *("grid", "theory", "compile_effects", "monte_carlo", "dynamics"),
-            *("table", "check_table", "figure"),
+            *("table", "figure"),
         }
-        for rule in KERNELS:
-            keys = [w for r, w in found if r == rule and f"scene={request.name}" in w]
-            expected = getattr(request, f"{rule}_keys")
+        assert tables == {*request.tables} - {"grid", "theory", "trajectory"}
+        for stage in STAGES:
+            keys = [w for r, w in found if r == stage and f"scene={request.name}" in w]
+            expected = request.keys[stage]
             assert {(f"scene={request.name}", f"key={key}") for key in expected} == set(keys)
 
 
 @pytest.mark.parametrize("name", BLOCKS)
 def test_a_file_is_a_quick_look_at_one_scene(name):
     block = BLOCKS[name]
-    (request,) = load.load(block).scenes
+    (request,) = load(block).scenes
     assert request.name == name
     assert request.effects
     assert block["results"] == f"results/scenes/{name}"
     assert block["shared"] == []
     assert 6 <= len(request.radii) <= 8
-    assert (request.width, request.height) == (1.5, 1.0)
-    assert set(request.accuracy.values()) == {1e-2}
+    assert (request.box.width, request.box.height) == (1.5, 1.0)
+    assert set(request.dynamics["accuracy"].values()) == {1e-2}
 
 
 def test_a_file_builds_its_scene_alone(unbuilt):
@@ -143,7 +142,7 @@ def test_a_file_builds_its_scene_alone(unbuilt):
 
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
     made = {
-        "errata": {"errata"},
+        "errata": {"errata_table"},
         "accuracy_cost": {"accuracy_cost_table", "shared_figure"},
         "stability": {"stability_table", "shared_figure"},
         "tails": {"tails_table", "shared_figure"},
@@ -158,5 +157,5 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
         found = {
             rule for rule, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)
         }
-        read = made if names == ["paper"] else {name: made.get(name, {name}) for name in names}
-        assert found == ALWAYS.union(names, *read.values())
+        read = made if names == ["paper"] else {"errata": made["errata"]}
+        assert found == ALWAYS.union({"paper", "report"} & {*names}, *read.values())

@@ -4,10 +4,12 @@ import re
 import subprocess
 import sys
 
+import pytest
 from checkout import REPOSITORY
 
-from twodiscs.comparison import tables
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.pipeline.documents import pages
+from twodiscs.studies.catalogue import STUDIES
 
 
 def test_snakefiles_are_formatted():
@@ -27,22 +29,30 @@ def test_linter_only_misses_a_container(unbuilt):
     assert titles == {"Specify a conda environment or container for each rule."}
 
 
+#: They build nothing.
+WITHOUT_OUTPUT = ("verify", "forecast")
+
+
 def test_every_rule_keeps_a_log_and_a_benchmark():
+    rules = 0
     for path in sorted((REPOSITORY / "workflow" / "rules").glob("*.smk")):
-        for rule in re.split(r"^rule ", path.read_text(), flags=re.MULTILINE)[1:]:
-            if "\n    shell:\n" not in rule:
+        for rule in re.split(r"^ *rule\b", path.read_text(), flags=re.MULTILINE)[1:]:
+            if "shell:\n" not in rule:
                 continue
-            assert "\n    log:\n" in rule, rule
-            assert "\n    benchmark:\n" in rule, rule
+            rules += 1
+            assert "log:\n" in rule, rule
+            named = re.search(r'name:\n +"(\w+)"', rule)
+            assert "benchmark:\n" in rule or named[1] in WITHOUT_OUTPUT, rule
+    assert rules > 15
 
 
-def test_results_page_describes_the_tables():
-    page = (REPOSITORY / "results" / "README.md").read_text()
-    assert page.endswith(tables.documentation()), "its end must be tables.documentation()"
+@pytest.mark.parametrize("page", ["results/README.md", "config/README.md", "README.md"])
+def test_pages_made_from_declarations_are_up_to_date(page):
+    text = (REPOSITORY / page).read_text(encoding="utf-8")
+    assert text == pages.pages(REPOSITORY)[page], f"python -m {pages.__name__}"
 
 
 def test_readme_lists_every_target():
     page = (REPOSITORY / "README.md").read_text()
-    assert [
-        name for name in ("all", "check", "paper", "report", *FIGURES) if f"`{name}`" not in page
-    ] == []
+    targets = ("all", "check", "paper", "report", "verify", "forecast", *FIGURES, *STUDIES)
+    assert [name for name in targets if f"`{name}`" not in page] == []

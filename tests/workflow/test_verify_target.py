@@ -11,7 +11,7 @@ def test_verification_is_one_job_whatever_there_is(unbuilt):
 
 
 def test_results_out_of_date_are_verified_as_they_are(built):
-    built.edit("src/twodiscs/dynamics.py", "# a remark\n")
+    built.edit("src/twodiscs/dynamics/counting.py", "\nREMARK = 1\n")
     (built.path / "results" / "six" / "theory.csv").unlink()
     assert built.jobs("verify") == [("verify", ())]
 
@@ -35,7 +35,7 @@ def test_the_manifest_tells_what_is_there(complete):
 
 def test_what_differs_is_said_and_nothing_is_built(built):
     written = subprocess.run(
-        [sys.executable, "-m", "twodiscs.cli.verify", "--write"],
+        [sys.executable, "-m", "twodiscs.pipeline.results.verify", "--write"],
         cwd=built.path,
         env=os.environ | {"PYTHONPATH": str(built.path / "src")},
         check=False,

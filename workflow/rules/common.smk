@@ -11,12 +11,25 @@ from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 RESULTS = CONFIGURATION.results
 SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
-JOB = "python -m twodiscs.pipeline.jobs"
 
 # The modules whose kernels scenes without effects share, by the stamp that says they are compiled.
 KERNELS = {
     "montecarlo": ["sampling.montecarlo"],
     "dynamics": ["dynamics.counting", "dynamics.intervals", "dynamics.trajectory"],
+}
+
+# Who reads a configuration reads this catalogue too, for the names of what is built once. Captions
+# are in it and columns of tables, which are of no consequence for what is counted in a scene.
+NAMES_ALONE = ("studies.catalogue",)
+
+# The tables of a scene that are gathered from points, and the stages that found those.
+GATHERED = {
+    "volume": ["monte_carlo"],
+    "areas": ["monte_carlo"],
+    "mean_times": ["dynamics"],
+    "hop_histogram": ["intervals"],
+    "check": [*STAGES],
+    "cost": [*STAGES],
 }
 
 # The Python that runs Snakemake also runs the jobs.
@@ -42,13 +55,13 @@ def benchmark_of(name):
     return f"{RESULTS}/benchmarks/{name}.tsv"
 
 
-def code(*modules):
+def code(*modules, without=()):
     """Return the fingerprint of modules that a job runs, and of all that they import.
 
     To be named are those that ``jobs`` finds by their name: what does the work, and besides how a
     figure looks and how tables are read, or the columns of the table that is written.
     """
-    return fingerprint("pipeline.jobs", *modules)
+    return fingerprint("pipeline.jobs", *modules, without=without)
 
 
 def figure_code(module):
@@ -69,7 +82,7 @@ def as_json(value):
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):
     """Return what the jobs of these stages found, a file for each stage and radius."""
     return [
-        f"{RESULTS}/{scene.name}/" + folder.format(stage=stage, key=key)
+        f"{RESULTS}/{scene.name}/{folder.format(stage=stage, key=key)}"
         for stage in stages
         for key in scene.keys[stage]
     ]
@@ -124,6 +137,89 @@ def study_files(name):
     return [*(f"{RESULTS}/{table.name()}.csv" for table in study.tables), *figures]
 
 
-def named_tables(paths):
-    """Return the arguments NAME=CSV of {name: path}."""
-    return [f"{name}={path}" for name, path in paths.items()]
+def named_tables(names, paths):
+    """Return the arguments NAME=CSV of tables.
+
+    Paths come from the input of a job: who uses this workflow as a module may have prefixed them.
+    """
+    return [f"{name}={path}" for name, path in zip(names, paths, strict=True)]
+
+
+def gathered_points(scene, table):
+    """Return the files that a table of a scene is gathered from."""
+    if table == "cost":
+        return cost_files(scene)
+    return point_files(scene, GATHERED[table])
+
+
+def tables_beside(scene, table):
+    """Return {name: path} of the tables that another one needs; of a forecast, if there is one."""
+    if table != "cost":
+        return {"theory": f"{RESULTS}/{scene}/theory.csv"}
+    path = f"{RESULTS}/forecast.csv"
+    return {"forecast": path} if os.path.exists(path) else {}
+
+
+def figure_job(scene, entry):
+    """Return what a figure of a scene depends on beside its tables."""
+    given = {"box": scene.box.parameters(), **entry.options}
+    if "trajectory" in entry.tables:
+        given["radius"] = scene.watch.trajectory
+    return given
+
+
+def figure_tables(folder, entry):
+    """Return {name: path} of the tables that a figure of the scene in ``folder`` reads."""
+    return {name: f"{folder}/{name}.csv" for name in entry.tables}
+
+
+def study_figure_tables(entry):
+    """Return {name: path} of the tables that a figure of a study reads."""
+    found = figure_tables(RESULTS, entry)
+    for name in entry.main_tables:
+        if MAIN and name in MAIN.tables:
+            found[name] = table_files(MAIN)[name]
+    return found
+
+
+def study_tables(study):
+    """Return {name: path} of the tables that a study reads."""
+    return {
+        name: f"{RESULTS}/{scene}/{table}.csv" if scene else f"{RESULTS}/{table}.csv"
+        for name, (scene, table) in study.reads(CONFIGURATION).items()
+    }
+
+
+def shared_tables():
+    """Return the names of the tables that belong to no scene, those of all studies."""
+    return [
+        table.name()
+        for study in STUDIES.values()
+        if study.shared
+        for table in study.tables
+    ]
+
+
+def manuscript_job(results):
+    """Return what the manuscript needs beside what it reads in the folder ``results``.
+
+    The hash is that of the configuration with every default filled in.
+    """
+    return {
+        "configuration": blake2b(
+            repr(CONFIGURATION).encode(), digest_size=8
+        ).hexdigest(),
+        "figures": list(STUDY_FIGURES),
+        "results": results,
+        "scenes": [
+            {
+                "figures": list(figure_files(scene)),
+                "height": scene.box.height,
+                "name": scene.name,
+                "tables": list(scene.tables),
+                "width": scene.box.width,
+            }
+            for scene in CONFIGURATION.plain
+        ],
+        "tables": shared_tables(),
+    }

@@ -8,41 +8,6 @@ PAPER = {
 }
 
 
-def shared_tables():
-    """Return the names of the tables that belong to no scene, those of all studies."""
-    return [
-        table.name()
-        for study in STUDIES.values()
-        if study.shared
-        for table in study.tables
-    ]
-
-
-def manuscript_job():
-    """Return what the manuscript needs beside the tables and figures that it reads.
-
-    The hash is that of the configuration with every default filled in.
-    """
-    return {
-        "configuration": blake2b(
-            repr(CONFIGURATION).encode(), digest_size=8
-        ).hexdigest(),
-        "figures": list(STUDY_FIGURES),
-        "results": RESULTS,
-        "scenes": [
-            {
-                "figures": list(figure_files(scene)),
-                "height": scene.box.height,
-                "name": scene.name,
-                "tables": list(scene.tables),
-                "width": scene.box.width,
-            }
-            for scene in CONFIGURATION.plain
-        ],
-        "tables": shared_tables(),
-    }
-
-
 if MAIN:
 
     rule paper:
@@ -69,7 +34,9 @@ if MAIN:
         benchmark:
             benchmark_of("paper")
         params:
-            contents=as_json(manuscript_job()),
+            contents=lambda w, output: as_json(
+                manuscript_job(os.path.dirname(output.pdf))
+            ),
             code=code("pipeline.documents.manuscript"),
         shell:
             "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"
@@ -78,7 +45,7 @@ if MAIN:
 
 # Snakemake's own report. It is written by a second Snakemake while the first one still runs: that one
 # takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
-# the whole configuration, however that was put together.
+# the whole configuration, however that was put together, and the folder in which results came to be.
 
 
 report: "../report/workflow.rst"
@@ -107,7 +74,11 @@ rule report:
     benchmark:
         benchmark_of("report")
     params:
-        configuration=json.dumps(config, indent=1, sort_keys=True),
+        configuration=lambda w, output: json.dumps(
+            config | {"results": os.path.dirname(output.html)},
+            indent=1,
+            sort_keys=True,
+        ),
         snakefile=str(HERE / "Snakefile"),
     shell:
         "printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
@@ -194,6 +165,6 @@ rule:
         benchmark_of("benchmark")
     threads: 64  # all that there are
     params:
-        code=code("benchmark"),
+        code=code("benchmark", without=NAMES_ALONE),
     shell:
         "python -m twodiscs.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

@@ -3,28 +3,6 @@
 # shows no other animated image.
 
 
-def figure_job(scene, entry):
-    """Return what a figure of a scene depends on beside its tables."""
-    given = {"box": scene.box.parameters(), **entry.options}
-    if "trajectory" in entry.tables:
-        given["radius"] = scene.watch.trajectory
-    return given
-
-
-def figure_tables(folder, entry):
-    """Return {name: path} of the tables that a figure of the scene in ``folder`` reads."""
-    return {name: f"{folder}/{name}.csv" for name in entry.tables}
-
-
-def study_figure_tables(entry):
-    """Return {name: path} of the tables that a figure of a study reads."""
-    found = figure_tables(RESULTS, entry)
-    for name in entry.main_tables:
-        if MAIN and name in MAIN.tables:
-            found[name] = table_files(MAIN)[name]
-    return found
-
-
 rule figure:
     input:
         tables=lambda w: figure_tables(
@@ -48,14 +26,12 @@ rule figure:
     params:
         job=lambda w: as_json(figure_job(SCENES[w.scene], FIGURES[w.figure])),
         module=lambda w: FIGURES[w.figure].module,
-        tables=lambda w: named_tables(
-            figure_tables(f"{RESULTS}/{w.scene}", FIGURES[w.figure])
-        ),
+        tables=lambda w, input: named_tables(FIGURES[w.figure].tables, input.tables),
         caption=lambda w: FIGURES[w.figure].full_caption(SCENES[w.scene].effects),
         code=lambda w: figure_code(FIGURES[w.figure].module),
     shell:
-        "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
-        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
 
 
 rule shared_figure:
@@ -79,12 +55,14 @@ rule shared_figure:
     params:
         job=as_json({"box": MAIN.box.parameters() if MAIN else None}),
         module=lambda w: STUDY_FIGURES[w.figure].module,
-        tables=lambda w: named_tables(study_figure_tables(STUDY_FIGURES[w.figure])),
+        tables=lambda w, input: named_tables(
+            study_figure_tables(STUDY_FIGURES[w.figure]), input.tables
+        ),
         caption=lambda w: STUDY_FIGURES[w.figure].full_caption(),
         code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
     shell:
-        "{JOB} figure {params.module} --parameters {params.job:q} --table {params.tables:q}"
-        " --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
 
 
 rule animate:
@@ -108,7 +86,7 @@ rule animate:
         caption=ANIMATION.full_caption(),
         code=figure_code("figures.animation"),
     shell:
-        "{JOB} animation figures.animation --parameters {params.job:q}"
+        "python -m twodiscs.pipeline.jobs animation figures.animation --parameters {params.job:q}"
         " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q} > {log:q} 2>&1"
 
 

@@ -13,8 +13,8 @@ rule grid:
         job=lambda w: as_json(SCENES[w.scene].grid_job()),
         code=table_code("comparison.exact_rows", SCENE_TABLES["grid"]),
     shell:
-        "{JOB} table comparison.exact_rows --function grid_rows --parameters {params.job:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs table comparison.exact_rows --function grid_rows"
+        " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
 
 
 rule theory:
@@ -28,8 +28,8 @@ rule theory:
         job=lambda w: as_json(SCENES[w.scene].theory_job()),
         code=table_code("comparison.exact_rows", SCENE_TABLES["theory"]),
     shell:
-        "{JOB} table comparison.exact_rows --function theory_rows --parameters {params.job:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs table comparison.exact_rows --function theory_rows"
+        " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
 
 
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
@@ -49,7 +49,8 @@ rule compile:
         modules=lambda w: ",".join(KERNELS[w.kernels]),
         code=lambda w: code(*KERNELS[w.kernels]),
     shell:
-        "{JOB} kernels {params.modules} --output {output.stamp:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs kernels {params.modules} --output {output.stamp:q}"
+        " > {log:q} 2>&1"
 
 
 rule compile_effects:
@@ -66,8 +67,8 @@ rule compile_effects:
         module=lambda w: STAGES[w.stage],
         code=lambda w: code(STAGES[w.stage]),
     shell:
-        "{JOB} kernels {params.module} --parameters {params.job:q} --output {output.stamp:q}"
-        " > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs kernels {params.module} --parameters {params.job:q}"
+        " --output {output.stamp:q} > {log:q} 2>&1"
 
 
 for stage, module in STAGES.items():
@@ -89,7 +90,7 @@ for stage, module in STAGES.items():
             module=module,
             code=code(module),
         shell:
-            "{JOB} point {params.module} --parameters {params.job:q}"
+            "python -m twodiscs.pipeline.jobs point {params.module} --parameters {params.job:q}"
             " --output {output.point:q} --cost {output.cost:q} > {log:q} 2>&1"
 
 
@@ -104,5 +105,5 @@ rule trajectory:
         job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
         code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
     shell:
-        "{JOB} table dynamics.trajectory --parameters {params.job:q} --output {output.table:q}"
-        " > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs table dynamics.trajectory --parameters {params.job:q}"
+        " --output {output.table:q} > {log:q} 2>&1"

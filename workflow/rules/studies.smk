@@ -12,14 +12,6 @@ GENERIC = [name for name in ALLOWED if name != "effects"]
 CAPTIONS = {"errata": "../report/errata.rst"}
 
 
-def study_tables(study):
-    """Return {name: path} of the tables that a study reads."""
-    return {
-        name: f"{RESULTS}/{scene}/{table}.csv" if scene else f"{RESULTS}/{table}.csv"
-        for name, (scene, table) in study.reads(CONFIGURATION).items()
-    }
-
-
 for name in GENERIC:
 
     rule:
@@ -49,11 +41,14 @@ for name in GENERIC:
             job=as_json(STUDIES[name].parameters(CONFIGURATION)),
             module=STUDIES[name].code,
             function=STUDIES[name].function,
-            tables=named_tables(study_tables(STUDIES[name])),
+            tables=lambda w, input, name=name: named_tables(
+                study_tables(STUDIES[name]), input.tables
+            ),
             code=table_code(STUDIES[name].code, STUDIES[name].tables[0]),
         shell:
-            "{JOB} table {params.module} --function {params.function} --parameters {params.job:q}"
-            " --table {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
+            "python -m twodiscs.pipeline.jobs table {params.module} --function {params.function}"
+            " --parameters {params.job:q} --table {params.tables:q} --output {output.table:q}"
+            " > {log:q} 2>&1"
 
 
 rule effects_point:
@@ -70,12 +65,16 @@ rule effects_point:
         file="|".join(EFFECTS),
     params:
         seed=CONFIGURATION.seed,
-        code=code("studies.effects.measure", "pipeline.configuration.scene_file"),
+        code=code(
+            "studies.effects.measure",
+            "pipeline.configuration.scene_file",
+            without=NAMES_ALONE,
+        ),
     shell:
         "python -m twodiscs.pipeline.configuration.scene_file {input.scene:q} --seed {params.seed}"
         " > {output.point:q}.parameters 2> {log:q}"
-        " && {JOB} point studies.effects.measure --parameters @{output.point:q}.parameters"
-        " --output {output.point:q} > {log:q} 2>&1"
+        " && python -m twodiscs.pipeline.jobs point studies.effects.measure"
+        " --parameters @{output.point:q}.parameters --output {output.point:q} > {log:q} 2>&1"
         " && rm {output.point:q}.parameters"
 
 
@@ -100,8 +99,8 @@ rule effects_table:
     params:
         code=table_code("studies.effects.measure", STUDIES["effects"].tables[0]),
     shell:
-        "{JOB} table studies.effects.measure --parameters '{{}}' --points {input.points:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs table studies.effects.measure --parameters '{{}}'"
+        " --points {input.points:q} --output {output.table:q} > {log:q} 2>&1"
 
 
 rule effects_cost:
@@ -125,7 +124,7 @@ rule effects_cost:
     benchmark:
         benchmark_of("effects_cost")
     params:
-        code=code("benchmark"),
+        code=code("benchmark", without=NAMES_ALONE),
     shell:
         "python -m twodiscs.benchmark --table effects_cost --scenes {input.scenes:q}"
         " --output {output.table:q} > {log:q} 2>&1"

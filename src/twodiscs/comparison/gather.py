@@ -4,47 +4,61 @@ import json
 from pathlib import Path
 
 from twodiscs.comparison import check, rows
+from twodiscs.model.checks import one_of
 from twodiscs.model.events import EVENTS
 
-#: What a point of each stage has and no other one has.
-MARKS = {"monte_carlo": "quantities", "dynamics": "products", "intervals": "bin_width"}
+STAGES = ("monte_carlo", "dynamics", "intervals")
+
+#: What the file of a point has, stage by stage, and that of what a job took.
+FIELDS = {
+    "monte_carlo": ("radius", "method", "samples", "quantities"),
+    "dynamics": (
+        "radius", "duration", "replicas", "eligible", "counts", "products", "target", "status",
+    ),
+    "intervals": (
+        "radius", "event", "bin_width", "counts", "intervals", "chains", "mean", "stderr",
+    ),
+    "cost": ("events", "seconds"),
+}  # fmt: skip
 
 
 def _no_number(text):
     raise ValueError(f"{text} is no number")
 
 
-def _read(path):
-    """Return what the JSON file at ``path`` holds, an object."""
+def _read(path, kind):
+    """Return what the JSON file at ``path`` holds, an object with the ``FIELDS`` of its kind."""
     try:
         point = json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=_no_number)
     except ValueError as error:
         raise ValueError(f"{path} is not the file of a point: {error}") from None
     if not isinstance(point, dict):
         raise ValueError(f"{path} is not the file of a point: it holds no JSON object")
+    missing = [name for name in FIELDS[kind] if name not in point]
+    if missing:
+        raise ValueError(f"{path} is not a file of {kind}: it has no {', '.join(missing)}")
     return point
 
 
 def read_points(folder, keys):
     """Return {stage: points} from the files ``folder``/stage/key.json; ``keys`` is {stage: keys}.
 
-    Raises ``ValueError`` for a file that holds no point of its stage, ``OSError`` for a missing
-    one.
+    Raises ``ValueError`` for an unknown stage and a file that holds no point of its stage,
+    ``OSError`` for a missing one.
     """
-    found = {stage: [] for stage in MARKS}
+    found = {stage: [] for stage in STAGES}
     for stage, names in keys.items():
-        for name in names:
-            path = Path(folder, stage, f"{name}.json")
-            point = _read(path)
-            if MARKS[stage] not in point:
-                raise ValueError(f"{path} is not the file of a {stage} point")
-            found[stage].append(point)
+        one_of("stage", stage, STAGES)
+        found[stage] = [_read(Path(folder, stage, f"{name}.json"), stage) for name in names]
     return found
 
 
 def _scene_of(box, points):
-    """Return the ``Scene`` of the first point there is."""
-    return box.scene(next(point["radius"] for some in points.values() for point in some))
+    """Return the ``Scene`` of the first point there is; raise ``ValueError`` without any."""
+    radii = [point["radius"] for some in points.values() for point in some]
+    if not radii:
+        raise ValueError("keys must name one point at least")
+    return box.scene(radii[0])
 
 
 def volume_rows(tables, points, box, keys, watched=EVENTS):
@@ -90,7 +104,7 @@ def cost_rows(tables, points, keys, box=None, watched=EVENTS):
     """Return the rows of cost.csv, with the forecast of the scene if ``tables`` have one."""
     folder = Path(points[0])
     costs = [
-        (stage, float(name), _read(folder / "cost" / f"{stage}-{name}.json"))
+        (stage, float(name), _read(folder / "cost" / f"{stage}-{name}.json", "cost"))
         for stage, names in keys.items()
         for name in names
     ]

@@ -68,7 +68,7 @@ class Table:
     @classmethod
     def columns(cls):
         """Return {name: ``Column``} in the order of the file."""
-        parts = [vars(one).get("__annotations__", {}) for one in cls.__mro__[:-1]]
+        parts = [one.__annotations__ for one in cls.__mro__[:-1]]
         parts = parts[: [*cls.__mro__].index(Table)]
         return {name: column for part in reversed(parts) for name, column in part.items()}
 

@@ -55,7 +55,7 @@ def _row(time, event, state, scene):
 def follow(scene, state, duration):
     """Yield (time, x1, y1, x2, y2, event, z1, z2) for all that happens within ``duration``.
 
-    ``state`` of the ``Scene`` is as in ``events``; z1 and z2 are None in the plane. Hops are events
+    ``state`` of the ``Scene`` is as in ``law``; z1 and z2 are None in the plane. Hops are events
     here, reported where they occur in a flight; walls are named by disc and axis, and the places
     after a jump of a periodic separation follow the name of its axis; the first row is the start,
     the last one the end.

@@ -29,8 +29,11 @@ def draw(box, tables, names, label, place, single=None, linear=False, laws=(), a
     ``linear``; ``place`` that of the legend, and ``single`` the method if there is one series only.
     ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
     ``approach`` a panel beneath shows the times over the distance from the radius of their end.
-    Raises ``ValueError`` if the table has none of the quantities.
+    Raises ``ValueError`` if the table has none of the quantities, and for no table or several.
     """
+    if len(tables) != 1:
+        named = ", ".join(tables) or "none"
+        raise ValueError(f"tables must be the one of {', '.join(names)}, not {named}")
     ((table, rows),) = tables.items()
     radii, exact = curves.exact(box)
     found = {

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from twodiscs.model.checks import length, one_of
+from twodiscs.model.checks import SHORTEST, length, one_of
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
@@ -73,7 +73,8 @@ class Box:
     @cached_property
     def tiny(self):
         """A scene of tiny discs: what does not depend on the radius can be asked of it."""
-        return self.scene(TINY * self.shortest / max(1.0, self.effects.get("radius_ratio", 1.0)))
+        radius = TINY * self.shortest / max(1.0, self.effects.get("radius_ratio", 1.0))
+        return self.scene(max(radius, SHORTEST))
 
     @property
     def sides(self):

@@ -37,15 +37,27 @@ def module_of(name):
     raise ValueError(f"module must be one of the package twodiscs, not {name!r}")
 
 
+def function_of(module, name):
+    """Return the function ``name`` of a module; raise ``ValueError`` if there is none."""
+    found = getattr(module_of(module), name, None)
+    if not callable(found):
+        raise ValueError(f"{module} must have a function {name}, but has none")
+    return found
+
+
+class Tables(dict):
+    """The tables of a job, {name: rows}; one that was not given is a ``ValueError``."""
+
+    def __missing__(self, name):
+        raise ValueError(f"the table {name} must be given, as --table {name}=CSV")
+
+
 def table_of(name, beside=""):
     """Return the ``Table`` called ``name``, of a scene, beside a module or of a study."""
-    of_scenes = module_of("comparison.scene_tables").SCENE_TABLES
-    if name in of_scenes:
-        return of_scenes[name]
-    places = beside.rpartition(".")[0], f"studies.{name}", f"studies.{name.rpartition('_')[0]}"
-    for place in filter(None, places):
+    folders = beside.rpartition(".")[0], f"studies.{name}", f"studies.{name.rpartition('_')[0]}"
+    for place in ("comparison.scene_tables", *(f"{folder}.table" for folder in folders)):
         try:
-            declared = module_of(f"{place}.table")
+            declared = module_of(place)
         except ValueError:
             continue
         for table in vars(declared).values():
@@ -56,9 +68,8 @@ def table_of(name, beside=""):
 
 def read_tables(texts):
     """Return {name: rows} of the arguments NAME=CSV; a table is called as its file."""
-    return {
-        name: table_of(Path(path).stem).read(path) for name, path in named(texts, "--table").items()
-    }
+    paths = named(texts, "--table")
+    return Tables({name: table_of(Path(path).stem).read(path) for name, path in paths.items()})
 
 
 def call(function, given, **more):
@@ -67,7 +78,7 @@ def call(function, given, **more):
     Arguments in ``more`` are passed if the function takes them. Raises ``ValueError`` for
     parameters that it does not take, and for missing ones.
     """
-    if isinstance(given.get("box"), dict):
+    if given.get("box") is not None:
         try:
             given = given | {"box": Box(**given["box"])}
         except TypeError:
@@ -105,19 +116,21 @@ def progress(start):
 
 def point(options):
     """Write what a module finds at one radius, and what it took in processor time."""
-    work = module_of(options.module)
-    given = parameters(options.parameters)
+    work, given = function_of(options.module, "job"), parameters(options.parameters)
     start = time.process_time()
-    result = call(work.job, given, report=progress(start))
+    result = call(work, given, report=progress(start))
     seconds = time.process_time() - start
     write_json(options.output[0], result)
     if options.cost:
-        write_json(options.cost, {"events": result[work.WORK], "seconds": seconds})
+        events = result[module_of(options.module).WORK]
+        write_json(options.cost, {"events": events, "seconds": seconds})
 
 
 def table(options):
     """Write the table that a module makes of its parameters, of other tables and of points."""
-    work = getattr(module_of(options.module), options.function)
+    work = function_of(options.module, options.function)
+    if "points" in inspect.signature(work).parameters and not options.points:
+        raise ValueError(f"{options.function} needs --points")
     start = time.process_time()
     rows = call(
         work,
@@ -132,7 +145,7 @@ def table(options):
 
 def figure(options):
     """Draw the figure of a module."""
-    draw = module_of(options.module).draw
+    draw = function_of(options.module, "draw")
     given, tables = parameters(options.parameters), read_tables(options.table)
     style = module_of("figures.kit.style")
     with style.context():
@@ -143,7 +156,7 @@ def figure(options):
 
 def animation(options):
     """Draw the animation of a trajectory."""
-    animate = module_of(options.module).animate
+    animate = function_of(options.module, "animate")
     given, tables = parameters(options.parameters), read_tables(options.table)
     style = module_of("figures.kit.style")
     with style.context():
@@ -154,13 +167,14 @@ def kernels(options):
     """Compile the kernels of modules, those of a scene or those of all plain ones."""
     given = parameters(options.parameters) if options.parameters else {}
     for name in options.module.split(","):
-        call(module_of(name).compile_kernels, given)
+        call(function_of(name, "compile_kernels"), given)
     Path(options.output[0]).touch()
 
 
 def verdict(options):
     """Write a line a scene if every comparison passed; otherwise print failures and return 1."""
-    failures, text = module_of(options.module).verdict(read_tables(options.table))
+    judge = function_of(options.module, "verdict")
+    failures, text = judge(read_tables(options.table))
     if failures:
         print("\n".join(failures), file=sys.stderr)
         return 1

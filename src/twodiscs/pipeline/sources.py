@@ -14,26 +14,31 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
-def imported(*modules):
+def imported(*modules, without=()):
     """Return the sorted paths of all files of this package that importing ``modules`` may read.
 
     They are dotted names below the package, "dynamics.counting" say. Imports are followed wherever
     they stand, in functions too, through ``__init__.py`` files and relative names; a module that is
-    imported by a computed name is not seen. Raises ``ValueError`` for a name that is no module of
-    this package.
+    imported by a computed name is not seen. Those in ``without`` are left out, with what only they
+    import: what they say is of no consequence there. Raises ``ValueError`` for a name that is no
+    module of this package.
     """
-    found, queue = set(), []
-    for module in modules:
-        name = tuple(module.split(".")) if isinstance(module, str) else ()
-        if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
-            raise ValueError(f"module must be a module of {PACKAGE.name}, not {module!r}")
-        queue.append(name)
+    left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
+    found = set()
     while queue:
         name = queue.pop()
-        if name not in found:
+        if name not in found | left_out:
             found.add(name)
             queue += _imports(name)
     return sorted(_file(name) for name in found)
+
+
+def _parts(module):
+    """Return the parts of the dotted name of a module below the package."""
+    name = tuple(module.split(".")) if isinstance(module, str) else ()
+    if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
+        raise ValueError(f"module must be a module of {PACKAGE.name}, not {module!r}")
+    return name
 
 
 def modules():
@@ -49,13 +54,13 @@ def imports_of(module):
 
 
 @cache
-def fingerprint(*modules):
+def fingerprint(*modules, without=()):
     """Return 16 hexadecimal digits that change with the code of ``modules`` and what they import.
 
-    Raises ``ValueError`` as ``imported`` does.
+    ``without``, a tuple, and errors are as in ``imported``.
     """
     digest = blake2b(digest_size=8)
-    for path in imported(*modules):
+    for path in imported(*modules, without=without):
         digest.update(f"{path.relative_to(PACKAGE).as_posix()} {_read(path)[0]}\n".encode())
     return digest.hexdigest()
 

@@ -1,7 +1,13 @@
 """Looks: every event has its own, and a name that people use."""
 
+import runpy
+
+import pytest
+
+from twodiscs.figures.kit import looks
 from twodiscs.figures.kit.looks import _LOOKS, LOOKS, name_of
 from twodiscs.figures.kit.style import SIZES
+from twodiscs.model import events
 from twodiscs.model.events import EVENTS, HOPS
 
 
@@ -14,6 +20,12 @@ def test_either_colour_or_marker_tells_events_apart():
 def test_looks_of_events_to_come_differ_from_all_others():
     assert len(set(_LOOKS)) == len(_LOOKS)
     assert {marker for _, marker in _LOOKS} <= set(SIZES)
+
+
+def test_events_without_a_look_are_told(monkeypatch):
+    monkeypatch.setattr(events, "EVENTS", tuple("abcdefghi"))
+    with pytest.raises(TypeError, match=r"looks\.py has 8 looks, too few for 9 events"):
+        runpy.run_path(looks.__file__)
 
 
 def test_names_are_plural_but_for_walls():

@@ -4,7 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from figure_cases import PAPER
+from effect_scenes import SCENES
+from figure_cases import PAPER, unclear
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -84,3 +85,11 @@ def test_every_status_has_its_symbol():
 )
 def test_effects_are_written_in_symbols(effects, symbols):
     assert sorted(panels.effects(Box(1.5, 1.0, effects))) == sorted(symbols)
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "combination"])
+def test_limits_and_effects_of_a_box_stand_clear(name):
+    """For one effect or two; more of them do not fit on the line."""
+    with style.context():
+        figure, _, _ = panels.panels(Box.of(SCENES[name]), "volume $V$")
+        assert unclear(figure) == []

@@ -9,7 +9,7 @@ import sys
 import matplotlib
 import pytest
 from fabricated import command
-from figure_cases import PAPER, tables_of
+from figure_cases import PAPER, draw, tables_of
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
@@ -62,6 +62,16 @@ def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path):
     assert int.from_bytes(png[16:20], "big") == round(style.DPI * style.COLUMN)
 
 
+def test_an_svg_is_the_same_bytes_again_and_has_no_date(tmp_path):
+    paths = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    for path in paths:
+        with style.context():
+            style.save(draw("model", PAPER, {}), path)
+    first, second = (path.read_bytes() for path in paths)
+    assert first == second
+    assert not re.search(rb"<dc:date>|Matplotlib v", first)
+
+
 def test_settings_are_restored():
     before = dict(matplotlib.rcParams)
     with style.context():
@@ -69,7 +79,9 @@ def test_settings_are_restored():
     assert dict(matplotlib.rcParams) == before
 
 
-BOX = '{"box": {"width": 1.5, "height": 1.0}}'
+#: The first part of parameters, and all of those of a drawing.
+START = '{"box": {"width": 1.5, "height": 1.0}'
+BOX = START + "}"
 
 
 @pytest.mark.parametrize(
@@ -86,11 +98,18 @@ BOX = '{"box": {"width": 1.5, "height": 1.0}}'
             "width must be",
         ),
         ("figures.geometry.model", {"--parameters": "1.5"}, "must be a JSON object"),
-        ("figures.geometry.model", {"--parameters": BOX[:-1] + ', "colour": 1}'}, "'colour'"),
+        ("figures.geometry.model", {"--parameters": START + ', "colour": 1}'}, "'colour'"),
         ("figures.geometry.model", {"--table": "volume"}, "must be given as NAME=VALUE"),
         ("figures.geometry.model", {"--table": "volumes=a.csv"}, "there is no table called 'a'"),
         ("figures.geometry.model", {"--table": "a=volume.csv"}, "volume.csv: No such file"),
+        ("figures.kit.style", {}, "figures.kit.style must have a function draw"),
+        ("figures.hopping_trajectory", {}, "the table trajectory must be given"),
         ("figures.radius", {}, "missing a required argument: 'names'"),
+        (
+            "figures.radius",
+            {"--parameters": START + ', "names": {"volume": ""}, "label": "", "place": ""}'},
+            "tables must be the one of volume, not none",
+        ),
         (
             "figures.geometry.model",
             {"--output": "a.bmp"},

@@ -13,15 +13,18 @@ import pytest
 from fabricated import BOX, Laws, command, scenes, theory_rows
 from mpmath import mp, mpf
 
-from twodiscs.cli import errata as cli
-from twodiscs.comparison import rows, tables
+from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
+from twodiscs.pipeline import jobs
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
+from twodiscs.studies.errata.table import Errata
 from twodiscs.theory import exact, reference
-from twodiscs.theory.reference import QUANTITIES, Box, mean_time
+from twodiscs.theory.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
     "axis of the cylinder",
@@ -229,7 +232,7 @@ def corrected_lower(q):
 
 
 def corrected_threshold(q):
-    left = reference.volume(Box(q.w, q.h, q.w / 4))
+    left = reference.volume(MpScene(q.w, q.h, q.w / 4))
     return 3 * mp.pi / 4 * left / (16 * mp.sqrt(2) * (q.h - q.w / 2) * (q.w / 4 - q.r) ** 2)
 
 
@@ -273,23 +276,23 @@ def test_both_slips_of_volumewhd_are_slips():
             printed=lambda q, inner=inner, last=last: half_corrected(q, inner, last),
         )
         assert errata.judge(statement)["verdict"] == "wrong"
-    q = Box.of(1.5, 1.0, 0.2)
+    q = MpScene.of(1.5, 1.0, 0.2)
     assert abs(half_corrected(q, 2, 1) - published.volume_whd(q)) < 1e-50
 
 
 def test_the_intermediate_volume_is_neither_the_free_nor_the_excluded_one():
     for radius in (0.26, 0.3, 0.37):
-        q = Box.of(1.5, 1.0, radius)
+        q = MpScene.of(1.5, 1.0, radius)
         printed = published.volume_intermediate(q)
         assert not 0.9 < printed / reference.volume(q) < 1.1
         assert not 0.9 < printed / reference.excluded_volume(q) < 1.1
-    assert mp.im(published.volume_intermediate(Box.of(3.0, 1.0, 0.3))) != 0
-    assert errata._ratio(BY_LABEL["VolumenCasoFeo"], Box.of(3.0, 1.0, 0.3)) is None
+    assert mp.im(published.volume_intermediate(MpScene.of(3.0, 1.0, 0.3))) != 0
+    assert errata._ratio(BY_LABEL["VolumenCasoFeo"], MpScene.of(3.0, 1.0, 0.3)) is None
 
 
 def test_the_jump_at_a_quarter_of_the_height_comes_from_the_components_alone():
     near = mpf("1e-30")
-    below, above = (Box(mpf(1.5), mpf(1), mpf(1) / 4 + side * near) for side in (-1, 1))
+    below, above = (MpScene(mpf(1.5), mpf(1), mpf(1) / 4 + side * near) for side in (-1, 1))
     for quantity in ("volume", "right_wall_area", "top_wall_time"):
         ratio = QUANTITIES[quantity](below) / QUANTITIES[quantity](above)
         assert abs(ratio - 1) < 1e-20
@@ -297,7 +300,7 @@ def test_the_jump_at_a_quarter_of_the_height_comes_from_the_components_alone():
 
 
 def test_the_time_left_in_long_boxes():
-    q = Box(mpf(3), mpf(1), mpf(1) / 2 - mpf("1e-30"))
+    q = MpScene(mpf(3), mpf(1), mpf(1) / 2 - mpf("1e-30"))
     limit = 3 * mp.pi / (4 * mp.sqrt(2)) * (q.w - 2 * q.h)
     assert abs(mean_time("disc_collision", q) / limit - 1) < 1e-20
 
@@ -309,19 +312,19 @@ def test_the_time_left_in_long_boxes():
     "box", [case for cases in REGIMES.values() for case in cases] + [(1.0, 1.7, 0.3)]
 )
 def test_the_reference_is_the_theory(box):
-    exact = exact.exact(Scene(*box))
-    values = {"volume": exact["volume"]}
-    values |= {f"{event}_area": exact["areas"][event] for event in EVENTS}
-    values |= {f"{event}_time": exact["mean_times"][event] for event in EVENTS}
+    found = exact.exact(Scene(*box))
+    values = {"volume": found["volume"]}
+    values |= {f"{event}_area": found["areas"][event] for event in EVENTS}
+    values |= {f"{event}_time": found["mean_times"][event] for event in EVENTS}
     for quantity, value in values.items():
         if value:
-            assert abs(value / QUANTITIES[quantity](Box.of(*box)) - 1) < 1e-13, quantity
+            assert abs(value / QUANTITIES[quantity](MpScene.of(*box)) - 1) < 1e-13, quantity
 
 
 def test_the_reference_keeps_its_digits():
     with mp.workdps(15):
-        rough = reference.volume(Box.of(1.5, 1.0, 0.123))
-    assert abs(rough / published.volume_abd(Box.of(1.5, 1.0, 0.123)) - 1) < 1e-50
+        rough = reference.volume(MpScene.of(1.5, 1.0, 0.123))
+    assert abs(rough / published.volume_abd(MpScene.of(1.5, 1.0, 0.123)) - 1) < 1e-50
 
 
 # Measurements -------------------------------------------------------------------------------------
@@ -332,20 +335,19 @@ def measured():
     """Return tables of the source's box, as drawn from the exact laws."""
     rng = np.random.default_rng(11)
     laws = [Laws(scene) for scene in scenes()]
-    exact = rows.exact_values(theory_rows())
-    scene = scenes()[0]
+    true, scene = exact_values(theory_rows()), scenes()[0]
     sampled = [law.monte_carlo(rng, 10**9) for law in laws]
     return {
-        "theory": theory_rows(),
-        "volume": rows.volume_rows(exact, sampled),
-        "areas": rows.area_rows(scene, exact, sampled),
-        "mean_times": rows.mean_time_rows(scene, exact, [law.dynamics(rng) for law in laws]),
+        "theory": list(theory_rows()),
+        "volume": volume_rows(true, sampled),
+        "areas": area_rows(scene, true, sampled),
+        "mean_times": mean_time_rows(scene, true, [law.dynamics(rng) for law in laws]),
     }
 
 
 @pytest.fixture(scope="module")
 def table(measured):
-    return errata.rows(measured, 1.5, 1.0)
+    return errata.rows(measured, BOX)
 
 
 PARTS = re.compile(r"(Monte Carlo|dynamics)(?: at [\d.]+)? (-?[\d.]+)\((\d+)\)")
@@ -426,14 +428,10 @@ def test_rough_measurements_decide_nothing(measured):
 def test_another_box_leaves_it_to_theory(measured, monkeypatch):
     labels = ("volumeabd", "AreaH", "hoptaulimit")
     monkeypatch.setattr(errata, "STATEMENTS", [BY_LABEL[label] for label in labels])
-    for tables_, box in ((measured, (3.0, 1.0)), ({}, (1.5, 1.0)), (measured, (1.0, 1.5))):
-        rows = errata.rows(tables_, *box)
-        assert rows == [verdicts()[label] for label in labels]
-    (row, *_) = errata.rows({"volume": measured["volume"]}, 1.5, 1)
+    for tables, box in ((measured, Box(3.0, 1.0)), ({}, BOX), (measured, Box(1.0, 1.5))):
+        assert errata.rows(tables, box) == [verdicts()[label] for label in labels]
+    (row, *_) = errata.rows({"volume": measured["volume"]}, BOX)
     assert set(quoted(row)) == {"Monte Carlo"}
-    for box in ((0, 1), ("wide", 1), (1.5, float("nan"))):
-        with pytest.raises(ValueError, match=r"width|height"):
-            errata.rows({}, *box)
 
 
 @pytest.mark.parametrize(
@@ -450,37 +448,45 @@ def test_errors_in_brackets(value, error, text):
     assert errata.shown(value, error) == text
 
 
-# Command line -------------------------------------------------------------------------------------
+# The job ------------------------------------------------------------------------------------------
+
+
+def run(monkeypatch, folder, box, tables):
+    """Run the job of the table and return its exit status; ``tables`` are words NAME=PATH."""
+    words = ["table", "studies.errata.measure", "--parameters", {"box": box}]
+    words += ["--table", *tables, "--output", folder / "errata.csv"]
+    return command(monkeypatch, jobs, *words)
 
 
 def test_the_table_is_written(tmp_path, monkeypatch, measured):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
-    words = []
-    for name, rows in measured.items():
-        tables.write(tmp_path / f"{name}.csv", name, rows)
-        words += ["--table", f"{name}={tmp_path / name}.csv"]
-    out = tmp_path / "errata.csv"
-    assert command(monkeypatch, cli, "--scene", BOX, *words, "--output", out) == 0
-    assert tables.read(out, "errata") == errata.rows(measured, 1.5, 1.0)
+    paths = {name: tmp_path / f"{name}.csv" for name in measured}
+    for name, path in paths.items():
+        SCENE_TABLES[name].write(path, measured[name])
+    words = [f"{name}={path}" for name, path in paths.items()]
+    assert run(monkeypatch, tmp_path, BOX.parameters(), words) == 0
+    assert Errata.read(tmp_path / "errata.csv") == errata.rows(measured, BOX)
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("box", "tables", "message"),
     [
-        (["--scene", "{'width': 1.5}"], "scene must be"),
-        (["--scene", "{'width': 1.5, 'height': -1}"], "height must be"),
-        (["--scene", BOX, "--table", "volume.csv"], "NAME=PATH"),
-        (["--scene", BOX, "--table", "cost=cost.csv"], "NAME=PATH"),
-        (["--scene", BOX, "--table", "volume=absent.csv"], "absent.csv"),
+        ({"width": 1.5}, [], "box must have width, height"),
+        ({"width": 1.5, "height": -1}, [], "height must be"),
+        ({"width": 0, "height": 1}, [], "width must be"),
+        ({"width": "wide", "height": 1}, [], "width must be"),
+        ({"width": 1.5, "height": float("nan")}, [], "must be a JSON object"),
+        (BOX.parameters(), ["volume.csv"], "NAME=VALUE"),
+        (BOX.parameters(), ["volume=absent.csv"], "there is no table called 'absent'"),
+        (BOX.parameters(), ["volume=absent/volume.csv"], "absent/volume.csv"),
     ],
 )
-def test_mistakes_get_one_sentence(tmp_path, monkeypatch, capsys, words, message):
-    out = tmp_path / "errata.csv"
-    assert command(monkeypatch, cli, *words, "--output", out) == 2
+def test_mistakes_get_one_sentence(box, tables, message, tmp_path, monkeypatch, capsys):
+    assert run(monkeypatch, tmp_path, box, tables) == 2
     said = capsys.readouterr().err
     assert message in said
     assert said.count("\n") == 1
-    assert not out.exists()
+    assert not any(tmp_path.iterdir())
 
 
 def test_every_statement_says_where():

@@ -1,0 +1,211 @@
+"""Scores and bounds: against enumeration, mpmath, scipy and seeded simulation."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.special import ndtr, ndtri, stdtr
+from scipy.stats import chi2
+
+from twodiscs.comparison import scores
+
+DEVIATES = (1.0, 2.0, 3.0, 4.0, 5.0)
+
+
+def five_sigma(probability, trials):
+    """Return the interval of counts that a binomial law leaves once in two million times."""
+    width = 5 * math.sqrt(trials * probability * (1 - probability))
+    return trials * probability - width, trials * probability + width
+
+
+# Tails ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("degrees", [99, 511, 10_000])
+@pytest.mark.parametrize("t", [0.0, 0.3, -1.0, 2.5, -5.0, 8.0])
+def test_student_deviate_has_the_tail_of_students_law(t, degrees):
+    z = scores.student_deviate(t, degrees)
+    # Wallace's formula is stated to 1e-3; it is better than that.
+    assert z == pytest.approx(-math.copysign(ndtri(stdtr(degrees, -abs(t))), -t), abs=1e-3)
+
+
+def test_student_deviate_does_not_underflow():
+    assert 100 < scores.student_deviate(1e6, 1023) < 1e3
+
+
+@pytest.mark.parametrize(
+    ("hits", "samples", "p"),
+    [(0, 1000, 1e-3), (3, 10**6, 1e-6), (12, 10**6, 1e-6), (40, 400, 0.2), (995, 1000, 0.99)],
+)
+def test_exact_tail_is_the_doubled_binomial_tail(hits, samples, p):
+    with mpmath.workdps(40):
+        q = mpmath.mpf(p)
+
+        def pmf(k):
+            return mpmath.binomial(samples, k) * q**k * (1 - q) ** (samples - k)
+
+        low = mpmath.fsum(pmf(k) for k in range(hits + 1))
+        high = 1 - low + pmf(hits)
+        doubled = float(min(1, 2 * min(low, high)))
+    z, test = scores.binomial_z(hits, samples, p)
+    assert test == "exact-tail"
+    assert scores.two_sided_p(z) == pytest.approx(doubled, rel=1e-9)
+    assert z == 0 or (z > 0) == (hits > samples * p)
+    assert repr(scores.binomial_z(0, 10, 0.001)[0]) == "0.0"  # not -0.0
+
+
+@pytest.mark.parametrize(("samples", "p"), [(50, 0.3), (400, 0.01), (2000, 0.45), (1500, 0.999)])
+def test_exact_tail_never_rejects_more_often_than_it_says(samples, p):
+    assert scores.binomial_z(0, samples, p)[1] == "exact-tail"
+    k = np.arange(samples + 1)
+    log_choose = np.array(
+        [math.lgamma(samples + 1) - math.lgamma(i + 1) - math.lgamma(samples - i + 1) for i in k]
+    )
+    law = np.exp(log_choose + k * math.log(p) + (samples - k) * math.log1p(-p))
+    size = np.abs([scores.binomial_z(int(i), samples, p)[0] for i in k])
+    for c in DEVIATES:
+        assert law[size >= c].sum() <= 2 * ndtr(-c) * (1 + 1e-9)
+
+
+def test_binomial_z_is_normal_where_hits_and_misses_are_many():
+    z, test = scores.binomial_z(10_400, 10**6, 0.01)
+    assert test == "normal"
+    assert z == pytest.approx(400 / math.sqrt(1e4 * 0.99), rel=1e-12)
+    assert scores.binomial_z(10**6 - 10_400, 10**6, 0.99)[0] == pytest.approx(-z, rel=1e-9)
+    assert scores.binomial_z(5, 10**6, 0.000_999)[1] == "exact-tail"
+    assert scores.binomial_z(5, 10**6, 0.999_001)[1] == "exact-tail"
+
+
+def test_binomial_z_stays_finite_far_beyond_the_smallest_double():
+    for hits, p in ((900, 1e-9), (10**8, 1e-9), (10**8 - 900, 1 - 1e-9)):
+        z, test = scores.binomial_z(hits, 10**8, p)
+        assert test == "exact-tail"
+        assert math.isfinite(z)
+        assert abs(z) > 38
+    # Where Chernoff's bound takes over from the exact tail, z falls back a little, not more.
+    z = [scores.binomial_z(hits, 10**6, 1e-4)[0] for hits in range(600, 700)]
+    assert z[0] < 34 < 38 < z[-1]
+    assert (np.abs(np.diff(z) - 0.05) < 0.15).all()
+
+
+def test_a_probability_of_zero_or_one_leaves_nothing_to_chance():
+    assert scores.binomial_z(0, 100, 0.0) == (0.0, "certain")
+    assert scores.binomial_z(1, 100, 0.0) == (math.inf, "certain")
+    assert scores.binomial_z(100, 100, 1.0)[0] == 0
+    assert scores.binomial_z(99, 100, 1.0) == (-math.inf, "certain")
+
+
+def test_two_shells_that_overlap_have_a_normal_sum():
+    rng = np.random.default_rng(4)
+    samples, trials = 10**6, 2000
+    measures, both = (3.0, 5.0), 0.01
+    only = (0.02, 0.005)
+    counts = rng.multinomial(samples, [both, *only, 1 - both - sum(only)], trials)
+    found = [
+        scores.shells_z(
+            (int(n + a), int(n + b)), int(n), samples, measures, (both + only[0], both + only[1])
+        )
+        for n, a, b, _ in counts
+    ]
+    assert {test for _, test in found} == {"normal"}
+    z = [score for score, _ in found]
+    assert abs(scores.z_mean(z)) < 5
+    assert abs(scores.z_spread(z)) < 5
+
+
+def test_union_never_rejects_more_often_than_it_says():
+    rng = np.random.default_rng(5)
+    first, noise = rng.standard_normal((2, 20_000))
+    for correlation in (-1.0, 0.0, 0.7):
+        second = correlation * first + math.sqrt(1 - correlation**2) * noise
+        size = np.abs([scores.union_z(pair, 1) for pair in zip(first, second, strict=True)])
+        for c in (1.0, 2.0, 3.0):
+            assert (size >= c).sum() <= five_sigma(2 * ndtr(-c), size.size)[1]
+    assert scores.union_z([0.1, -0.2], -1) == 0
+    assert scores.union_z([60.0, 1.0], -3) == pytest.approx(-60, abs=0.1)
+    assert scores.union_z([math.inf, 1.0], 1) == math.inf
+
+
+# Mean times -----------------------------------------------------------------------------------
+
+
+def test_an_impossible_event_must_not_be_seen():
+    assert scores.mean_time_z(0, 0, 10, 1.0, None) == (0.0, "certain")
+    assert scores.mean_time_z(1, 1, 10, 1.0, None) == (-math.inf, "certain")
+
+
+def law_of_total(replica_law, replicas):
+    """Return the law of the sum over independent replicas, by repeated convolution."""
+    law = np.ones(1)
+    for _ in range(replicas):
+        law = np.convolve(law, replica_law)
+    return law
+
+
+@pytest.mark.parametrize("sizes", [{1: 1.0}, {1: 0.6, 2: 0.3, 3: 0.1}, {4: 1.0}, {1: 0.5, 4: 0.5}])
+@pytest.mark.parametrize("seen", [0.003, 0.05])
+def test_cluster_bound_never_rejects_more_often_than_it_says(sizes, seen):
+    replicas = 300
+    law = np.zeros(5)
+    law[0] = 1 - seen
+    for size, share in sizes.items():
+        law[size] = seen * share
+    total = law_of_total(law, replicas)
+    exact = 1 / float(law @ np.arange(5))
+    # Σ N² = Σ N makes the allowance its smallest, K = 4. Totals of 200 and more count as rejected.
+    found = [scores.mean_time_z(n, n, replicas, 1.0, exact) for n in range(200)]
+    assert {test for _, test in found} == {"cluster-bound"}
+    size = np.abs([z for z, _ in found])
+    for c in DEVIATES:
+        assert total[:200][size >= c].sum() + total[200:].sum() <= 2 * ndtr(-c)
+
+
+# Many comparisons -----------------------------------------------------------------------------
+
+
+def test_bonferroni_bound():
+    assert scores.bonferroni_bound(1, 0.05) == pytest.approx(1.959964, abs=1e-6)
+    assert scores.bonferroni_bound(1000, 5e-4) == pytest.approx(-ndtri(2.5e-7))
+
+
+@pytest.mark.parametrize("n", [2, 5, 52])
+@pytest.mark.parametrize("test", [scores.z_mean, scores.z_spread])
+def test_scores_of_scores_are_standard_normal(test, n):
+    rng = np.random.default_rng(8)
+    trials = 10_000
+    found = np.array([test(row) for row in rng.standard_normal((trials, n))])
+    for c in (1.0, 2.0, 3.0):
+        low, high = five_sigma(2 * ndtr(-c), trials)
+        assert low <= (np.abs(found) >= c).sum() <= high
+
+
+def test_scores_of_scores_see_shift_and_spread():
+    z = np.random.default_rng(9).standard_normal(52)
+    assert abs(scores.z_mean(z)) < 4
+    assert scores.z_mean(z + 1) > 5
+    assert scores.z_mean(z - 1) < -5
+    assert abs(scores.z_spread(z)) < 4
+    assert scores.z_spread(2 * z) > 5
+    assert scores.z_spread(z / 3) < -5
+    assert scores.z_spread(z * 1e3) > 100
+    assert math.isfinite(scores.z_spread(z * 1e3))
+    assert scores.z_spread([0.0] * 52) == -math.inf
+
+
+@pytest.mark.parametrize("degrees", [1, 5, 100])
+@pytest.mark.parametrize("value", [0.0, 0.3, 7.0, 200.0])
+def test_the_probability_of_a_larger_chi_square(value, degrees):
+    assert scores.chi2_p(value, degrees) == pytest.approx(chi2.sf(value, degrees), rel=1e-12)
+
+
+def test_sums_must_be_possible():
+    with pytest.raises(ValueError, match="hits must not exceed"):
+        scores.binomial_z(3, 2, 0.5)
+    with pytest.raises(ValueError, match="exact"):
+        scores.mean_time_z(1, 1, 5, 1.0, 0.0)
+    for empty in (scores.z_mean, scores.z_spread):
+        with pytest.raises(ValueError, match="z must not be empty"):
+            empty([])
+        with pytest.raises(ValueError, match="z must be"):
+            empty([1.0, math.nan])

@@ -1,0 +1,161 @@
+"""The catalogue of studies: what an entry names is there, and fits what the jobs do with it."""
+
+import inspect
+import json
+from pathlib import Path
+
+import pytest
+
+import twodiscs.studies
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import Table
+from twodiscs.figures.catalogue import FIGURES, Entry
+from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.jobs import module_of, table_of
+from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
+
+CONFIG = Path(__file__).parents[2] / "config"
+FOLDERS = {path.parent.name for path in Path(twodiscs.studies.__path__[0]).glob("*/table.py")}
+every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
+
+#: What a job hands on of itself, if the function takes it.
+HANDED = {"tables": {}, "points": [], "report": None}
+
+
+@pytest.fixture(scope="module")
+def default():
+    return load(read(CONFIG / "config.yaml"))
+
+
+@pytest.fixture(scope="module")
+def only_effects():
+    """A configuration without a plain scene."""
+    return load(read(CONFIG / "config.yaml") | read(CONFIG / "scenes" / "rough.yaml"))
+
+
+def test_the_order_is_that_of_report_and_schema():
+    assert list(STUDIES) == [
+        "errata",
+        "accuracy_cost",
+        "stability",
+        "tails",
+        "distributions",
+        "thresholds",
+        "effects",
+        "long_runs",
+    ]
+    assert [name for name, study in STUDIES.items() if not study.shared] == ["long_runs"]
+    assert all(name == study.name for name, study in STUDIES.items())
+
+
+def test_every_folder_and_every_table_has_its_study():
+    assert {study.code.split(".")[1] for study in STUDIES.values()} == FOLDERS
+    declared = [
+        value
+        for folder in FOLDERS
+        for value in vars(module_of(f"studies.{folder}.table")).values()
+        if isinstance(value, type) and issubclass(value, Table) and value is not Table
+    ]
+    assert set(declared) == set(STUDY_TABLES.values())
+    assert len(STUDY_TABLES) == sum(len(study.tables) for study in STUDIES.values())
+    assert not STUDY_TABLES.keys() & SCENE_TABLES.keys()
+
+
+@every_study
+def test_the_module_makes_the_first_table(study):
+    """Which is named as the study is, and found beside the module, as its job looks for it."""
+    assert callable(getattr(module_of(study.code), study.function))
+    assert study.tables[0].name() == study.name
+    assert table_of(study.name, study.code) is study.tables[0]
+
+
+@pytest.mark.parametrize("name", sorted({n for e in STUDY_FIGURES.values() for n in e.tables}))
+def test_a_table_that_a_figure_reads_is_found_by_its_name_alone(name):
+    assert table_of(name) is STUDY_TABLES[name]
+
+
+@every_study
+def test_parameters_are_plain_values_that_the_function_takes(study, default):
+    given = study.parameters(default)
+    assert json.loads(json.dumps(given, allow_nan=False)) == given
+    function = getattr(module_of(study.code), study.function)
+    signature = inspect.signature(function)
+    handed = {name: value for name, value in HANDED.items() if name in signature.parameters}
+    signature.bind(**given, **handed)
+    assert bool(study.reads(default)) == ("tables" in handed)
+
+
+@every_study
+def test_seconds_are_a_figure_or_follow_from_the_configuration(study, default):
+    seconds = study.seconds(default) if callable(study.seconds) else study.seconds
+    assert 0 < seconds < 1000
+
+
+@every_study
+def test_what_is_read_is_a_table_of_a_scene_or_of_a_study_before(study, default):
+    before = list(STUDY_TABLES)[: list(STUDY_TABLES).index(study.name)]
+    for name, (scene, table) in study.reads(default).items():
+        assert name.endswith(table)
+        assert table in (default.scene(scene).tables if scene else before)
+
+
+def test_studies_read_only_what_there_is(default):
+    """A scene that measures no times has no part in the thresholds, and the errata do without."""
+    scene = {"name": "paper", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
+    little = load({"scenes": [scene | {"radii": [0.1]}]})
+    assert STUDIES["thresholds"].reads(little) == {"distributions": (None, "distributions")}
+    assert STUDIES["errata"].reads(little) == {
+        name: ("paper", name) for name in ("theory", "volume")
+    }
+    found = STUDIES["thresholds"].reads(default)
+    assert found["paper/mean_times"] == ("paper", "mean_times")
+
+
+def test_budgets_follow_the_main_scene_within_limits():
+    def parameters(study, budget):
+        scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "event_budget": budget}
+        return STUDIES[study].parameters(load({"scenes": [scene | {"radii": [0.1]}]}))
+
+    tails = [parameters("tails", budget) for budget in (10**4, 10**8, 10**12)]
+    assert [one["replicas"] for one in tails] == [4_000, 20_000, 400_000]
+    assert [one["samples"] for one in tails] == [2, 10, 200]
+    found = [parameters("distributions", budget)["events"] for budget in (10**4, 10**8, 10**12)]
+    assert found == [2**16, 500_000, 2**23]
+
+
+def test_a_configuration_without_plain_scenes_has_studies(only_effects):
+    """Those that are not about plain scenes need no main one."""
+    kept = [study for study in STUDIES.values() if not study.about_plain]
+    assert [study.name for study in kept] == ["accuracy_cost", "effects"]
+    assert only_effects.main is None
+    for study in kept:
+        json.dumps(study.parameters(only_effects))
+        assert study.reads(only_effects) == {}
+
+
+def test_figures_of_studies_are_entries_of_their_own():
+    assert all(isinstance(entry, Entry) for entry in STUDY_FIGURES.values())
+    assert len(STUDY_FIGURES) == sum(len(study.figures) for study in STUDIES.values())
+    assert not STUDY_FIGURES.keys() & FIGURES.keys()
+    titles = [entry.title for entry in (FIGURES | STUDY_FIGURES).values()]
+    assert len(set(titles)) == len(titles)
+
+
+@every_study
+def test_figures_are_drawn_from_tables_of_the_study_or_of_one_before(study):
+    names = list(STUDY_TABLES)
+    known = names[: names.index(study.tables[-1].name()) + 1]
+    for entry in study.figures.values():
+        assert callable(module_of(entry.module).draw)
+        assert entry.module.startswith(f"studies.{study.name}.")
+        assert set(entry.tables) <= set(known)
+        assert {table.name() for table in study.tables} <= set(entry.tables)
+        assert not entry.needs
+
+
+@every_study
+def test_timed_tables_are_its_own(study):
+    assert set(study.timed) <= {table.name() for table in study.tables}
+    for table in study.tables:
+        seconds = [name for name, column in table.columns().items() if column.unit == "s"]
+        assert not seconds or table.name() in study.timed

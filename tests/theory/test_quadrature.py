@@ -1,0 +1,82 @@
+"""Rules of quadrature against integrals that are known."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from twodiscs.theory.quadrature import double_exponential, gauss_legendre
+
+EPSILON = 2.0**-52
+
+
+def integral(rule, function):
+    """Return the integral over [0, 1] of a function of t and 1 − t."""
+    return math.fsum(weight * function(t, rest) for t, rest, weight in rule)
+
+
+@pytest.mark.parametrize("order", [2, 3, 8, 16])
+def test_gauss_legendre_is_exact_for_polynomials_up_to_its_degree_and_no_further(order):
+    rule = gauss_legendre(order)
+    assert len(rule) == order
+    for degree in range(2 * order):
+        found = integral(rule, lambda t, rest, k=degree: t**k)
+        assert found == pytest.approx(1 / (degree + 1), rel=8 * EPSILON)
+    # The first one that is not: tⁿ(1 − t)ⁿ less its interpolant, n!⁴/((2n + 1) (2n)!²).
+    n = order
+    missing = Fraction(math.factorial(n) ** 4, (2 * n + 1) * math.factorial(2 * n) ** 2)
+    error = 1 / (2 * n + 1) - integral(rule, lambda t, rest: t ** (2 * n))
+    assert error == pytest.approx(float(missing), rel=1e-3, abs=2 * EPSILON)
+
+
+@pytest.mark.parametrize("order", [2, 5, 16])
+def test_gauss_legendre_has_the_nodes_of_numpy(order):
+    points, weights = np.polynomial.legendre.leggauss(order)
+    rule = np.array(gauss_legendre(order))
+    assert sorted(rule[:, 0]) == pytest.approx(list((1 + points) / 2), rel=1e-14)
+    assert rule[np.argsort(rule[:, 0]), 2] == pytest.approx(weights / 2, rel=1e-13)
+
+
+@pytest.mark.parametrize("rule", [gauss_legendre(16), double_exponential(1 / 16)])
+def test_a_node_knows_its_distance_from_both_ends(rule):
+    for t, rest, weight in rule:
+        assert 0 < t < 1 or rest < EPSILON
+        assert 0 < rest <= 1
+        assert weight > 0
+        assert t + rest == pytest.approx(1, rel=2 * EPSILON)
+    # From end to end: the rule looks the same.
+    mirrored = sorted((rest, weight) for _, rest, weight in rule)
+    here = sorted((t, weight) for t, _, weight in rule)
+    assert np.array(mirrored) == pytest.approx(np.array(here), rel=1e-11)
+
+
+@pytest.mark.parametrize("at_end", [0, 0.25, 0.5, 1, 1.5, 3.5])
+@pytest.mark.parametrize("at_start", [0, 0.5, 1.5, 2.5])
+def test_double_exponential_takes_any_power_at_both_ends(at_start, at_end):
+    """Euler's beta function."""
+    found = integral(double_exponential(1 / 16), lambda t, rest: t**at_start * rest**at_end)
+    expected = math.gamma(at_start + 1) * math.gamma(at_end + 1) / math.gamma(at_start + at_end + 2)
+    assert found == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("beyond", [1e-12, 1e-6, 1e-2])
+def test_double_exponential_takes_powers_just_beyond_an_end(beyond):
+    """As where a sphere nearly touches a plane."""
+    found = integral(double_exponential(1 / 16), lambda t, rest: math.sqrt(rest + beyond))
+    expected = ((1 + beyond) ** 1.5 - beyond**1.5) / 1.5
+    assert found == pytest.approx(expected, rel=1e-14)
+
+
+def test_gauss_legendre_would_miss_such_powers():
+    found = integral(gauss_legendre(16), lambda t, rest: math.sqrt(rest))
+    assert abs(found - 2 / 3) > 1e-6
+
+
+def test_half_the_step_squares_the_error_of_the_double_exponential_rule():
+    errors = [
+        abs(integral(double_exponential(step), lambda t, rest: math.sqrt(t * rest)) - math.pi / 8)
+        for step in (1 / 2, 1 / 4)
+    ]
+    assert 1e-7 < errors[0] < 1e-3
+    assert errors[1] < 10 * errors[0] ** 2

@@ -1,0 +1,222 @@
+"""The fifty digits that exact values are set against, and what they are made of.
+
+A second method gives the same digits: antiderivatives, with 150 of them. Both agree with quadrature
+in two dimensions by the definitions, in which no side is integrated by hand.
+"""
+
+import math
+
+import pytest
+from mpmath import mp, mpf
+from theory.antiderivatives import DIGITS, lengths, reference, reference_times, relative_error
+
+from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS
+from twodiscs.model.scene import Scene
+from twodiscs.theory import reference as reference_module
+from twodiscs.theory.reference import (
+    QUANTITIES,
+    MpScene,
+    contact_density,
+    exact_numbers,
+    inside,
+    largest_radius,
+    line,
+    normal_speed,
+    outside,
+    rectangle,
+    sphere,
+)
+
+SCENES = [
+    Scene(*lengths_given)
+    for lengths_given in (
+        (1.5, 1.0, 0.2), (1.5, 1.0, 0.3), (1.5, 1.0, 0.38), (1.0, 1.0, 0.27),
+        (1.0, 1.7, 0.28), (3.0, 1.0, 0.35), (3.0, 1.0, 0.45),
+    )
+]  # fmt: skip
+BOXES = [(1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (3.0, 1.0), (1.0, 1.7), (1e6, 1), (1, 1e6)]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def digits():
+    """Work with many digits."""
+    with mp.workdps(DIGITS):
+        yield
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_volume_and_areas_are_the_integrals_they_stand_for(scene):
+    with mp.workdps(18):
+        a, b, s = lengths(scene)
+        edges = sorted({mpf(0), mp.sqrt(max(s * s - b * b, 0)), min(s, a), a})
+
+        def over_rectangle(density):
+            def column(u):
+                k = mp.sqrt(max(s * s - u * u, mpf(0)))
+                return mp.quad(lambda v: density(u, v), [k, b]) if k < b else mpf(0)
+
+            return mp.quad(column, edges)
+
+        angles = [mp.acos(min(a / s, 1)), mp.asin(min(b / s, 1))]
+        expected = {
+            "volume": 4 * over_rectangle(lambda u, v: (a - u) * (b - v)),
+            "right_wall": 2 * over_rectangle(lambda u, v: b - v),
+            "top_wall": 2 * over_rectangle(lambda u, v: a - u),
+            # Two centres on the arc: length element σ/√2 dθ, common motion √2 (A − u) √2 (B − v).
+            "disc_collision": 4 * mp.sqrt(2) * s * mp.quad(
+                lambda q: (a - s * mp.cos(q)) * (b - s * mp.sin(q)), angles
+            ),
+        }  # fmt: skip
+    volume, areas, _ = exact_numbers(scene)
+    for found in (reference(scene), volume | areas):
+        for quantity, value in expected.items():
+            assert relative_error(value, found[quantity]) < 1e-14, quantity
+
+
+# Digits -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("box", BOXES)
+def test_antiderivatives_have_fifty_digits_even_next_to_the_largest_radius(box):
+    scene = Scene(*box, Box(*box).largest_radius * (1 - 1e-12))
+    found = reference(scene)
+    with mp.workdps(400):
+        for quantity, value in reference(scene).items():
+            assert abs(found[quantity] - value) <= abs(value) * mpf(10) ** -50
+
+
+def near_limits(box):
+    """Yield scenes in all regimes, on both sides of the thresholds, and where discs hardly fit."""
+    largest = Box(*box).largest_radius
+    radii = [1e-9 * min(box), 0.1 * largest, 0.6 * largest, 0.9 * largest]
+    for limit in (box[0] / 4, box[1] / 4):
+        radii += [limit * (1 - 1e-9), limit, math.nextafter(limit, math.inf)]
+    radii += [largest * (1 - room) for room in (1e-3, 1e-6, 1e-9)]
+    return [Scene(*box, radius) for radius in radii if Box(*box).fits(radius)]
+
+
+@pytest.mark.parametrize("box", BOXES)
+def test_exact_numbers_have_the_digits_of_the_antiderivatives(box):
+    for scene in near_limits(box):
+        volume, areas, times = exact_numbers(scene)
+        assert tuple(areas) == EVENTS
+        found = volume | areas
+        for quantity, value in reference(scene).items():
+            assert relative_error(found.pop(quantity), value) < 1e-50, (scene, quantity)
+        assert not found
+        for event, time in reference_times(scene).items():
+            if time is None:
+                assert event not in times
+            else:
+                assert relative_error(times[event], time) < 1e-50, (scene, event)
+
+
+def test_the_digits_do_not_depend_on_those_that_the_caller_works_with():
+    scene = Scene(1.5, 1.0, 0.123)
+    with mp.workdps(15):
+        volume, areas, times = exact_numbers(scene)
+    for quantity, value in reference(scene).items():
+        assert relative_error((volume | areas)[quantity], value) < 1e-50
+    for event, time in reference_times(scene).items():
+        assert relative_error(times[event], time) < 1e-50
+
+
+def test_every_number_has_the_name_that_tables_give_it():
+    scene = SCENES[0]
+    volume, areas, times = exact_numbers(scene)
+    expected = {f"{event}_area": area for event, area in areas.items()} | volume
+    expected |= {f"{event}_time": time for event, time in times.items()}
+    q = MpScene.of(scene.width, scene.height, scene.radius)
+    assert {name: quantity(q) for name, quantity in QUANTITIES.items()} == expected
+
+
+# What they are made of --------------------------------------------------------------------------
+
+
+def test_a_scene_takes_numbers_for_exactly_what_they_are():
+    q = MpScene.of(1.5, 1, mpf("0.1"))
+    assert (q.w, q.h) == (mpf("1.5"), 1)
+    assert q.r == mpf("0.1") != mpf(0.1)
+    assert (q.a, q.b) == (mpf("0.65"), mpf("0.4"))
+
+
+def test_the_mean_normal_speed_is_that_of_a_unit_vector_in_four_dimensions():
+    assert relative_error(normal_speed(), 2 / (3 * mp.pi)) < 1e-50
+    for d in range(2, 7):
+        assert relative_error(sphere(d), 2 * mp.pi ** (mpf(d) / 2) / mp.gamma(mpf(d) / 2)) < 1e-50
+
+
+def test_rules_are_exact_for_what_they_are_for():
+    def f(x, y):
+        return (3 - x) * (2 - y) ** 2
+
+    assert (
+        relative_error(line(lambda x: x**5 - x**2, mpf(1), mpf(3)), 364 / mpf(3) - 26 / mpf(3))
+        < 1e-100
+    )
+    whole = rectangle(f, mpf(2), mpf(1))
+    assert relative_error(whole, 4 * mpf(7) / 3) < 1e-100
+    # A circle that leaves by the far sides, by the upper one only, and not at all.
+    for rho in ("2.1", "1.5", "0.9"):
+        rho = mpf(rho)
+        with mp.workdps(30):
+            ends = [mpf(0), min(rho, mpf(2))]
+            ends[1:1] = [mp.sqrt(rho**2 - 1)] if rho > 1 else []
+            expected = mp.quad(
+                lambda x, rho=rho: line(lambda y: f(x, y), 0, min(mp.sqrt(abs(rho**2 - x**2)), 1)),
+                ends,
+            )
+            assert relative_error(inside(f, mpf(2), mpf(1), rho), expected) < 1e-25
+        total = inside(f, mpf(2), mpf(1), rho) + outside(f, mpf(2), mpf(1), rho)
+        assert relative_error(total, whole) < 1e-100
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_parts_are_integrals_over_their_part_of_the_quadrant(scene):
+    """In polar coordinates: the parts are a triangle, the sector and another triangle."""
+    q = MpScene.of(scene.width, scene.height, scene.radius)
+    with mp.workdps(30):
+        root = mp.sqrt(2)
+        rho = root * q.r
+        parts = {
+            "upper": (q.alpha, mp.pi / 2, lambda t: root * q.b / mp.sin(t)),
+            "sector": (q.beta, q.alpha, lambda t: rho),
+            "lower": (mpf(0), q.beta, lambda t: root * q.a / mp.cos(t)),
+        }
+
+        def over(part, weight):
+            start, stop, reach = parts[part]
+            return mp.quad(
+                lambda t: line(lambda d: d * weight(d * mp.cos(t), d * mp.sin(t)), 0, reach(t)),
+                [start, stop],
+            )
+
+        for part in parts:
+            found = getattr(reference_module, f"{part}_volume")(q)
+            assert mp.almosteq(found, 16 * over(part, q.weight), 1e-22, 1e-22), part
+            # Of the wall: the range of Y at this y, and disc 2 on one side of disc 1 only.
+            expected = over(part, lambda x, y: 4 * root * (root * q.b - y))
+            assert mp.almosteq(getattr(reference_module, f"{part}_wall")(q), expected, 1e-22, 1e-22)
+        collision = 16 * reference_module.on_circle(q, q.weight)
+        assert relative_error(collision, reference_module.disc_collision_area(q)) < 1e-22
+        if q.a > q.r:
+            strips = reference_module.beside_volume(q) + reference_module.beyond_volume(q)
+            assert relative_error(16 * strips, reference_module.volume(q)) < 1e-22
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=repr)
+def test_the_contact_density_is_the_area_of_contact_per_square_of_the_distance(scene):
+    """−∂V/∂σ² = A_coll/(2√2 σ)."""
+    q = MpScene.of(scene.width, scene.height, scene.radius)
+    with mp.workdps(60):
+        expected = exact_numbers(scene)[1]["disc_collision"] / (4 * mp.sqrt(2) * q.r)
+        assert relative_error(contact_density(q), expected) < 1e-15
+
+
+@pytest.mark.parametrize("box", [(1.5, 1.0), (1.0, 1.0), (1.0, 1.7)])
+def test_the_largest_radius_is_a_root(box):
+    found = largest_radius(MpScene.of(*box, 0.1))
+    w, h = map(mpf, box)
+    assert relative_error(found, (w + h - mp.sqrt(2 * w * h)) / 2) < 1e-100
+    assert float(found) == pytest.approx(Box(*box).largest_radius, rel=1e-15)

@@ -1,0 +1,74 @@
+"""Exact laws of the distributions of times: at time zero, and which long tails there are."""
+
+import math
+
+import numpy as np
+import pytest
+
+from twodiscs.model.events import HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.theory.laws import TURNED
+from twodiscs.theory.tails import density_at_zero, tail_constant
+
+BOUND = 1e-13
+PAPER = (1.5, 1.0)
+GOOD = Scene(*PAPER, 0.3)
+
+
+@pytest.mark.parametrize("box", [PAPER, (1.0, 1.7)])
+def test_density_at_zero_is_that_of_one_bounce(box):
+    """Five sigma: crossings by Gaussian velocities weighted by the flux, and the hop back at once.
+
+    With d uniform the density at 0 is the mean of 1/(2B) times |v1 + v2|, here taken from the share
+    of returns within a short time with disc 1 or 2 followed to the wall.
+    """
+    scene, rng, n, short = Scene(*box, 0.1), np.random.default_rng(1), 1_000_000, 0.02
+    for hop, side in (("vertical_hop", scene.range_y), ("horizontal_hop", scene.range_x)):
+        velocity = rng.normal(size=(n, 4))
+        velocity /= np.linalg.norm(velocity, axis=1)[:, None]
+        v1, v2 = velocity[:, 0], velocity[:, 1]
+        y = rng.uniform(-side / 2, side / 2, n)
+        places = [y + v * short for v in (v1, v2)]
+        folded = [np.clip(q, -side / 2, side / 2) * 2 - q for q in places]
+        # Back on the sides from which they came: disc 1 beneath disc 2 though it was faster.
+        back = (folded[0] - folded[1]) * (v1 - v2) < 0
+        weight = np.abs(v1 - v2) / np.abs(v1 - v2).mean()
+        share, error = np.mean(weight * back), np.std(weight * back) / math.sqrt(n)
+        density = density_at_zero(scene, hop)
+        assert abs(share - density * short) <= 5 * error
+    assert density_at_zero(GOOD, "horizontal_hop") is None
+
+
+def test_tail_constants_of_blocked_drifts():
+    """Their size is measured in test_py; here are the symmetries and what is blocked."""
+    assert tail_constant(GOOD, "horizontal_hop") is None
+    assert tail_constant(GOOD, "vertical_hop") == 0.0
+    assert tail_constant(Scene(*PAPER, 0.38), "disc_collision") == 0.0
+    for event in (*HOPS, "disc_collision"):
+        scene, turned = Scene(*PAPER, 0.1), Scene(*PAPER[::-1], 0.1)
+        other = TURNED[event]
+        constants = tail_constant(scene, event), tail_constant(turned, other)
+        assert constants[0] == pytest.approx(constants[1], rel=BOUND)
+
+
+@pytest.mark.parametrize("bad", ["any_wall", "right_wall", "", None])
+def test_only_hops_and_collisions_have_tails(bad):
+    with pytest.raises(ValueError, match="event must be one of vertical_hop, "):
+        tail_constant(GOOD, bad)
+    with pytest.raises(ValueError, match="hop must be one of vertical_hop, "):
+        density_at_zero(GOOD, bad)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda scene: density_at_zero(scene, "vertical_hop"),
+        lambda scene: tail_constant(scene, "disc_collision"),
+    ],
+)
+def test_only_plain_scenes_have_known_distributions(function):
+    for bad in (None, 0.3, "paper", (1.5, 1, 0.3), {"radius": 0.3}, [GOOD]):
+        with pytest.raises(ValueError, match=r"^scene must be a Scene, not "):
+            function(bad)
+    with pytest.raises(ValueError, match=r"must be plain .* it has radius_ratio, field"):
+        function(Scene(*PAPER, 0.2, radius_ratio=0.5, field=0.1))

@@ -1,0 +1,164 @@
+"""The workflow from anywhere: in another folder, and as a module of somebody else's workflow.
+
+The configuration here is tiny, and what one build has made is copied for the others: they have to
+find all of it up to date, and to make again what is taken away.
+"""
+
+import json
+import shutil
+
+import pytest
+import yaml
+from checkout import Checkout
+
+TINY = {
+    "shared": ["errata", "report"],
+    "scenes": [
+        {
+            "name": "tiny",
+            "box": {"width": 1.5, "height": 1.0},
+            "radii": [0.1, 0.3],
+            "watch": {
+                **{"volume": True, "areas": ["top_wall"], "mean_times": ["top_wall"]},
+                **{"hop_histogram": {"radii": [0.1], "intervals": 2000}, "trajectory": 0.24},
+            },
+            "accuracy": 0.5,
+            "event_budget": 1,
+            "monte_carlo": {"samples": 1},
+        }
+    ],
+}
+
+#: What is taken away from a copy: of every kind of file one, at least.
+LOST = (
+    *("tiny/points/dynamics/0.1.json", "tiny/mean_times.csv", "tiny/trajectory.csv", "errata.csv"),
+    *("tiny/figures/model.pdf", "tiny/figures/animation.gif", "tiny/check.csv", "check.passed"),
+    *("report.html", "manifest.sha256"),
+)
+
+MODULE = """
+configfile: "mine.yaml"
+
+
+module discs:
+    snakefile:
+        {snakefile!r}
+    {more}
+
+
+use rule * from discs{names}
+
+
+rule mine:
+    input:
+        rules.{prefix}check.output,
+    output:
+        "mine.txt",
+    shell:
+        "cp {{input}} {{output}}"
+"""
+
+
+def there(place):
+    """Return the arguments that build in the folder of ``place`` from wherever it is called."""
+    return "--snakefile", str(place.home.path / "Snakefile"), "--directory", str(place.path)
+
+
+def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
+    """Write a workflow that uses the one of a checkout as a module, rules named with a prefix."""
+    text = MODULE.format(
+        snakefile=str(place.home.path / "Snakefile"),
+        more=more,
+        names=f" as {prefix}*" if prefix else "",
+        prefix=prefix,
+    )
+    (place.path / "Snakefile").write_text(text)
+    (place.path / "mine.yaml").write_text(yaml.safe_dump({"discs": configuration, "mine": 1}))
+
+
+def copied(built, folder):
+    """Return a folder with what another one has built, and Snakemake's record of it."""
+    for part in ("results", ".snakemake"):
+        shutil.copytree(built.path / part, folder / part)
+    return Checkout(folder, built.home)
+
+
+def manifest(place, results="results"):
+    """Return the fingerprints of all results that are the same bytes on every run."""
+    return (place.path / results / "manifest.sha256").read_text()
+
+
+@pytest.fixture(scope="module")
+def own(complete, tmp_path_factory):
+    """A folder with a configuration of its own, in which everything is built."""
+    place = Checkout(tmp_path_factory.mktemp("own"), complete)
+    place.configuration.parent.mkdir()
+    place.configuration.write_text(yaml.safe_dump(TINY))
+    nowhere = Checkout(tmp_path_factory.mktemp("nowhere"), complete)
+    nowhere.snakemake(*there(place), "--cores", "2")
+    assert [*nowhere.path.iterdir()] == []
+    return place
+
+
+def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own, complete):
+    names = {*own.results()}
+    assert {f"tiny/{name}.csv" for name in ("volume", "areas", "mean_times", "trajectory")} < names
+    assert {*LOST} < names
+    assert "paper.pdf" not in names
+    assert not (complete.path / "results" / "tiny").exists()
+    assert own.jobs(*there(own)) == []
+
+
+def test_without_one_the_default_is_built(complete, tmp_path):
+    place = copied(complete, tmp_path)
+    # From here the files of the workflow have other paths, which alone would be a reason.
+    arguments = *there(place), "--rerun-triggers", "mtime", "--"
+    assert place.jobs(*arguments) == []
+    for name in (
+        *("walls/points/dynamics/0.3.json", "walls/mean_times.csv", "tails.csv"),
+        *("figures/tails.pdf", "paper.pdf", "report.html", "manifest.sha256"),
+    ):
+        (tmp_path / "results" / name).unlink()
+    assert {"dynamics", "tails_table", "paper"} < {rule for rule, _ in place.jobs(*arguments)}
+    place.snakemake("--cores", "2", *arguments)
+    assert manifest(place) == manifest(complete)
+    assert {*place.results()} == {*complete.results()}
+    assert {path.name for path in tmp_path.iterdir()} == {"results", ".snakemake"}
+
+
+@pytest.mark.parametrize("prefix", ["", "discs_"])
+def test_as_a_module_it_does_the_same_jobs(own, tmp_path, prefix):
+    place = copied(own, tmp_path)
+    use(place, TINY, prefix)
+    everything = f"{prefix}all"
+    assert place.jobs(everything) == []
+    for name in LOST:
+        (tmp_path / "results" / name).unlink()
+    rules = {rule for rule, _ in place.jobs(everything)} - {everything}
+    assert {f"{prefix}{rule}" for rule in ("dynamics", "figure", "errata_table", "report")} < rules
+    assert all(rule.startswith(prefix) for rule in rules)
+    place.snakemake("--cores", "2", "--", everything, "mine.txt")
+    assert manifest(place) == manifest(own)
+    assert (tmp_path / "mine.txt").read_text().startswith("tiny: ")
+    assert place.jobs(everything) == []
+
+
+def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
+    place = Checkout(tmp_path, own.home)
+    use(place, TINY, "discs_", 'config:\n        config["discs"]\n    prefix:\n        "below"')
+    place.snakemake("--cores", "2", "--", "discs_all", "mine.txt")
+    assert manifest(place, "below/results") == manifest(own)
+    assert {*place.results("below/results")} == {*own.results()}
+    kept = json.loads((tmp_path / "below" / "results" / "configuration.json").read_text())
+    assert kept == TINY | {"results": "below/results"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        *("Snakefile", "mine.yaml", "mine.txt", "below", ".snakemake"),
+    }
+
+
+@pytest.mark.parametrize("more", ['config:\n        config["discs"]', ""])
+def test_as_a_module_it_plans_every_job_of_the_default_configuration(unbuilt, tmp_path, more):
+    place = Checkout(tmp_path, unbuilt)
+    use(place, yaml.safe_load(unbuilt.configuration.read_text()), "discs_", more)
+    alone = [(f"discs_{rule}", wildcards) for rule, wildcards in unbuilt.jobs()]
+    assert place.jobs("discs_all") == sorted([*alone, ("discs_all", ())])
