@@ -28,12 +28,7 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
 from twodiscs.studies.accuracy_cost import scalar
-from twodiscs.studies.effects.table import EffectsCost
-
-
-class Benchmark(EffectsCost):
-    """One row a benchmark and variant, all variants of a benchmark measured in one run."""
-
+from twodiscs.studies.effects.table import Benchmark, EffectsCost
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7

@@ -8,12 +8,12 @@ from inspect import isclass
 import numpy as np
 import pytest
 
-from twodiscs.benchmark import Benchmark
 from twodiscs.comparison import scene_tables
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Forecast, Theory
 from twodiscs.comparison.tables import LENGTH, NUMBER, TEXT, TIME, Column, Table
 from twodiscs.pipeline.documents.pages import described_tables
 from twodiscs.studies.catalogue import STUDY_TABLES
+from twodiscs.studies.effects.table import Benchmark
 
 EVERY_TABLE = SCENE_TABLES | STUDY_TABLES | {"forecast": Forecast, "benchmark": Benchmark}
 

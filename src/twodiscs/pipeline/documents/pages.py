@@ -8,12 +8,12 @@ folder where it is called.
 
 from pathlib import Path
 
-from twodiscs.benchmark import Benchmark
 from twodiscs.comparison import check
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Forecast
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document
 from twodiscs.studies.catalogue import STUDIES, STUDY_TABLES
+from twodiscs.studies.effects.table import Benchmark
 
 TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}
 

@@ -63,3 +63,7 @@ class EffectsCost(Table):
     """unit of the value"""
     ratio: NUMBER
     """how many times better than the baseline of the same run"""
+
+
+class Benchmark(EffectsCost):
+    """One row a benchmark and variant, all variants of a benchmark measured in one run."""
