@@ -62,7 +62,7 @@ def place(monkeypatch):
 
     def look_at(folder):
         monkeypatch.setattr(sources, "PACKAGE", folder)
-        for known in (sources._imports, sources._read, sources.fingerprint):
+        for known in (sources._file, sources._imports, sources._read, sources.fingerprint):
             known.cache_clear()
 
     real = sources.PACKAGE
@@ -298,3 +298,25 @@ def test_standard_library_only():
         check=True,
     )
     assert "twodiscs.pipeline.sources" in run.stdout.split()
+
+
+@pytest.mark.parametrize("damage", [None, "", "[1]", "{"])
+def test_what_is_remembered_of_sources_changes_no_fingerprint(place, package, monkeypatch, damage):
+    """The memory is by the text of each file; one that cannot be read is as good as none."""
+    monkeypatch.setattr(sources, "_used", {})
+    memory = package.parent / ".snakemake" / "memory.json"
+    memory.parent.mkdir()
+    monkeypatch.setattr(sources, "MEMORY", memory)
+    sources._memory.cache_clear()
+    first = sources.fingerprint("chain")
+    sources._remember()
+    assert len(json.loads(memory.read_text())) == len(sources.imported("chain"))
+    if damage is not None:
+        memory.write_text(damage)
+    place(package)
+    sources._memory.cache_clear()
+    if damage is None:
+        monkeypatch.setattr(sources, "_parsed", None)  # what is remembered is not parsed
+    assert sources.fingerprint("chain") == first
+    monkeypatch.undo()
+    sources._memory.cache_clear()
