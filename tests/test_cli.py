@@ -10,6 +10,7 @@ import pytest
 from fabricated import command
 
 from twodiscs import cli
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -181,7 +182,7 @@ def test_a_number_is_a_float_or_a_mistake_of_the_caller():
 @pytest.mark.parametrize(
     ("error", "sentence"),
     [
-        (ValueError("two\n  lines"), "error: two lines\n"),
+        (InputError("two\n  lines"), "error: two lines\n"),
         (FileNotFoundError(2, "No such file", "a.csv"), "error: a.csv: No such file\n"),
         (OSError("broken"), "error: broken\n"),
     ],

@@ -17,6 +17,9 @@ class InputError(ValueError):
     program, and keeps its traceback.
     """
 
+    def __init__(self, sentence):
+        super().__init__(" ".join(str(sentence).split()))
+
 
 def number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
@@ -63,9 +66,16 @@ def proportion(name, value):
     return float(value)
 
 
+def count(name, value, most=LARGEST_INTEGER):
+    """Return ``value`` ≥ 1 as an int, also from a float that is one, such as 1e6."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    return whole(name, value, 1, most)
+
+
 def one_of(name, value, allowed):
-    """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
-    if value not in allowed:
+    """Return ``value``; raise ``InputError`` unless it is one of the texts ``allowed``."""
+    if not isinstance(value, str) or value not in allowed:
         raise InputError(f"{name} must be one of {', '.join(allowed)}, not {value!r}")
     return value
 

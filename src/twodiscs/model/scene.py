@@ -33,7 +33,8 @@ class Scene:
 
     * ``depth``: the third side of the box; the discs are balls then.
     * ``radius_ratio``, ``mass_ratio``: of disc 2 to disc 1.
-    * ``periodic``: the axes ("x", "y", "z", as text such as "xy") with neither wall nor end.
+    * ``periodic``: the axes ("x", "y", "z", a list of them or text such as "xy") with neither wall
+      nor end.
     * ``field``: the acceleration g along −y, in speed²/length. Heights count from where each disc
       rests on the bottom, so the potential energy is never negative.
     * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
@@ -56,6 +57,8 @@ class Scene:
     def __post_init__(self):
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
+        if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
+            object.__setattr__(self, "periodic", "".join(self.periodic))
         for name in EFFECTS:
             if isinstance(getattr(self, name), bool):
                 raise InputError(f"{name} must not be a truth value, {getattr(self, name)!r}")
@@ -122,6 +125,16 @@ class Scene:
                 f"the parts of configuration space are unequal, too; at radius {self.radius!r} "
                 "they lack it"
             )
+
+    def __repr__(self):
+        sides = f"{self.width!r}, {self.height!r}, {self.radius!r}"
+        return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.effects.items())])})"
+
+    def __str__(self):
+        """Say what the scene is, in a line."""
+        words = [f"{name.replace('_', ' ')} {value}" for name, value in self.effects.items()]
+        discs = f"Two {self._what} of radius {self.radius!r} in a box of {self._box}"
+        return ", ".join([discs, *words])
 
     @property
     def _what(self):
@@ -266,8 +279,14 @@ class Scene:
 
     def _passable(self, axis):
         """Say whether the discs can exchange sides along ``axis``."""
-        if axis not in self.walled:
-            return False
+        return axis in self._passed
+
+    @cached_property
+    def _passed(self):
+        """The axes along which the discs can exchange sides."""
+        return tuple(axis for axis in self.walled if self._has_gap(axis))
+
+    def _has_gap(self, axis):
         if self._spread(axis) <= sum(self.exact_radii) ** 2:
             return False
         if axis == "y":

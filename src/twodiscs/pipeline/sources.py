@@ -58,7 +58,7 @@ def modules():
 
 def imports_of(module):
     """Return the modules that the code of one imports itself, named as by ``modules``."""
-    parents = {module[:depth] for depth in range(len(module) + 1)}
+    parents = {module[:depth] for depth in range(1, len(module) + 1)}
     return [name for name in _imports(module) if name not in parents]
 
 
@@ -169,17 +169,20 @@ def _cut_comments(lines, strings):
 
 @cache
 def _imports(name):
-    """Return the modules of this package that the module ``name`` imports, its parents included."""
+    """Return the modules of this package that the module ``name`` imports, its parents included.
+
+    But for the package itself: the face is imported with every module, and nothing depends on it.
+    """
     path = _file(name)
     here = name if path.name == "__init__.py" else name[:-1]
-    found = {name[:depth] for depth in range(len(name))}
+    found = {name[:depth] for depth in range(1, len(name))}
     for module, level, names in _read(path)[1]:
         base = _below_package(module)
         if level:
             base = here[: len(here) + 1 - level] + tuple(module.split(".") if module else ())
         targets = [] if base is None else [base, *((*base, name) for name in names)]
         for target in filter(None, targets):
-            found.update(target[:depth] for depth in range(len(target) + 1))
+            found.update(target[:depth] for depth in range(1, len(target) + 1))
     return [target for target in found if _file(target) is not None]
 
 

@@ -14,6 +14,10 @@ from twodiscs.model.events import DECLARED, EVENTS, SHELLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory import plain
 
+#: The least share of the prism, in which both centres keep to their ranges, that must be free of
+#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
+LEAST_SHARE = 1e-4
+
 
 @lru_cache(maxsize=1024)
 def measures(scene):
@@ -98,6 +102,16 @@ def exact(scene):
         "areas": areas(scene),
         "mean_times": mean_times(scene),
     }
+
+
+def free_share(scene):
+    """Return the share of the prism in which the discs are free, weighted in a field."""
+    ranges = (
+        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
+        for axis in scene.axes
+        for radius in scene.radii
+    )
+    return volume(scene) / math.prod(ranges)
 
 
 def shell_expectation(scene, event, epsilon):
