@@ -51,7 +51,8 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
     assert status == 0
     numbers = exact_numbers(Scene(1.5, 1, 0.3))
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line}
-    assert rows["volume"] == [repr(numbers["volume"])]
+    assert rows["volume"] == [repr(numbers["volume"]), "length⁴"]
+    assert rows["event"] == ["area", "(length³)", "mean", "time", "(time)"]
     for event in EVENTS:
         time = numbers["mean_times"][event]
         assert rows[event] == [

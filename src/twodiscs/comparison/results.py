@@ -21,7 +21,8 @@ from twodiscs.theory.exact_rows import theory_rows
 
 #: The columns that people read, and how wide they are.
 COLUMNS = {
-    "quantity": 22, "estimate": 15, "± error": 12, "exact": 15, "z": 7, "count": 14, "status": 0,
+    "quantity": 24, "estimate": 12, "± error": 10, "exact": 12, "unit": 9, "z": 7, "count": 12,
+    "status": 0,
 }  # fmt: skip
 
 
@@ -44,6 +45,7 @@ class Measurement:
     z: float | None
     count: int
     status: str
+    unit: str
     expectation: float | None = None
     bound: float | None = None
 
@@ -66,13 +68,13 @@ class Measurement:
             value = f"> {self.bound:.4g}"
         exact = "–" if self.exact is None else _with_error(self.exact, self.stderr)[0]
         z = "" if self.z is None else f"{self.z:+.2f}"
-        return self.quantity, value, error, exact, z, str(self.count), self.status
+        return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
 
     def __str__(self):
-        _, value, error, exact, z, number, status = self.cells()
+        _, value, error, exact, unit, z, number, status = self.cells()
         compared = f", exact {exact}" + (f", z = {z}" if z else "")
         error = f" ± {error}" if error else ""
-        return f"{self.quantity} = {value}{error}{compared}, {number} counted, {status}"
+        return f"{self.quantity} = {value}{error} {unit}{compared}, {number} counted, {status}"
 
     __repr__ = __str__
 
@@ -105,7 +107,9 @@ class Measurements(Mapping):
 
     def __init__(self, scene, rows):
         self.scene, self.rows = scene, rows
-        self._found = {row.get("event") or row["quantity"]: _measurement(row) for row in rows}
+        self._found = {
+            row.get("event") or row["quantity"]: _measurement(scene, row) for row in rows
+        }
 
     def __getitem__(self, name):
         return self._found[name]
@@ -127,11 +131,12 @@ class Measurements(Mapping):
     __repr__ = __str__
 
 
-def _measurement(row):
+def _measurement(scene, row):
+    quantity = row.get("quantity") or f"{row['event']}_time"
     return Measurement(
-        row.get("quantity") or f"{row['event']}_time",
+        quantity,
         row["estimate"], row["stderr"], row["exact"], row["z"],
-        row["count"] if "count" in row else row["hits"], row["status"],
+        row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"),
     )  # fmt: skip
 
@@ -164,7 +169,7 @@ class Intervals:
         status = "sampled" if first["mean_stderr"] else "too-few"
         self.mean = Measurement(
             f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
-            point["intervals"], status,
+            point["intervals"], status, "time",
         )  # fmt: skip
         a, b = self.counts[:2]
         share, total = point["bin_width"] * self.intervals, self.intervals
@@ -173,7 +178,14 @@ class Intervals:
         exact = None if scene.has_effects else density_at_zero(scene, self.hop)
         error, status = (None, "too-few") if few else (math.sqrt(square) / share, "extrapolated")
         self.at_zero = Measurement(
-            "density_at_zero", (1.5 * a - 0.5 * b) / share, error, exact, None, a + b, status
+            "density_at_zero",
+            (1.5 * a - 0.5 * b) / share,
+            error,
+            exact,
+            None,
+            a + b,
+            status,
+            "1/time",
         )
 
     @property

@@ -144,6 +144,12 @@ class Scene:
     def _box(self):
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
 
+    def unit(self, quantity):
+        """Return the unit of a "volume", an "area" or anything that is a "time"."""
+        powers = {"volume": "⁴⁶", "area": "³⁵"}
+        kind = quantity.rpartition("_")[2]
+        return f"length{powers[kind][self.depth is not None]}" if kind in powers else "time"
+
     def with_radius(self, radius):
         """Return the same scene with another radius of disc 1."""
         return replace(self, radius=radius)
@@ -287,6 +293,7 @@ class Scene:
         return tuple(axis for axis in self.walled if self._has_gap(axis))
 
     def _has_gap(self, axis):
+        """Say whether there are room and energy to pass along an axis with walls."""
         if self._spread(axis) <= sum(self.exact_radii) ** 2:
             return False
         if axis == "y":
