@@ -6,11 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.comparison import exact_rows
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.pipeline.arguments import run
-from twodiscs.theory import exact
+from twodiscs.theory import exact, exact_rows
 
 BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)

@@ -7,13 +7,13 @@ import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
 
-from twodiscs.comparison import check, exact_rows, rows, scores
+from twodiscs.comparison import check, rows, scores
 from twodiscs.comparison.scene_tables import Check
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.pipeline import jobs
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact
+from twodiscs.theory import exact, exact_rows
 
 SCENE = BOX.scene(0.2)
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell

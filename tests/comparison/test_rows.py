@@ -7,12 +7,13 @@ import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
-from twodiscs.comparison import estimates, exact_rows, rows
+from twodiscs.comparison import estimates, rows
 from twodiscs.comparison.scene_tables import Areas, Grid, MeanTimes, Theory, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
+from twodiscs.theory import exact_rows
 from twodiscs.theory.exact import exact, rate
 
 SCENE = BOX.scene(0.2)

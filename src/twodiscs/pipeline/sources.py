@@ -15,6 +15,8 @@ from functools import cache
 from hashlib import blake2b
 from pathlib import Path
 
+from twodiscs.model.checks import InputError
+
 PACKAGE = Path(__file__).resolve().parents[1]
 
 #: Where what is known of sources outlives a process, by the text of each; it may go at any time.
@@ -27,7 +29,7 @@ def imported(*modules, without=()):
     They are dotted names below the package, "dynamics.counting" say. Imports are followed wherever
     they stand, in functions too, through ``__init__.py`` files and relative names; a module that is
     imported by a computed name is not seen. Those in ``without`` are left out, with what only they
-    import: what they say is of no consequence there. Raises ``ValueError`` for a name that is no
+    import: what they say is of no consequence there. Raises ``InputError`` for a name that is no
     module of this package.
     """
     left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
@@ -44,7 +46,7 @@ def _parts(module):
     """Return the parts of the dotted name of a module below the package."""
     name = tuple(module.split(".")) if isinstance(module, str) else ()
     if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
-        raise ValueError(f"module must be a module of {PACKAGE.name}, not {module!r}")
+        raise InputError(f"module must be a module of {PACKAGE.name}, not {module!r}")
     return name
 
 
@@ -56,7 +58,7 @@ def modules():
 
 def imports_of(module):
     """Return the modules that the code of one imports itself, named as by ``modules``."""
-    parents = {module[:depth] for depth in range(len(module) + 1)}
+    parents = {module[:depth] for depth in range(1, len(module) + 1)}
     return [name for name in _imports(module) if name not in parents]
 
 
@@ -167,17 +169,20 @@ def _cut_comments(lines, strings):
 
 @cache
 def _imports(name):
-    """Return the modules of this package that the module ``name`` imports, its parents included."""
+    """Return the modules of this package that the module ``name`` imports, its parents included.
+
+    But for the package itself: the face is imported with every module, and nothing depends on it.
+    """
     path = _file(name)
     here = name if path.name == "__init__.py" else name[:-1]
-    found = {name[:depth] for depth in range(len(name))}
+    found = {name[:depth] for depth in range(1, len(name))}
     for module, level, names in _read(path)[1]:
         base = _below_package(module)
         if level:
             base = here[: len(here) + 1 - level] + tuple(module.split(".") if module else ())
         targets = [] if base is None else [base, *((*base, name) for name in names)]
         for target in filter(None, targets):
-            found.update(target[:depth] for depth in range(len(target) + 1))
+            found.update(target[:depth] for depth in range(1, len(target) + 1))
     return [target for target in found if _file(target) is not None]
 
 

@@ -22,6 +22,19 @@ from twodiscs.sampling.streams import open_stream
 #: Rows of an array of starts.
 COMPONENTS = 12
 
+#: Their names: in every scene, and what balls and rough discs append.
+PLANE, BALLS, ROUGH = (
+    ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2"),
+    ("z1", "z2", "w1", "w2"),
+    ("s1", "s2"),
+)
+
+
+def components(scene):
+    """Return the names of the components of a state of a ``Scene``."""
+    balls, rough = scene.depth is not None, scene.moment_of_inertia is not None
+    return PLANE + BALLS * balls + ROUGH * rough
+
 
 def origins(scene):
     """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None."""
@@ -121,3 +134,12 @@ def states(scene, number, seed, block=0, sides=(0, 0)):
     draw, prism = origins(scene)
     draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, found, prism)
     return found
+
+
+def records(scene, number, seed):
+    """Return ``states`` as an array of ``number`` records, with a field for each component."""
+    names, found = components(scene), states(scene, number, seed)
+    columns = np.empty(number, [(name, float) for name in names])
+    for name, row in zip(names, found, strict=False):
+        columns[name] = row
+    return columns

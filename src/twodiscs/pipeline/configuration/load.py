@@ -13,12 +13,14 @@ from difflib import get_close_matches
 import yaml
 
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
 from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
+from twodiscs.theory.exact import LEAST_SHARE, free_share
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -36,14 +38,10 @@ BELOW_THRESHOLD = 0.5
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9
 
-#: The least share of the prism, in which both centres keep to their ranges, that must be free of
-#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
-LEAST_SHARE = 1e-4
-
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class ConfigError(ValueError):
+class ConfigError(InputError):
     """A mistake in a configuration, told in one sentence."""
 
 
@@ -230,7 +228,7 @@ def _box(block, path):
     named = {name: value for name, value in named.items() if value != ABSENT[name]}
     try:
         return Box(sides["width"], sides["height"], named)
-    except ValueError as error:
+    except InputError as error:
         raise ConfigError(f"{path}.effects: {error}") from None
 
 
@@ -245,7 +243,7 @@ def _radii(asked, box, path):
             generated = even_radii(smallest, LAST_FRACTION * box.last_radius, asked["count"])
         else:
             generated = radii(box.width, box.height, smallest, asked["count"])
-    except ValueError as error:
+    except InputError as error:
         raise ConfigError(f"{path}: {error}") from None
     return _checked(tuple({*generated, *include}), box, path)
 
@@ -330,9 +328,9 @@ def _checked(found, box, path):
     for radius in found:
         try:
             scene = box.scene(radius)
-        except ValueError as error:
+        except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
-        if scene.has_effects and (share := _free_share(scene)) < LEAST_SHARE:
+        if scene.has_effects and (share := free_share(scene)) < LEAST_SHARE:
             raise ConfigError(
                 f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
                 f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
@@ -341,19 +339,6 @@ def _checked(found, box, path):
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
         seen.add(radius)
     return tuple(sorted(found))
-
-
-def _free_share(scene):
-    """Return the share of the prism in which the discs are free, weighted in a field."""
-    # Numerical packages are imported here, for nothing else needs them.
-    from twodiscs.theory import weighted
-
-    ranges = (
-        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
-        for axis in scene.axes
-        for radius in scene.radii
-    )
-    return weighted.volume(scene) / math.prod(ranges)
 
 
 def _shared(asked, all_have_effects):
