@@ -43,8 +43,8 @@ if MAIN:
             " --parameters {params.contents:q} --output {output.pdf:q} > {log:q} 2>&1"
 
 
-# Snakemake's own report. It is written by a second Snakemake while the first one still runs: that one
-# takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
+# The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one still
+# runs: it takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
 # the whole configuration, however that was put together, and the folder in which results came to be.
 
 
@@ -66,8 +66,10 @@ rule report:
         ],
         texts=sorted(map(str, HERE.glob("workflow/report/*.rst"))),
         style=str(HERE / "workflow/report/style.css"),
+        front=str(HERE / "workflow/report/front.html"),
     output:
         html=f"{RESULTS}/report.html",
+        workflow=f"{RESULTS}/report-workflow.html",
         configuration=f"{RESULTS}/configuration.json",
     log:
         log_of("report"),
@@ -80,11 +82,16 @@ rule report:
             sort_keys=True,
         ),
         snakefile=str(HERE / "Snakefile"),
+        scenes=json.dumps({"scenes": report_scenes()}),
+        code=code("pipeline.documents.report"),
     shell:
-        "printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
-        " snakemake --snakefile {params.snakefile:q} --report {output.html:q}"
-        " --report-stylesheet {input.style:q} --nolock --workflow-profile none"
-        " --configfile {output.configuration:q} -- {input.results:q} > {log:q} 2>&1"
+        "{{ printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
+        " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
+        ' "$@" --configfile {output.configuration:q} -- {input.results:q}; }};'
+        " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
+        " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results:q}"
+        " --template {input.front:q} --parameters {params.scenes:q}"
+        " --workflow report-workflow.html --output {output.html:q}; }} > {log:q} 2>&1"
 
 
 rule manifest:
