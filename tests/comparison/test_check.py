@@ -271,8 +271,9 @@ def theory_of(scene):
     return rows.exact_values(exact_rows.theory_rows(Box.of(scene), [scene.radius]))
 
 
-def test_the_sum_rule_is_for_plain_scenes():
-    for scene, expected in ((SCENE, ["sum_rule"]), (SCENES["rough"], [])):
+def test_the_sum_rule_is_for_equal_discs_between_walls():
+    cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
+    for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
         found = check.comparisons(scene, [], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected

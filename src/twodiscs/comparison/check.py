@@ -23,6 +23,7 @@ from itertools import groupby
 
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.rows import ordered
+from twodiscs.theory import virial
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
@@ -82,7 +83,7 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
     """Return one comparison for every estimate at a radius, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, for the sum rule of plain scenes wherever its three events were counted.
+    points, for the sum rule of virials wherever its three events were counted.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
@@ -99,7 +100,7 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
         )
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in ordered(dynamics):
-        if set(SUM_RULE) <= set(point["counts"]) and not scene.has_effects:
+        if set(SUM_RULE) <= set(point["counts"]) and virial.weights(scene):
             rows.append(_sum_rule(scene.with_radius(point["radius"]), point))
     return sorted(rows, key=lambda row: row["radius"])
 
