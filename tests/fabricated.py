@@ -104,11 +104,19 @@ class Laws:
         width, intervals = mean / 4, math.ceil(relative**-2)
         edges = np.exp(-0.25 * np.arange(13))
         counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
+
+        def of_chains(counts):
+            """Return counts and sums of squares of chains that hold them by Poisson's law."""
+            whole = [int(n) for n in counts]
+            return {"counts": whole, "squares": [n + -(-n * n // chains) for n in whole]}
+
+        wide = [0, 1, 2, 4, 8, 12]
         return {
             "radius": self.scene.radius,
             "event": "vertical_hop",
             "bin_width": width,
-            "counts": [int(n) for n in counts[:-1]],
+            **of_chains(counts[:-1]),
+            "wide": {"edges": wide, **of_chains(np.add.reduceat(counts[:-1], wide[:-1]))},
             "overflow": int(counts[-1]),
             "intervals": intervals,
             "chains": chains,

@@ -242,7 +242,8 @@ def agreement(folder, scene):
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
     events = sum(point["events"] for point in points.values())
-    counts = f"{len(points)} | {len(compared)} | {max(compared):.1f} | {events:.1e}"
+    independent = sum(row["independent"] for row in rows)
+    counts = f"{len(points)} | {len(compared)} | {independent} | {max(compared):.1f} | {events:.1e}"
     return f"| {scene.box.width:g} × {scene.box.height:g} | {counts.replace('e+', 'e')} |"
 
 

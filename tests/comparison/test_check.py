@@ -253,7 +253,7 @@ def test_a_common_shift_below_one_error_shows_in_the_mean():
 
 def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
     rng = np.random.default_rng(6)
-    interval = {**laws[1].intervals(rng), "chains": 50}
+    interval = laws[1].intervals(rng, chains=50)
     dynamics = laws[1].dynamics(rng, replicas=64, relative=1e-2)
     found = table_of({"dynamics": [dynamics], "intervals": [interval]}, theory)
     untested = [row for row in found if row["passed"] is None]
@@ -271,8 +271,9 @@ def theory_of(scene):
     return rows.exact_values(exact_rows.theory_rows(Box.of(scene), [scene.radius]))
 
 
-def test_the_sum_rule_is_for_plain_scenes():
-    for scene, expected in ((SCENE, ["sum_rule"]), (SCENES["rough"], [])):
+def test_the_sum_rule_is_for_equal_discs_between_walls():
+    cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
+    for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
         found = check.comparisons(scene, [], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
@@ -312,9 +313,9 @@ def test_a_verdict_sums_up_what_passed(good):
     failures, text = check.verdict({"good": good, "again": good})
     assert failures == []
     largest = max(abs(row["z"]) for row in good)
-    line = f"132 comparisons passed, largest |z| {largest:.3g}; "
+    line = f"132 comparisons passed, 80 of them independent tests, largest |z| {largest:.3g}; "
     few = sum(row["status"] in ("too-few", "none-seen") for row in good)
-    line += f"{few} of them had too few events for an error, 0 more could not be compared\n"
+    line += f"{few} had too few events for an error, 0 more could not be compared\n"
     assert text == f"good: {line}again: {line}"
     assert check.verdict({}) == ([], "")
 
@@ -324,9 +325,20 @@ def test_a_verdict_says_what_could_not_be_compared(laws, theory):
     failures, text = check.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)})
     assert failures == []
     assert text.startswith("scene: 6 comparisons passed, ")
-    assert text.endswith(
-        "6 of them had too few events for an error, 1 more could not be compared\n"
-    )
+    assert text.endswith("6 had too few events for an error, 1 more could not be compared\n")
+
+
+def test_independent_rows_could_fail_and_follow_from_no_other(good):
+    independent = [row for row in good if row["independent"]]
+    assert {row["comparison"] for row in independent} == {
+        "volume", "area", "mean_time", "hop_interval",
+    }  # fmt: skip
+    others = [row for row in good if not row["independent"]]
+    for row in others:
+        derived = row["comparison"] in ("sum_rule", "z_mean", "z_spread")
+        assert derived or row["test"] == "certain" or row["quantity"] == "any_wall_area"
+    assert not any(row["test"] == "certain" for row in independent)
+    assert len(independent) == 80
 
 
 def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):

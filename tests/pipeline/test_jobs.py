@@ -110,7 +110,7 @@ def test_every_table_is_found_by_its_name(name):
 
 def test_verdict_writes_a_line_a_scene_or_names_what_failed(run, tmp_path, capsys):
     good = Check.empty(comparison="volume", quantity="volume", method="monte_carlo", radius=0.1)
-    good |= {"z": 0.5, "bound": 4.0, "passed": True}
+    good |= {"z": 0.5, "bound": 4.0, "passed": True, "independent": True}
     bad = good | {"radius": 0.2, "z": 9.0, "passed": False}
     for scene, rows in {"a": [good], "b": [good, bad]}.items():
         (tmp_path / scene).mkdir()
@@ -118,7 +118,7 @@ def test_verdict_writes_a_line_a_scene_or_names_what_failed(run, tmp_path, capsy
     words = ("verdict", "comparison.check", "--table", "a=a/check.csv")
     assert run(*words, "--output", "check.passed") == 0
     text = (tmp_path / "check.passed").read_text()
-    assert text.startswith("a: 1 comparisons passed, largest |z| 0.5;")
+    assert text.startswith("a: 1 comparisons passed, 1 of them independent tests, largest |z| 0.5;")
     assert capsys.readouterr().out == text
     assert run(*words, "b=b/check.csv", "--output", "other") == 1
     said = capsys.readouterr().err

@@ -4,7 +4,7 @@ A point is what one job found at one radius, a dict as read from its file. Rows 
 columns that ``scene_tables`` declares, ordered by radius, then as in ``EVENTS``.
 """
 
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from twodiscs.comparison import estimates, scores
 from twodiscs.model.checks import InputError
@@ -196,7 +196,7 @@ def histogram_rows(exact, points):
     """
     rows = []
     for point in ordered(points):
-        event, width, intervals = point["event"], point["bin_width"], point["intervals"]
+        event, intervals = point["event"], point["intervals"]
         exact_mean = _exact(exact, point["radius"], f"{event}_time")
         z, stderr = None, point["stderr"]
         if point["chains"] < estimates.HONEST or not stderr:
@@ -204,25 +204,37 @@ def histogram_rows(exact, points):
         elif intervals >= scores.NORMAL and exact_mean is not None:
             t = (point["mean"] - exact_mean) / stderr
             z = scores.student_deviate(t, point["chains"] - 1)
-        for i, count in enumerate(point["counts"]):
-            density = estimates.binomial_estimate(count, intervals, 1 / width)
-            rows.append(
-                {
-                    "radius": point["radius"],
-                    "event": event,
-                    "left": i * width,
-                    "right": (i + 1) * width,
-                    "count": count,
-                    "density": density.value if density else 0.0,
-                    "stderr": density and density.stderr,
-                    "intervals": intervals,
-                    "exact_mean": exact_mean,
-                    "mean": point["mean"],
-                    "mean_stderr": stderr,
-                    "z": z,
-                }
-            )
+        common = {
+            "intervals": intervals,
+            "exact_mean": exact_mean,
+            "mean": point["mean"],
+            "mean_stderr": stderr,
+            "z": z,
+        }
+        rows += [
+            {"radius": point["radius"], "event": event, **row, **common} for row in _bin_rows(point)
+        ]
     return rows
+
+
+def _bin_rows(point):
+    """Yield the rows of the bins of a point, equal ones and wide ones."""
+    width, chains = point["bin_width"], point["chains"]
+    equal = {"edges": range(len(point["counts"]) + 1), **point}
+    for bins, one in (("equal", equal), ("wide", point["wide"])):
+        parts = zip(pairwise(one["edges"]), one["counts"], one["squares"], strict=True)
+        for (left, right), count, squares in parts:
+            per_chain = chains / (point["intervals"] * (right - left) * width)
+            sums = {"n": per_chain}, {"n": count}, {"n*n": squares}
+            density = estimates.combination(*sums, chains)
+            yield {
+                "bins": bins,
+                "left": left * width,
+                "right": right * width,
+                "count": count,
+                "density": density.value,
+                "stderr": density.stderr or None,
+            }
 
 
 def cost_rows(points, forecast=None):

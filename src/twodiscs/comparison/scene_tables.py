@@ -154,6 +154,8 @@ class HopHistogram(Table):
     radius: LENGTH
     event: TEXT
     """the hop"""
+    bins: TEXT
+    """equal, as wide as τ/16 or so; wide: the same intervals, in bins that widen with time"""
     left: TIME
     """lower edge of the bin"""
     right: TIME
@@ -164,7 +166,8 @@ class HopHistogram(Table):
     """count/(intervals × width of the bin)"""
     stderr: RATE
     """
-    binomial standard error of the density, as if intervals were independent; empty for an empty bin
+    its standard error from the spread between independent chains, each of 256 successive intervals;
+    empty for an empty bin
     """
     intervals: COUNT
     """intervals in all, those beyond the last bin included"""
@@ -201,6 +204,12 @@ class Check(Table):
     """largest |z| that passes"""
     passed: TRUTH
     """whether |z| ≤ bound; empty where nothing can be compared"""
+    independent: TRUTH
+    """
+    whether the row could fail and follows from no other row: false for what is certain, for what is
+    put together from other rows (any_wall_area of two shells, the sum rule) and for z_mean and
+    z_spread
+    """
     status: TEXT
     """status of the estimate in its own table"""
     test: TEXT
