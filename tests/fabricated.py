@@ -9,7 +9,7 @@ import numpy as np
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.pipeline.arguments import run
-from twodiscs.theory import exact, exact_rows
+from twodiscs.theory import exact
 
 BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
@@ -21,7 +21,7 @@ def scenes(radii=RADII):
 
 def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
-    return exact_rows.theory_rows(BOX, radii)
+    return exact.theory_rows(BOX, radii)
 
 
 class Laws:

@@ -306,7 +306,7 @@ def checked(tmp_path_factory):
         for key in scene.keys[stage]:
             job("point", module, scene.job(stage, key), points / stage / f"{key}.json")
     theory = job(
-        "table", "theory.exact_rows", scene.theory_job(), folder / "theory.csv",
+        "table", "theory.exact", scene.theory_job(), folder / "theory.csv",
         "--function", "theory_rows",
     )  # fmt: skip
     return job(

@@ -117,7 +117,7 @@ def point(stage):
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
     box = Box.of(SCENE)
-    exact = rows.exact_values(jobs.function_of("theory.exact_rows", "theory_rows")(box, [0.2]))
+    exact = rows.exact_values(jobs.function_of("theory.exact", "theory_rows")(box, [0.2]))
     assert simulated.rows == rows.mean_time_rows(SCENE, exact, [point("dynamics")])
     found = point("monte_carlo")
     areas = rows.area_rows(SCENE, exact, [found])

@@ -92,7 +92,7 @@ def _exact(scene, options):
     numbers = twodiscs.exact(scene)
     if options.csv:
         from twodiscs.model.box import Box
-        from twodiscs.theory.exact_rows import theory_rows
+        from twodiscs.theory.exact import theory_rows
 
         _print_csv(theory_rows(Box.of(scene), [scene.radius]))
     elif options.json:

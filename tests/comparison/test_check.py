@@ -13,7 +13,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.pipeline import jobs
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact, exact_rows
+from twodiscs.theory import exact
 
 SCENE = BOX.scene(0.2)
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
@@ -268,7 +268,7 @@ def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
 
 
 def theory_of(scene):
-    return rows.exact_values(exact_rows.theory_rows(Box.of(scene), [scene.radius]))
+    return rows.exact_values(exact.theory_rows(Box.of(scene), [scene.radius]))
 
 
 def test_the_sum_rule_is_for_equal_discs_between_walls():

@@ -13,8 +13,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.theory import exact_rows
-from twodiscs.theory.exact import exact, rate
+from twodiscs.theory import exact
+from twodiscs.theory.exact import rate
 
 SCENE = BOX.scene(0.2)
 
@@ -47,12 +47,12 @@ def test_a_radius_must_not_come_twice(theory, laws):
 @pytest.mark.parametrize("box", [BOX, Box(1.5, 1.0, {"periodic": "x", "field": 0.3})])
 def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
     radii = (0.3, 0.1)
-    found = exact_rows.theory_rows(box, radii)
+    found = exact.theory_rows(box, radii)
     Theory.write(tmp_path / "theory.csv", found)
     assert Theory.read(tmp_path / "theory.csv") == found
     values = iter(found)
     for radius in radii:
-        numbers = exact(box.scene(radius))
+        numbers = exact.exact(box.scene(radius))
         expected = [("volume", numbers["volume"])]
         expected += [(f"{event}_area", numbers["areas"][event]) for event in EVENTS]
         expected += [(f"{event}_time", numbers["mean_times"][event]) for event in EVENTS]
@@ -62,7 +62,7 @@ def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
 
 
 def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
-    found = exact_rows.grid_rows(BOX, RADII)
+    found = exact.grid_rows(BOX, RADII)
     Grid.write(tmp_path / "grid.csv", found)
     assert [row["radius"] for row in found] == list(RADII)
     regimes = {row["radius"]: (row["regime"], row["ergodic_components"]) for row in found}
@@ -273,7 +273,7 @@ def test_rows_of_the_histogram(theory, laws):
 def exact_of(*scenes):
     """Return the exact values as theory.csv has them: of all events, whatever has a place."""
     radii = [scene.radius for scene in scenes]
-    return rows.exact_values(exact_rows.theory_rows(Box.of(scenes[0]), radii))
+    return rows.exact_values(exact.theory_rows(Box.of(scenes[0]), radii))
 
 
 @pytest.mark.parametrize("name", SCENES)

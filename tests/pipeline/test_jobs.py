@@ -73,7 +73,7 @@ def test_a_long_job_says_what_it_has_done_and_what_is_left(run, capsys):
 def exact_table(path, function="theory_rows", radii=RADII):
     """Return the words that make theory.csv, or another exact table."""
     given = {"box": BOX.parameters(), "radii": list(radii)}
-    return ("table", "theory.exact_rows", "--function", function, "--parameters", given,
+    return ("table", "theory.exact", "--function", function, "--parameters", given,
             "--output", path)  # fmt: skip
 
 
@@ -206,8 +206,8 @@ MISTAKES = {
         "event must be one of vertical_hop, horizontal_hop, not 'top_wall'",
     ),
     "a function of another name": (
-        words("table", "theory.exact_rows", OF_BOX | {"radii": [0.1]}),
-        "theory.exact_rows must have a function rows",
+        words("table", "theory.exact", OF_BOX | {"radii": [0.1]}),
+        "theory.exact must have a function rows",
     ),
     "no such table": (exact_table("output"), "there is no table called 'output'"),
     "a path without a name": (

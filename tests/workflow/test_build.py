@@ -57,7 +57,7 @@ def test_another_run_on_one_core_gives_the_same_bytes(complete, tmp_path_factory
 
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
-    built.replace("src/twodiscs/theory/exact_rows.py", '"exact": x}', wrong)
+    built.replace("src/twodiscs/theory/exact.py", '"exact": x}', wrong)
     run = built.snakemake("--cores", "2", "check", passes=False)
     assert run.returncode != 0
     said = run.stdout + run.stderr

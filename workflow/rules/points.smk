@@ -11,9 +11,9 @@ rule grid:
         benchmark_of("{scene}/grid")
     params:
         job=lambda w: as_json(SCENES[w.scene].grid_job()),
-        code=table_code("theory.exact_rows", SCENE_TABLES["grid"]),
+        code=table_code("theory.exact", SCENE_TABLES["grid"]),
     shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact_rows --function grid_rows"
+        "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
         " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
 
 
@@ -26,9 +26,9 @@ rule theory:
         benchmark_of("{scene}/theory")
     params:
         job=lambda w: as_json(SCENES[w.scene].theory_job()),
-        code=table_code("theory.exact_rows", SCENE_TABLES["theory"]),
+        code=table_code("theory.exact", SCENE_TABLES["theory"]),
     shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact_rows --function theory_rows"
+        "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
         " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
 
 

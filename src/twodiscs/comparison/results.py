@@ -16,8 +16,7 @@ from twodiscs.model.checks import InputError, count, one_of, proportion
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
-from twodiscs.theory.exact import LEAST_SHARE, free_share
-from twodiscs.theory.exact_rows import theory_rows
+from twodiscs.theory.exact import LEAST_SHARE, free_share, theory_rows
 
 #: The columns that people read, and how wide they are.
 COLUMNS = {
