@@ -344,5 +344,5 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
 
 def test_the_example_passes(checked, monkeypatch, tmp_path):
     words = ("--table", f"look={checked}", "--output", tmp_path / "check.passed")
-    assert command(monkeypatch, jobs, "verdict", "comparison.check", *words) == 0
+    assert command(monkeypatch, jobs, "verdict", "pipeline.results.verdict", *words) == 0
     assert (tmp_path / "check.passed").read_text().startswith("look: ")

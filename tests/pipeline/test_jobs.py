@@ -115,7 +115,7 @@ def test_verdict_writes_a_line_a_scene_or_names_what_failed(run, tmp_path, capsy
     for scene, rows in {"a": [good], "b": [good, bad]}.items():
         (tmp_path / scene).mkdir()
         Check.write(tmp_path / scene / "check.csv", rows)
-    words = ("verdict", "comparison.check", "--table", "a=a/check.csv")
+    words = ("verdict", "pipeline.results.verdict", "--table", "a=a/check.csv")
     assert run(*words, "--output", "check.passed") == 0
     text = (tmp_path / "check.passed").read_text()
     assert text.startswith("a: 1 comparisons passed, 1 of them independent tests, largest |z| 0.5;")
@@ -215,8 +215,12 @@ MISTAKES = {
         "--table must be given as NAME=VALUE, not 'theory.csv'",
     ),
     "a table that is not there": (
-        words("verdict", "comparison.check", {}, "--table", "a=no/check.csv"),
+        words("verdict", "pipeline.results.verdict", {}, "--table", "a=no/check.csv"),
         "no/check.csv: No such file or directory",
+    ),
+    "no table for a verdict": (
+        words("verdict", "pipeline.results.verdict", {}),
+        "verdict needs --table, the check table of a scene or of several",
     ),
     "a table that is needed": (
         words("figure", "figures.hop_histogram", OF_BOX),
