@@ -9,6 +9,7 @@ import math
 from fractions import Fraction
 from itertools import pairwise, product
 
+import effect_scenes
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -139,7 +140,8 @@ def around(axes, square):
 
 def reference(scene):
     """Return {"volume": V, event: A, …} of a scene in the plane."""
-    square = sum(mpf(r) for r in scene.radii) ** 2
+    contact = scene.exact_contact
+    square = (mpf(contact.numerator) / contact.denominator) ** 2
     m1, m2 = (mpf(m) for m in scene.masses)
     relative, components = mp.sqrt(1 / m1 + 1 / m2), mpf(scene.velocity_components)
 
@@ -551,6 +553,7 @@ FLUXES = [
     Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, field=2.0, periodic="x"),
     Scene(1.5, 1.0, 0.2, depth=1.2, radius_ratio=0.7, mass_ratio=2.0, field=0.5, periodic="z"),
     Scene(1.5, 1.0, 0.3, depth=0.9),
+    *(scene for scene in effect_scenes.SCENES.values() if scene.depth is None),
 ]
 
 

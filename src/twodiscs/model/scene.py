@@ -209,12 +209,12 @@ class Scene:
     @cached_property
     def range_x(self):
         """A = w − σ: the largest separation x1 − x2 between walls, and an equal disc's range."""
-        return self.width - self.contact_distance
+        return self.width - sum(self.radii)
 
     @cached_property
     def range_y(self):
         """B = h − σ: the same along y; neither means anything on a periodic axis."""
-        return self.height - self.contact_distance
+        return self.height - sum(self.radii)
 
     @cached_property
     def contact_distance(self):
@@ -225,6 +225,11 @@ class Scene:
     def exact_radii(self):
         """The radii of the discs as fractions; the same doubles as ``radii``."""
         return tuple(map(Fraction, self.radii))
+
+    @cached_property
+    def exact_contact(self):
+        """σ as a fraction."""
+        return sum(self.exact_radii)
 
     def reach(self, axis):
         """Return the largest separation of the centres along ``axis``, as an exact fraction.
@@ -246,7 +251,7 @@ class Scene:
             return False
         if any(self.reach(axis) <= 0 for axis in self.axes):
             return False
-        return self._spread() > sum(self.exact_radii) ** 2
+        return self._spread() > self.exact_contact**2
 
     @cached_property
     def largest_radius(self):
@@ -278,7 +283,7 @@ class Scene:
         """
         if not self.field:
             return 0.0
-        square = sum(self.exact_radii) ** 2 - spread
+        square = self.exact_contact**2 - spread
         apart = math.sqrt(square) if square > 0 else 0.0
         (r1, r2), (m1, m2) = self.radii, self.masses
         return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
@@ -294,7 +299,7 @@ class Scene:
 
     def _has_gap(self, axis):
         """Say whether there are room and energy to pass along an axis with walls."""
-        if self._spread(axis) <= sum(self.exact_radii) ** 2:
+        if self._spread(axis) <= self.exact_contact**2:
             return False
         if axis == "y":
             (r1, r2), (m1, m2) = self.radii, self.masses
@@ -342,7 +347,7 @@ class Scene:
         if r1 <= r2:
             return True
         behind = (r1 - r2) ** 2
-        if self._spread(axis) + behind <= (r1 + r2) ** 2:
+        if self._spread(axis) + behind <= self.exact_contact**2:
             return True
         return self._lowest_potential(self._spread(axis, "y") + behind) >= ENERGY
 

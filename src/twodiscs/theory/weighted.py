@@ -318,7 +318,7 @@ class _Space:
 
     def __init__(self, scene, power):
         self.scene, self.power = scene, power
-        self.sigma = sum(scene.exact_radii)
+        self.sigma = scene.exact_contact
         self.order = sorted(scene.axes, key="yxz".index)
 
     def intervals(self, axis):
