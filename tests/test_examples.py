@@ -27,7 +27,10 @@ from twodiscs.pipeline import jobs
 from twodiscs.pipeline.configuration import load
 from twodiscs.pipeline.configuration.request import STAGES
 
-PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+PAGES = [
+    *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),
+    *sorted((REPOSITORY / "docs").glob("*.md")),
+]
 NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
 
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -120,7 +123,9 @@ def test_every_block_is_of_a_kind_that_is_tried(name):
     assert {kind for kind, _ in blocks(name)} <= {
         "yaml", "console", "shell", "python", "math", "text",
     }  # fmt: skip
-    assert {words[0] for words, _ in examples(name)} <= {"twodiscs", "snakemake", "make"}
+    assert {words[0] for words, _ in examples(name)} <= {
+        "twodiscs", "snakemake", "make", "source", "ruff", "snakefmt",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -147,6 +152,15 @@ def test_citation_agrees_with_the_package():
     assert f'license = "{citation["license"]}"' in package
     assert f"{citation['license']} License" in (REPOSITORY / "LICENSE").read_text(encoding="utf-8")
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
+
+
+def test_the_engine_has_one_ratio_everywhere():
+    found = re.search(
+        r"([\d.]+) times as many .+AVX2; ([\d.]+) times with AVX-512", page("README.md")
+    )
+    avx2, avx512 = found.groups()
+    assert f"| lock-step ensemble, counting | {avx512} |" in page("docs/engine.md")
+    assert f"the first ratio is {avx2}: " in page("docs/engine.md")
 
 
 @pytest.mark.parametrize("name", NAMES)
