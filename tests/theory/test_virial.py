@@ -27,7 +27,9 @@ def turned(scene, axis):
     """Return the same scene with the walls of ``axis`` to the right and to the left."""
     sides = {"x": scene.width, "y": scene.height, "z": scene.depth}
     first = sides.pop(axis)
-    return replace(scene, width=first, **dict(zip(("height", "depth"), sides.values(), strict=True)))
+    return replace(
+        scene, width=first, **dict(zip(("height", "depth"), sides.values(), strict=True))
+    )
 
 
 @pytest.mark.parametrize(

@@ -30,12 +30,13 @@ AREAS = {"collision_area", "wall_area"}
 TIMES = {"mean_collision_time", "mean_wall_time"}
 HOPS = {"vertical_hop_area", "horizontal_hop_area", "mean_hop_time", "hopping_trajectory"}
 CALLED = {
-    "unequal": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+    "unequal": {"volume", "hop_histogram", "pressure", *AREAS, *TIMES, *HOPS},
     "torus": {"volume", "collision_area", "mean_collision_time"},
-    "channel": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS} - {"horizontal_hop_area"},
+    "channel": {"volume", "hop_histogram", "pressure", *AREAS, *TIMES, *HOPS}
+    - {"horizontal_hop_area"},
     "field": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
-    "rough": {"volume", *AREAS, *TIMES, *HOPS},
-    "balls": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+    "rough": {"volume", "pressure", *AREAS, *TIMES, *HOPS},
+    "balls": {"volume", "hop_histogram", "pressure", *AREAS, *TIMES, *HOPS},
 }
 
 
