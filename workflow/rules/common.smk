@@ -221,5 +221,6 @@ def manuscript_job(results):
             }
             for scene in CONFIGURATION.plain
         ],
+        "seed": CONFIGURATION.seed,
         "tables": shared_tables(),
     }
