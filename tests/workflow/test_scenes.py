@@ -36,8 +36,9 @@ WATCHED = {
 ALL = {name for name, figure in FIGURES.items() if figure.needs}
 HOPS = {"vertical_hop_area", "horizontal_hop_area", "mean_hop_time", "hopping_trajectory"}
 CALLED = {
-    "torus": ALL - {*HOPS, "hop_histogram", "wall_area", "mean_wall_time"},
+    "torus": ALL - {*HOPS, "hop_histogram", "wall_area", "mean_wall_time", "pressure"},
     "channel": ALL - {"horizontal_hop_area"},
+    "field": ALL - {"pressure"},
     "rough": ALL - {"hop_histogram"},
 }
 

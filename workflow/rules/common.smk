@@ -221,6 +221,7 @@ def manuscript_job(results):
             }
             for scene in CONFIGURATION.plain
         ],
+        "seed": CONFIGURATION.seed,
         "tables": shared_tables(),
     }
 

@@ -4,7 +4,7 @@ from twodiscs.pipeline.results.manifest import is_reproducible
 
 PAPER = {
     name: str(HERE / "paper" / name)
-    for name in ("paper.typ", "results.typ", "references.bib")
+    for name in ("paper.typ", "results.typ", "references.bib", "../CITATION.cff")
 }
 
 
@@ -13,7 +13,7 @@ if MAIN:
     rule paper:
         input:
             template=PAPER["paper.typ"],
-            others=[PAPER["results.typ"], PAPER["references.bib"]],
+            others=list(PAPER.values())[1:],
             figures=[files[0] for files in figure_files(MAIN).values()],
             tables=[
                 path

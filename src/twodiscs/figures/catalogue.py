@@ -31,7 +31,8 @@ class Entry:
     of no scene reads where they are. ``needs`` are quantities, named as those of theory.csv or
     ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are watched, and is of
     use if any is. A drawing needs nothing: it takes the sides of the box alone, and shows equal
-    discs between walls. ``of_plain`` figures are for such scenes only.
+    discs between walls. ``of_plain`` figures are for such scenes only, and ``without`` are effects
+    in which a figure says nothing.
     """
 
     title: str
@@ -45,6 +46,7 @@ class Entry:
     main_tables: tuple = ()
     needs: frozenset = field(default_factory=frozenset)
     of_plain: bool = False
+    without: frozenset = field(default_factory=frozenset)
     options: dict = field(default_factory=dict)
 
     def is_called(self, watched, effects=()):
@@ -52,7 +54,7 @@ class Entry:
 
         ``effects`` are those of the scene, if it has any.
         """
-        if effects and (self.of_plain or not self.needs):
+        if effects and (self.of_plain or not self.needs or not self.without.isdisjoint(effects)):
             return False
         return not self.needs or not self.needs.isdisjoint(watched)
 
@@ -286,6 +288,25 @@ FIGURES = {
         label=r"mean time between wall hits $\tau$",
         place="lower left",
         laws=("small", "last"),
+    ),
+    "pressure": Entry(
+        "Pressures and virials",
+        DYNAMICS,
+        """
+        Force of disc 1 on the right and the top wall, over that of an ideal gas of one particle
+        (dotted): exact (lines) and from the hits that dynamics counted (symbols), each of which
+        hands over the same momentum in the mean.
+        """,
+        "figures.pressure",
+        plain="""
+        Dashed lines in (a) are the leading laws below the largest radius. (b) The virials of the walls and
+        of the collisions of the discs, over twice the mean kinetic energy: those of the walls less
+        that of collisions are one at every radius.
+        """,
+        note="simulated",
+        tables=("mean_times",),
+        needs=frozenset({"right_wall_time", "top_wall_time"}),
+        without=frozenset({"field"}),
     ),
     "hop_histogram": Entry(
         "Times between hops",
