@@ -45,6 +45,7 @@ def agreement(folder, scene):
         "box": scene["box"],
         "comparisons": len(rows),
         "events": sum(row["events"] for row in cost),
+        "independent": sum(row["independent"] for row in rows),
         "failed": sum(not row["passed"] for row in rows),
         "largest": max((abs(row["z"]) for row in rows), default=0.0),
         "name": scene["name"],
