@@ -65,6 +65,7 @@ async function look() {
             selector => place(document.querySelector(selector)).top),
         opening: place(document.querySelector("#animation img")).bottom,
         wider: document.documentElement.scrollWidth - innerWidth,
+        hidden: place(document.querySelector("#agreement")).right - innerWidth,
         smallest: Math.min(...all("p, td, th, figcaption, li").map(
             element => parseFloat(getComputedStyle(element).fontSize))),
         links: all("a").map(link => link.getAttribute("href")),
@@ -217,6 +218,7 @@ def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front)
     assert rest == sorted(rest)
     assert front["last"] == "rules"
     assert front["wider"] <= 0
+    assert front["hidden"] <= 0, "the table of agreement has to be pushed aside"
     assert front["smallest"] >= 13
     if front["width"] > 1000:
         assert front["opening"] < 1000, "the animation is in the first window"
