@@ -26,8 +26,9 @@ exist. Lengths are in the unit of the box, and the time unit is that in which th
 is one.\
 """
 
-#: What stands before and after the rows of studies in README.md.
-MARKS = "<!-- studies -->\n", "<!-- end of studies -->\n"
+#: What stands before and after the rows of studies in README.md; on lines of their own, comments
+#: would end the table.
+MARKS = "<!-- studies --> |\n", "| <!-- end of studies -->"
 
 
 def _plain(text):

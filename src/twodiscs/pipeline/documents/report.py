@@ -45,6 +45,7 @@ def agreement(folder, scene):
         "box": scene["box"],
         "comparisons": len(rows),
         "events": sum(row["events"] for row in cost),
+        "independent": sum(row["independent"] for row in rows),
         "failed": sum(not row["passed"] for row in rows),
         "largest": max((abs(row["z"]) for row in rows), default=0.0),
         "name": scene["name"],
@@ -61,7 +62,7 @@ def figure(folder, path, scenes):
         caption += f" Scene {scene['name']}, {scene['box']}."
     data = Path(folder, path).read_bytes()
     return {
-        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(caption))),
+        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(caption)))),
         "title": entry.title,
         "uri": f"data:image/png;base64,{b64encode(data).decode()}",
         "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
@@ -137,9 +138,11 @@ def contents(folder, files, scenes, dot, workflow):
 
 
 def short(number):
-    """Return a large number to two digits, as HTML: 4.4 × 10¹⁰."""
+    """Return a number, to two digits if it is large, as HTML: 4.4 × 10¹⁰."""
+    if number < 1000:
+        return str(number)
     digits, exponent = f"{number:.1e}".split("e")
-    return Markup(f"{digits} × 10<sup>{int(exponent)}</sup>") if number else "0"
+    return Markup(f"{digits} × 10<sup>{int(exponent)}</sup>")
 
 
 def page(template, shown):
