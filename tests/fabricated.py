@@ -70,23 +70,17 @@ class Laws:
         slowest = max(self.times[event] for event in events if event in self.times)
         duration = 2 * slowest / (relative**2 * replicas)
         counts = {}
-        confined = dict(zip(("right_wall", "top_wall"), self.scene.confined, strict=True))
-        eligible = {}
         for event in events:
-            mean = duration / self.times[event] if event in self.times else 0.0
+            mean = 0.0
+            if event in self.times:
+                mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
-            eligible[event] = replicas // 2 if confined.get(event) else replicas
-            if confined.get(event):
-                # The starts in a component alternate for one wall, and come in pairs for the other.
-                turn = np.arange(replicas) // (1 if event == "right_wall" else 2)
-                counts[event][turn % 2 == 1] = 0
         return {
             "radius": self.scene.radius,
             "duration": duration,
             "replicas": replicas,
             "rounds": 1,
             "events": 10**6,
-            "eligible": eligible,
             "counts": {event: int(counts[event].sum()) for event in events},
             "products": {
                 f"{a}*{b}": int((counts[a] * counts[b]).sum())
@@ -95,6 +89,7 @@ class Laws:
             },
             "target": dict.fromkeys(events, relative),
             "status": {e: "reached" if e in self.times else "impossible" for e in events},
+            "strips": {},
         }
 
     def intervals(self, rng, chains=1024, relative=3e-4):

@@ -212,7 +212,7 @@ def errors_times(factor, point):
     """Return the point with all errors changed by ``factor``, and the means kept."""
     products = dict(point["products"])
     for event, total in point["counts"].items():
-        n, key = point["eligible"][event], f"{event}*{event}"
+        n, key = point["replicas"], f"{event}*{event}"
         spread = n * products[key] - total**2
         products[key] = (total**2 + round(factor**2 * spread)) // n + 1
     return {**point, "products": products}

@@ -154,14 +154,15 @@ def time_row(event="vertical_hop", radius=0.37, exact=50.0, **change):
     point = {
         "radius": radius,
         "duration": 10.0,
-        "eligible": {event: 2048},
+        "replicas": 2048,
+        "strips": {},
         "counts": {event: 0},
         "products": {f"{event}*{event}": 0},
         "target": {event: 3e-4},
         "status": {event: "budget"},
     }
     for key, value in change.items():
-        point[key] = value if key == "duration" else {**point[key], **value}
+        point[key] = {**point[key], **value} if isinstance(value, dict) else value
     exact = {(radius, f"{event}_time"): exact}
     (row,) = rows.mean_time_rows(BOX.scene(radius), exact, [point])
     return row
@@ -195,15 +196,36 @@ def test_rows_of_mean_times(theory, laws):
             assert row["estimate"] is row["stderr"] is row["exact"] is None
 
 
-def test_a_wall_that_half_the_replicas_reach_counts_those(theory, laws):
-    law = laws[RADII.index(0.3)]
-    point = law.dynamics(np.random.default_rng(4))
-    assert point["eligible"]["right_wall"] == point["replicas"] // 2
+def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
+    """Four pairs of a disc and a wall beneath h/4, beyond it two of them for either component."""
+    for radius, copies in ((0.2, 4), (0.3, 2)):
+        law = laws[RADII.index(radius)]
+        point = law.dynamics(np.random.default_rng(4))
+        found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
+        row = found["right_wall"]
+        assert row["copies"] == copies
+        assert abs(row["z"]) < 5
+        assert row["estimate"] == copies * row["duration"] * row["replicas"] / row["count"]
+        # Averaged over all initial conditions disc 1 hits the right wall copies/4 as often.
+        assert row["exact"] == pytest.approx(copies / 4 / rate(law.scene, "right_wall"))
+
+
+def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
+    law = laws[RADII.index(0.24)]
+    point = law.dynamics(np.random.default_rng(5), relative=0.1)
+    tau = law.times["horizontal_hop"]
+    strip = {"duration": 0.125, "share": 0.004, "replicas": 10**7, "count": 0, "status": "reached"}
+    strip["count"] = round(0.125 * 10**7 / 0.004 / tau)
+    point["strips"] = {"horizontal_hop": strip | {"squares": strip["count"]}}
     found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
-    assert found["right_wall"]["replicas"] == 512
-    assert abs(found["right_wall"]["z"]) < 5
-    # Averaged over all initial conditions the right wall is hit half as often.
-    assert found["right_wall"]["exact"] == pytest.approx(0.5 / rate(law.scene, "right_wall"))
+    assert [row["starts"] for row in found.values()].count("strip") == 1
+    row = found["horizontal_hop"]
+    assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, strip["count"])
+    assert row["estimate"] == pytest.approx(tau, rel=1e-6)
+    (other,) = rows.seen_anyway(SCENE, theory, [point])
+    assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
+    assert other["count"] == point["counts"]["horizontal_hop"]
+    assert other["replicas"] == point["replicas"]
 
 
 def test_none_seen_gives_a_bound_and_no_estimate():
@@ -214,9 +236,6 @@ def test_none_seen_gives_a_bound_and_no_estimate():
     assert abs(row["z"]) < 2
     # Where 400 were due, even four to a replica, to see none is wrong.
     assert time_row(exact=51.2)["z"] > 10
-    nobody = time_row("right_wall", eligible={"right_wall": 0})
-    assert nobody["status"] == "none-seen"
-    assert nobody["z"] is nobody["bound"] is None
 
 
 def test_too_few_events_show_no_error():
@@ -236,7 +255,7 @@ def test_too_few_events_show_no_error():
 
 def test_few_replicas_show_no_error():
     few = counted(10**6, 2 * 10**10)
-    assert time_row(eligible={"vertical_hop": 99}, **few)["status"] == "too-few"
+    assert time_row(replicas=99, **few)["status"] == "too-few"
 
 
 def test_a_blocked_hop_that_is_seen_has_an_infinite_score():

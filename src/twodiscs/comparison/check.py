@@ -92,7 +92,8 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
             joined = name == "area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
     for row in times:
-        rows.append(_comparison("mean_time", f"{row['event']}_time", "dynamics", row))
+        method = "dynamics" if row["starts"] == "invariant" else row["starts"]
+        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         values = _normal_values(

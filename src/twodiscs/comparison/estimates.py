@@ -232,12 +232,13 @@ def mean_time_bound(replicas, duration, confidence=0.95):
 def sum_rule(scene, duration, replicas, counts, products):
     """Return the estimate of the sum of virials over 2⟨K⟩, which is 1 (see ``theory.virial``).
 
-    Rates are those of all ``replicas``, whether they can reach a wall or not. ``counts`` and
-    ``products`` are Σ N_a and Σ N_a N_b by event. Raises ``InputError`` for a scene that has no
-    such sum.
+    Rates are those of all ``replicas``, whether they can reach a wall or not; of walls everything
+    counts that is equal by symmetry. ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event.
+    Raises ``InputError`` for a scene that has no such sum.
     """
     weights = virial.weights(scene)
     if weights is None:
         raise InputError(f"scene must have a sum rule, but has {', '.join(scene.effects)}")
-    per_time = 1 / real("duration", duration)
-    return combination({e: w * per_time for e, w in weights.items()}, counts, products, replicas)
+    duration = real("duration", duration)
+    rates = {e: scene.share(e) / scene.copies(e) / duration for e in weights}
+    return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)

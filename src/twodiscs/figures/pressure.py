@@ -39,7 +39,7 @@ def draw(box, tables):
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
         for event in events:
             laws = [
-                virial.pressure_factor(scene, event) * _share(scene, event) / time
+                virial.pressure_factor(scene, event) * scene.share(event) / time
                 for scene in near
                 for time in [threshold_time(scene, event)]
             ]
@@ -52,11 +52,6 @@ def draw(box, tables):
     return figure
 
 
-def _share(scene, event):
-    """Return the share of all initial conditions that see an event."""
-    return 0.5 if scene.needed_side(event) else 1.0
-
-
 def _series(name, box, event, rows, radii, factor):
     """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
     scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
@@ -65,7 +60,7 @@ def _series(name, box, event, rows, radii, factor):
     for row in rows:
         if row["event"] == event and row["stderr"] is not None:
             scene, time = box.scene(row["radius"]), row["estimate"]
-            value = factor(scene, event) * _share(scene, event) / time
+            value = factor(scene, event) * scene.share(event) / time
             # What is too long a time is too low a rate.
             measured = {"estimate": value, "stderr": value * row["stderr"] / time, "z": -row["z"]}
             found.append(row | measured)

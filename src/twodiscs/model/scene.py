@@ -308,6 +308,20 @@ class Scene:
             lowest = self._lowest_potential(self._spread(axis, "y"))
         return lowest < ENERGY
 
+    def room(self, hop):
+        """Return how far apart discs that are level along the axis of ``hop`` can be, less σ.
+
+        For equal discs of the plane that is B − σ for the horizontal hop, A − σ for the vertical
+        one; it is negative where the hop is blocked.
+        """
+        spread, sigma = self._spread(DECLARED[hop].axis), sum(self.exact_radii)
+        return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
+
+    @cached_property
+    def fastest(self):
+        """The largest relative velocity of the centres, √(1/m1 + 1/m2) at total energy 1/2."""
+        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses))
+
     @cached_property
     def vertical_hops(self):
         """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
@@ -356,14 +370,31 @@ class Scene:
         """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2."""
         return self._confined("x"), self._confined("y")
 
-    def needed_side(self, event):
-        """Return on which side of disc 2 disc 1 has to start in order to see ``event``.
+    @cached_property
+    def alike(self):
+        """Whether the discs are equal, so that they may be exchanged."""
+        return self.radius_ratio == self.mass_ratio == 1
 
-        That is +1 or −1 along the axis of a wall that is reached from one side only, else 0.
+    def share(self, event):
+        """Return the share of trajectories that can see ``event``.
+
+        That is 1/2 for a wall that disc 1 reaches from its own side of disc 2 only, else 1.
         """
         found = DECLARED[event]
-        confined = found.kind == "wall" and self.confined["xy".index(found.axis)]
-        return found.side if confined else 0
+        return 0.5 if found.kind == "wall" and self.confined["xy".index(found.axis)] else 1.0
+
+    def copies(self, event):
+        """Return the mean count of ``event`` in one mean time, with all that is equal to it.
+
+        Mirror images and equal discs leave four of the pairs of a disc and a wall that have one
+        rate, two of them within the reach of a trajectory where the discs keep their sides. A field
+        has no mirror image along y. It is 1 for everything but walls.
+        """
+        found = DECLARED[event]
+        if found.kind != "wall":
+            return 1
+        mirrored = found.axis == "x" or not self.field
+        return round((1 + mirrored) * (1 + self.alike) * self.share(event))
 
     @cached_property
     def events(self):

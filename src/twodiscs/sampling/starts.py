@@ -36,11 +36,15 @@ def components(scene):
     return PLANE + BALLS * balls + ROUGH * rough
 
 
-def origins(scene):
-    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None."""
+def origins(scene, hop=None, within=None):
+    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None.
+
+    With a ``hop`` they keep ``within`` a distance of its surface, one that is no more than √2 times
+    the smaller radius. In a plain scene that is for the horizontal hop.
+    """
     if scene.has_effects:
-        return None, prism_of(scene)
-    return draw_constants(scene), None
+        return None, prism_of(scene, hop, within)
+    return draw_constants(scene, within), None
 
 
 @inlined

@@ -10,7 +10,7 @@ import math
 from functools import lru_cache
 
 from twodiscs.model.checks import InputError, length, one_of
-from twodiscs.model.events import DECLARED, EVENTS, SHELLS
+from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory import plain
 
@@ -83,7 +83,7 @@ def mean_times(scene):
     half of configuration space where ``Scene.confined``. Accuracy and errors as for ``volume``.
     """
     return {
-        event: (0.5 if scene.needed_side(event) else 1) / rate(scene, event) if area else None
+        event: scene.share(event) / rate(scene, event) if area else None
         for event, area in areas(scene).items()
     }
 
@@ -112,6 +112,26 @@ def free_share(scene):
         for radius in scene.radii
     )
     return volume(scene) / math.prod(ranges)
+
+
+def share_near(scene, hop, distance):
+    """Return the share of configuration space where the discs are almost level along a hop's axis.
+
+    That is the probability, in the invariant measure, of a separation of at most ``distance`` along
+    the axis of ``hop``, a length up to √2 times the smaller radius. Raises ``InputError`` for
+    anything that is not a ``Scene`` or a hop, and for another distance.
+    """
+    one_of("hop", hop, HOPS)
+    distance = length("distance", distance)
+    limit = math.sqrt(2) * min(a_scene(scene).radii)
+    if distance > limit:
+        raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
+    if scene.has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.share_near(scene, hop, distance)
+    epsilon = distance / math.sqrt(2)
+    return 2 * epsilon * plain.shell_expectation(scene, hop, epsilon) / volume(scene)
 
 
 def shell_expectation(scene, event, epsilon):

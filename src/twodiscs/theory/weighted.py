@@ -444,6 +444,13 @@ def rate(scene, event):
     return sides / 2 * constant(scene.velocity_components) * area / volume(scene) if area else 0.0
 
 
+def share_near(scene, hop, distance):
+    """Return the probability of a separation up to ``distance`` along the axis of a ``hop``."""
+    space = _Space(scene, scene.velocity_components / 2 - 1)
+    near = space.axis(AXIS[hop], farthest=Fraction(distance))
+    return space.beyond(**{AXIS[hop]: near}) / volume(scene)
+
+
 # Shells -------------------------------------------------------------------------------------------
 
 
