@@ -130,15 +130,16 @@ def _hop_area(hop, order, symbol):
         f"""
         Area of the surface {coordinate}1 = {coordinate}2, which is crossed when the discs exchange
         their {direction} order: exact (line) and from a thin shell around it (symbols). Where the
-        hop is blocked, symbols at zero say that no sample fell into the shell.
+        hop is blocked, symbols at zero say that no sample fell into the shell. The ordinate grows
+        as the square root, so that a quadratic end is straight.
         """,
         "areas",
         {f"{hop}_area": f"{direction} hops"},
         note="shells",
-        label=rf"{direction}-hop area $A_{{\mathrm{{{symbol}}}}}$",
+        label=rf"{direction}-hop area $S_{{\mathrm{{{symbol}}}}}$",
         place="lower left",
         single="Monte Carlo",
-        linear=True,
+        rooted=True,
     )
 
 
@@ -165,8 +166,8 @@ FIGURES = {
         """
         One trajectory: the separation of the discs along the longer side of the box that ends at
         walls (x in a square) against time. Dots mark the hops, at which it changes sign. (b) The
-        shaded stretch of time enlarged: a hop is often undone soon, before collisions have
-        scrambled the motion.
+        shaded stretch of time enlarged, with a bar for each hop: a hop is often undone soon, before
+        collisions have scrambled the motion.
         """,
         "figures.hopping_trajectory",
         tables=("trajectory",),
@@ -211,7 +212,7 @@ FIGURES = {
         "areas",
         {"disc_collision_area": "disc collisions"},
         note="shells",
-        label=r"collision area $A_{\mathrm{coll}}$",
+        label=r"collision area $S_{\mathrm{coll}}$",
         place="lower left",
         single="Monte Carlo",
     ),
@@ -226,7 +227,7 @@ FIGURES = {
         {f"{event}_area": name for event, name in WALLS.items()},
         plain="The whole is four times the sum of the first two.",
         note="shells",
-        label="wall area $A$",
+        label="wall area $S$",
         place="lower left",
     ),
     "mean_hop_time": _over_radius(
@@ -299,9 +300,9 @@ FIGURES = {
         """,
         "figures.pressure",
         plain="""
-        Dashed lines in (a) are the leading laws below the largest radius. (b) The virials of the walls and
-        of the collisions of the discs, over twice the mean kinetic energy: those of the walls less
-        that of collisions are one at every radius.
+        Dashed lines in (a) are the leading laws below the largest radius. (b) The virials of the
+        walls and of the collisions of the discs, over twice the mean kinetic energy: those of the
+        walls less that of collisions are one at every radius.
         """,
         note="simulated",
         tables=("mean_times",),

@@ -82,7 +82,7 @@ def _virials(axes, box, rows, radii):
         axes.plot(radii, one.exact, color=colour, zorder=5)
         panels.estimates(axes, one.rows, colour, marker)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
-    axes.set_ylabel(r"virial$\,/\,2\langle K\rangle$")
+    axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)
     axes.set_ylim(0.01, None)
     panels.legend(axes, box, series, "lower right")
