@@ -18,7 +18,7 @@ from twodiscs import cli
 from twodiscs.comparison import rows, scene_tables
 from twodiscs.comparison.results import Measurement
 from twodiscs.dynamics.trajectory import state_of
-from twodiscs.figures import animation
+from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.pipeline import jobs
 from twodiscs.pipeline.configuration import load

@@ -227,7 +227,7 @@ MISTAKES = {
         "the table hop_histogram must be given, as --table hop_histogram=CSV",
     ),
     "a trajectory that is needed": (
-        words("animation", "figures.animation", OF_BOX | {"radius": 0.2}),
+        words("animation", "figures.motion.animation", OF_BOX | {"radius": 0.2}),
         "the table trajectory must be given, as --table trajectory=CSV",
     ),
     "points that are needed": (

@@ -169,7 +169,7 @@ FIGURES = {
         shaded stretch of time enlarged, with a bar for each hop: a hop is often undone soon, before
         collisions have scrambled the motion.
         """,
-        "figures.hopping_trajectory",
+        "figures.motion.hopping_trajectory",
         tables=("trajectory",),
         needs=frozenset({"trajectory"}),
     ),
@@ -372,7 +372,7 @@ ANIMATION = Entry(
     of the centres, and the picture stops at the moment of the hop. Beneath, the separation of the
     discs against time: the hop changes its sign.
     """,
-    "figures.animation",
+    "figures.motion.animation",
     tables=("trajectory",),
     needs=frozenset({"trajectory"}),
     of_plain=True,

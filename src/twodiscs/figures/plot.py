@@ -85,7 +85,7 @@ def rows_of(trajectory):
 
 def animate(trajectory, path):
     """Write the animation of a trajectory (see the face)."""
-    from twodiscs.figures import animation
+    from twodiscs.figures.motion import animation
 
     scene = the_scene(trajectory)
     if scene is None or not hasattr(trajectory, "to_dict"):
