@@ -9,7 +9,7 @@ from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.prism import prism_of
@@ -60,7 +60,7 @@ def test_estimates_tend_to_the_areas():
 
 def test_blocks_add_up_and_are_independent_of_company():
     # Squares of separations, then grains of the places of disc 1 at the walls.
-    ends = (2e-4, 2e-4, 0.42**2, 2**32 - 2**26, 2**32 - 2**26)
+    ends = (2e-4, 2e-4, 0.42**2, *(2**32 - 2**26 for _ in WALLS))
     arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, ends, True)
     whole = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments)
     parts = [montecarlo.sample_blocks(np.uint64(3), a, b, *arguments) for a, b in ((0, 1), (1, 4))]
