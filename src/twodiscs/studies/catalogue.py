@@ -173,12 +173,12 @@ STUDIES = {
         ),
         Study(
             "stability",
-            "how each method does where arithmetic has it hard",
+            "how accurate each method is in numerically hard cases",
             (Stability,),
             30.0,
             {
                 "stability": Entry(
-                    "Where arithmetic has it hard",
+                    "Numerically hard cases",
                     NUMERICS,
                     """
                     How the methods behave at hard radii; dashed lines are what is asked for. (a)
