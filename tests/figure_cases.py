@@ -73,7 +73,8 @@ def sampled(rng, radius, quantity, exact, relative):
     row = {"radius": radius, "quantity": quantity, "method": "monte_carlo", "exact": exact}
     row |= {"samples": 10**7, "hits": 10**6, "epsilon": 0.001, "expectation": exact, "bias": 0.0}
     if exact == 0:
-        nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
+        row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
+    nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
         return row | nothing | {"status": "impossible", "test": "certain"}
     return row | noisy(rng, exact, relative) | {"status": "sampled", "test": "normal"}
 
@@ -83,6 +84,7 @@ def simulated(rng, scene, event, exact, relative):
     row = {"radius": scene.radius, "event": event, "exact": exact, "count": 1000}
     row |= {"replicas": 1000, "duration": 100.0, "target": relative, "bound": None}
     row |= {"ergodic_components": scene.ergodic_components, "relative_stderr": relative}
+    row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
     nothing = {"estimate": None, "stderr": None, "relative_stderr": None, "count": 0}
     if exact is None:
         return row | nothing | {"z": 0.0, "status": "impossible", "test": "certain"}
