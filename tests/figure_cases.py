@@ -73,8 +73,7 @@ def sampled(rng, radius, quantity, exact, relative):
     row = {"radius": radius, "quantity": quantity, "method": "monte_carlo", "exact": exact}
     row |= {"samples": 10**7, "hits": 10**6, "epsilon": 0.001, "expectation": exact, "bias": 0.0}
     if exact == 0:
-        row |= {"starts": "invariant", "share": 1.0, "copies": scene.copies(event)}
-    nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
+        nothing = {"estimate": None, "stderr": None, "z": 0.0, "hits": 0}
         return row | nothing | {"status": "impossible", "test": "certain"}
     return row | noisy(rng, exact, relative) | {"status": "sampled", "test": "normal"}
 
