@@ -460,10 +460,11 @@ def test_versions_are_those_installed():
 
 def test_what_captions_explain_alike_is_split_off():
     entry = FIGURES["volume"]
-    own, alike = manuscript.captions()["volume"]
+    own, alike, tables, quantities = manuscript.captions()["volume"]
+    assert (tables, quantities) == (("volume",), ["volume"])
     assert f"{own} {alike}" == entry.full_caption()
     assert own.endswith("(symbols).")
     assert alike == NOTES[entry.note].plain
     assert alike.startswith("Error bars")
-    assert manuscript.captions()["model"] == (FIGURES["model"].full_caption(), "")
+    assert manuscript.captions()["model"][:2] == (FIGURES["model"].full_caption(), "")
     assert manuscript.captions().keys() == FIGURES.keys() | STUDY_FIGURES.keys()
