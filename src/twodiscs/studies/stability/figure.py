@@ -7,8 +7,8 @@ from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocat
 from matplotlib.transforms import blended_transform_factory
 
 from twodiscs.figures.kit import drawing
-from twodiscs.figures.kit.panels import name_box
 from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.panels import name_box
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
