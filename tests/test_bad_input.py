@@ -15,9 +15,10 @@ from twodiscs.comparison import estimates, scores
 from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model import checks, effects, radii
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import jobs
+from twodiscs.pipeline import arguments, jobs
 from twodiscs.pipeline.configuration import load
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact, laws, tails
@@ -158,7 +159,7 @@ def test_what_is_right_is_taken(function, good):
 
 @pytest.mark.parametrize(("function", "good", "name", "value"), SWEEP)
 def test_what_is_wrong_is_refused(function, good, name, value):
-    with pytest.raises(ValueError, match=r"\w") as caught:
+    with pytest.raises(InputError, match=r"\w") as caught:
         function(**good | {name: value})
     sentence = str(caught.value)
     assert "\n" not in sentence
@@ -169,13 +170,13 @@ def test_what_is_wrong_is_refused(function, good, name, value):
 
 def test_swapped_arguments_are_refused():
     for function in (exact.rate, laws.threshold_time):
-        with pytest.raises(ValueError, match="scene must be a Scene, not 'any_wall'"):
+        with pytest.raises(InputError, match="scene must be a Scene, not 'any_wall'"):
             function("any_wall", PAPER)
-    with pytest.raises(ValueError, match="scene must be a Scene"):
+    with pytest.raises(InputError, match="scene must be a Scene"):
         montecarlo.sample_point(["volume"], PAPER, 1, 0.02, 1)
-    with pytest.raises(ValueError, match="scene must be a Scene"):
+    with pytest.raises(InputError, match="scene must be a Scene"):
         counting.count_events({"any_wall": 0.1}, PAPER, 10, 1)
-    with pytest.raises(ValueError, match="does not fit"):
+    with pytest.raises(InputError, match="does not fit"):
         Scene(0.2, 1.0, 1.5)
 
 
@@ -186,7 +187,7 @@ def test_other_kinds_of_numbers_are_taken(kind):
 
 @pytest.mark.parametrize("radius", [0.4, 0.5, 0.75, 1.0, 10.0])
 def test_a_radius_that_does_not_fit_is_named_with_the_largest_one(radius):
-    with pytest.raises(ValueError, match=rf"radius {radius!r} does not fit.*0\.38397"):
+    with pytest.raises(InputError, match=rf"radius {radius!r} does not fit.*0\.38397"):
         Scene(1.5, 1.0, radius)
 
 
@@ -196,13 +197,13 @@ def test_beyond_the_largest_radius_there_is_no_scene(sides):
     for more in (1e-15, 1e-9):
         radius = box.largest_radius * (1 + more)
         assert not box.fits(radius)
-        with pytest.raises(ValueError, match="does not fit"):
+        with pytest.raises(InputError, match="does not fit"):
             box.scene(radius)
 
 
 @pytest.mark.parametrize("mapping", [None, [], "paper", 1, {}, {"scenes": []}, {"scenes": [{}]}])
 def test_a_configuration_that_makes_no_sense(mapping):
-    with pytest.raises(ValueError, match=r"\w"):
+    with pytest.raises(InputError, match=r"\w"):
         load.load(mapping)
 
 
@@ -318,6 +319,15 @@ def test_exact_numbers_of_nonsense_are_refused(words):
     assert run.stdout == ""
     assert run.stderr.startswith("error: ")
     assert run.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyError, TypeError, ZeroDivisionError])
+def test_a_mistake_in_the_program_keeps_its_traceback(error):
+    def mistaken():
+        raise error("colour")
+
+    with pytest.raises(error, match="colour"):
+        arguments.run(mistaken)
 
 
 def test_every_event_has_an_exact_answer():

@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from scipy.special import ndtri
 
-from twodiscs.model.checks import proportion, whole
+from twodiscs.model.checks import InputError, proportion, whole
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
@@ -28,11 +28,11 @@ def real(name, value, low=0.0, high=math.inf, *, ends=False):
     text = f"{name} must be a finite number {'from' if ends else 'between'} {low!r} "
     text += f"{'to' if ends else 'and'} {high!r}, not {value!r}"
     if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
-        raise ValueError(text)
+        raise InputError(text)
     number = float(value)
     inside = low <= number <= high if ends else low < number < high
     if not (inside and math.isfinite(number)):
-        raise ValueError(text)
+        raise InputError(text)
     return number
 
 
@@ -41,7 +41,7 @@ def moments_of(total, squares, replicas):
     total, squares = whole("total", total, 0), whole("squares", squares, 0)
     replicas = whole("replicas", replicas, 1)
     if squares < total or squares * replicas < total**2:
-        raise ValueError(
+        raise InputError(
             f"squares must be at least total and total²/replicas, not {squares!r} for total "
             f"{total!r} of {replicas!r} replicas"
         )
@@ -52,7 +52,7 @@ def moments_of(total, squares, replicas):
 class Estimate:
     """A value, its standard error, and the number of independent samples behind both.
 
-    Raises ``ValueError`` unless the value is finite, the error finite and not negative, and n ≥ 1.
+    Raises ``InputError`` unless the value is finite, the error finite and not negative, and n ≥ 1.
     """
 
     value: float
@@ -89,12 +89,12 @@ def mean_of(values):
     """Return the mean of independent ``values`` as an ``Estimate``, along the first axis of them.
 
     The error is that of their spread. For values in two dimensions it is a list of estimates, one
-    for each column. Raises ``ValueError`` for fewer than two values.
+    for each column. Raises ``InputError`` for fewer than two values.
     """
     values = np.asarray(values, float)
     n = len(values)
     if n < 2:
-        raise ValueError(f"values must be at least two, not {n}")
+        raise InputError(f"values must be at least two, not {n}")
     means, errors = values.mean(axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(n)
     if values.ndim == 1:
         return Estimate(float(means), float(errors), n)
@@ -108,13 +108,13 @@ class Line:
     scatter about the line stands for one error for all. ``slope`` is an ``Estimate``, ``constant``
     the value at x = 0, ``chi2`` the sum of squared residuals in units of the errors (None without
     them). The error of the slope is 0.0 where it is not known: without errors, for two points.
-    Raises ``ValueError`` for fewer than two points.
+    Raises ``InputError`` for fewer than two points.
     """
 
     def __init__(self, x, y, errors=None):
         x, y = np.asarray(x, float), np.asarray(y, float)
         if x.size < 2 or x.size != y.size:
-            raise ValueError(f"x and y must be two points at least, not {x.size} and {y.size}")
+            raise InputError(f"x and y must be two points at least, not {x.size} and {y.size}")
         weights = np.broadcast_to(1.0 if errors is None else 1 / np.asarray(errors, float), x.shape)
         (slope, self.constant), covariance = np.polyfit(x, y, 1, w=weights, cov="unscaled")
         residuals = weights * (y - self.constant - slope * x)
@@ -131,7 +131,7 @@ def combination(weights, totals, products, n):
     ``weights`` and ``totals`` map names to w_a and Σ N_a; ``products`` maps "a*b" to Σ N_a N_b for
     every pair of names, written in the order of ``weights``, squares included. The variance is that
     of the combination sample by sample, so that correlations and cancellations between the terms
-    are in it; it is exact for the given integers. Raises ``ValueError`` for n < 2, for sums that
+    are in it; it is exact for the given integers. Raises ``InputError`` for n < 2, for sums that
     are no integers, and for a sum that is missing.
     """
     n = whole("n", n, 2)
@@ -145,14 +145,14 @@ def combination(weights, totals, products, n):
             for b in names[i:]
         }
     except KeyError as missing:
-        raise ValueError(f"the sums have no {missing.args[0]!r}") from None
+        raise InputError(f"the sums have no {missing.args[0]!r}") from None
     mean = sum(w[a] * total[a] for a in names) / n
     spread = sum(
         (1 if a == b else 2) * w[a] * w[b] * (n * value - total[a] * total[b])
         for (a, b), value in product.items()
     )
     if spread < 0:
-        raise ValueError("products must be those of the same samples: their variance is negative")
+        raise InputError("products must be those of the same samples: their variance is negative")
     return Estimate(float(mean), math.sqrt(spread / (n * n * (n - 1))), n)
 
 
@@ -162,7 +162,7 @@ def combination(weights, totals, products, n):
 def checked_hits(hits, samples):
     hits, samples = whole("hits", hits, 0), whole("samples", samples, 1)
     if hits > samples:
-        raise ValueError(f"hits must not exceed the {samples} samples, not {hits!r}")
+        raise InputError(f"hits must not exceed the {samples} samples, not {hits!r}")
     return hits, samples
 
 

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from twodiscs.comparison import check, rows
-from twodiscs.model.checks import one_of
+from twodiscs.model.checks import InputError, one_of
 from twodiscs.model.events import EVENTS
 
 STAGES = ("monte_carlo", "dynamics", "intervals")
@@ -23,7 +23,7 @@ FIELDS = {
 
 
 def _no_number(text):
-    raise ValueError(f"{text} is no number")
+    raise InputError(f"{text} is no number")
 
 
 def _read(path, kind):
@@ -31,19 +31,19 @@ def _read(path, kind):
     try:
         point = json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=_no_number)
     except ValueError as error:
-        raise ValueError(f"{path} is not the file of a point: {error}") from None
+        raise InputError(f"{path} is not the file of a point: {error}") from None
     if not isinstance(point, dict):
-        raise ValueError(f"{path} is not the file of a point: it holds no JSON object")
+        raise InputError(f"{path} is not the file of a point: it holds no JSON object")
     missing = [name for name in FIELDS[kind] if name not in point]
     if missing:
-        raise ValueError(f"{path} is not a file of {kind}: it has no {', '.join(missing)}")
+        raise InputError(f"{path} is not a file of {kind}: it has no {', '.join(missing)}")
     return point
 
 
 def read_points(folder, keys):
     """Return {stage: points} from the files ``folder``/stage/key.json; ``keys`` is {stage: keys}.
 
-    Raises ``ValueError`` for an unknown stage and a file that holds no point of its stage,
+    Raises ``InputError`` for an unknown stage and a file that holds no point of its stage,
     ``OSError`` for a missing one.
     """
     found = {stage: [] for stage in STAGES}
@@ -54,10 +54,10 @@ def read_points(folder, keys):
 
 
 def _scene_of(box, points):
-    """Return the ``Scene`` of the first point there is; raise ``ValueError`` without any."""
+    """Return the ``Scene`` of the first point there is; raise ``InputError`` without any."""
     radii = [point["radius"] for some in points.values() for point in some]
     if not radii:
-        raise ValueError("keys must name one point at least")
+        raise InputError("keys must name one point at least")
     return box.scene(radii[0])
 
 

@@ -7,6 +7,7 @@ columns that ``scene_tables`` declares, ordered by radius, then as in ``EVENTS``
 from itertools import groupby
 
 from twodiscs.comparison import estimates, scores
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
 from twodiscs.theory.exact import shell_expectation
 
@@ -20,15 +21,15 @@ def _exact(exact, radius, quantity):
     try:
         return exact[radius, quantity]
     except KeyError:
-        raise ValueError(f"theory.csv has no {quantity} at radius {radius!r}") from None
+        raise InputError(f"theory.csv has no {quantity} at radius {radius!r}") from None
 
 
 def ordered(points):
-    """Return ``points`` by radius; raises ``ValueError`` if two of them share one."""
+    """Return ``points`` by radius; raises ``InputError`` if two of them share one."""
     points = sorted(points, key=lambda point: point["radius"])
     for radius, same in groupby(point["radius"] for point in points):
         if len(list(same)) > 1:
-            raise ValueError(f"points must not contain radius {radius!r} twice")
+            raise InputError(f"points must not contain radius {radius!r} twice")
     return points
 
 

@@ -17,7 +17,7 @@ from twodiscs.comparison.estimates import (
     moments_of,
     real,
 )
-from twodiscs.model.checks import proportion, whole
+from twodiscs.model.checks import InputError, proportion, whole
 
 #: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
 #: skewness 1/√n: five errors out, n = 1000 doubles one tail and n = 100 multiplies it by eight.
@@ -161,7 +161,7 @@ def bonferroni_bound(comparisons, alarm=FALSE_ALARM):
 def _scores(z):
     scores = [real("z", value, low=-math.inf) for value in z]
     if not scores:
-        raise ValueError("z must not be empty")
+        raise InputError("z must not be empty")
     return scores
 
 

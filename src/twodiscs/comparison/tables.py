@@ -17,6 +17,8 @@ import re
 from dataclasses import dataclass
 from numbers import Integral, Real
 
+from twodiscs.model.checks import InputError
+
 
 @dataclass(frozen=True)
 class Column:
@@ -93,13 +95,13 @@ class Table:
     def read(cls, path):
         """Return the rows of the CSV file at ``path`` as dicts, with ``None`` for empty cells.
 
-        Raises ``ValueError`` if its columns are not those of the table, or a cell not of its type.
+        Raises ``InputError`` if its columns are not those of the table, or a cell not of its type.
         """
         columns = cls.columns()
         with open(path, encoding="utf-8", newline="") as file:
             lines = list(csv.reader(file))
         if not lines or lines[0] != list(columns):
-            raise ValueError(
+            raise InputError(
                 f"{path} must be a table {cls.name()} with the columns {list(columns)}"
             )
         rows = []
@@ -108,7 +110,7 @@ class Table:
                 cells = zip(columns.items(), line, strict=True)
                 rows.append({name: _value(column, text) for (name, column), text in cells})
             except (ValueError, KeyError):
-                raise ValueError(f"{path} has a bad row in line {number}: {line}") from None
+                raise InputError(f"{path} has a bad row in line {number}: {line}") from None
         return rows
 
     @classmethod

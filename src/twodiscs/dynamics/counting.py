@@ -28,7 +28,7 @@ from twodiscs.dynamics.law import (
     next_event,
 )
 from twodiscs.model.box import Box
-from twodiscs.model.checks import one_of, proportion, whole
+from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, tally
@@ -249,11 +249,11 @@ def count_events(scene, target, budget, seed, report=None):
     Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
     events simulated, and for each watched event how many replicas can see it (eligible), its count
     ΣN, its target and status (reached, budget or impossible); products hold ΣN_a N_b of each pair.
-    Raises ``ValueError`` for an unknown event or a number out of range.
+    Raises ``InputError`` for an unknown event or a number out of range.
     """
     a_scene(scene)
     if not isinstance(target, dict) or not target:
-        raise ValueError(f"target must name at least one event, with its error, not {target!r}")
+        raise InputError(f"target must name at least one event, with its error, not {target!r}")
     target = {
         one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
     }

@@ -19,7 +19,7 @@ from twodiscs.dynamics.ensemble import (
 )
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.model.box import Box
-from twodiscs.model.checks import one_of, whole
+from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled
@@ -112,12 +112,12 @@ def hop_intervals(scene, event, intervals, seed):
 
     Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
     number of intervals and of chains, and the mean with its standard error over chains. Raises
-    ``ValueError`` for a hop that is unknown or blocked, or a number out of range.
+    ``InputError`` for a hop that is unknown or blocked, or a number out of range.
     """
     a_scene(scene)
     one_of("event", event, HOPS)
     if not scene.is_possible(event):
-        raise ValueError(
+        raise InputError(
             f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
         )
     blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))

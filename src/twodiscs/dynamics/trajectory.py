@@ -83,7 +83,7 @@ def trajectory(scene, seed):
     """Return one trajectory of a ``Scene`` from the invariant measure, as rows of ``follow``.
 
     It lasts some eight mean times of the rarest hop that is open, but no longer than
-    ``LONGEST_TRAJECTORY`` wall and disc events on average. Raises ``ValueError`` for anything that
+    ``LONGEST_TRAJECTORY`` wall and disc events on average. Raises ``InputError`` for anything that
     is not a ``Scene``, and for a seed that is not an integer ≥ 0.
     """
     start = states(a_scene(scene), 1, whole("seed", seed, 0))

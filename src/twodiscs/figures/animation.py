@@ -16,7 +16,7 @@ from PIL import Image
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
-from twodiscs.model.checks import length
+from twodiscs.model.checks import InputError, length
 from twodiscs.model.events import HOPS
 
 #: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
@@ -44,7 +44,7 @@ def moments(rows, step):
     The hop is the rarest kind that occurs, and of these the first with no other one within the
     stretch of time that is shown, or else the first of all. Frames are ``step`` apart, the hop is
     one of them, and all lie within the trajectory; without any hop they show how it starts. Raises
-    ``ValueError`` if it does not last two frames.
+    ``InputError`` if it does not last two frames.
     """
     start, end = rows[0]["time"], rows[-1]["time"]
     counts = Counter(row["event"] for row in rows if row["event"] in HOPS)
@@ -59,7 +59,7 @@ def moments(rows, step):
     found = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
     found = found[(found >= start) & (found <= end)]
     if len(found) < 2:
-        raise ValueError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
+        raise InputError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
     return found, hop, centre
 
 
@@ -177,13 +177,13 @@ def animate(box, radius, rows, paths):
     """Write an animation of one hop to every one of ``paths``, which are .gif or .png files.
 
     ``box`` is the ``Box`` and ``radius`` that of the discs; ``rows`` are those of trajectory.csv,
-    at least two frames of them. Raises ``ValueError`` for anything else.
+    at least two frames of them. Raises ``InputError`` for anything else.
     """
     for path in paths:
         if not str(path).endswith((".gif", ".png")):
-            raise ValueError(f"output must be a .gif or .png file, not {str(path)!r}")
+            raise InputError(f"output must be a .gif or .png file, not {str(path)!r}")
     if not rows:
-        raise ValueError("rows must be those of a trajectory, not none")
+        raise InputError("rows must be those of a trajectory, not none")
     stage = Stage(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():

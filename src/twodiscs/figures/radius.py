@@ -8,6 +8,7 @@ import numpy as np
 from twodiscs.figures.kit import curves, panels
 from twodiscs.figures.kit.limits import hop_ends
 from twodiscs.figures.kit.style import SERIES
+from twodiscs.model.checks import InputError
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import small_radius_time, threshold_time
 
@@ -29,11 +30,11 @@ def draw(box, tables, names, label, place, single=None, linear=False, laws=(), a
     ``linear``; ``place`` that of the legend, and ``single`` the method if there is one series only.
     ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
     ``approach`` a panel beneath shows the times over the distance from the radius of their end.
-    Raises ``ValueError`` if the table has none of the quantities, and for no table or several.
+    Raises ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"
-        raise ValueError(f"tables must be the one of {', '.join(names)}, not {named}")
+        raise InputError(f"tables must be the one of {', '.join(names)}, not {named}")
     ((table, rows),) = tables.items()
     radii, exact = curves.exact(box)
     found = {
@@ -42,7 +43,7 @@ def draw(box, tables, names, label, place, single=None, linear=False, laws=(), a
         if (shown := [_as_drawn(row) for row in rows if _quantity(row) == quantity])
     }
     if not found:
-        raise ValueError(f"{table}.csv has no row of {', '.join(names)}")
+        raise InputError(f"{table}.csv has no row of {', '.join(names)}")
     series = list(found.values())
     figure, main, lower = panels.panels(box, label, ROOM if approach else 0)
     panels.draw_series(main, lower, radii, series, single=bool(single))

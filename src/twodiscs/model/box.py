@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from twodiscs.model.checks import SHORTEST, length, one_of
+from twodiscs.model.checks import SHORTEST, InputError, length, one_of
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
@@ -16,7 +16,7 @@ TINY = 1e-6
 class Box:
     """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which discs may move.
 
-    Effects that have the value of their absence are left out. Raises ``ValueError`` for a side that
+    Effects that have the value of their absence are left out. Raises ``InputError`` for a side that
     is no length, for an unknown effect, and for effects that do not go together.
     """
 
@@ -30,7 +30,7 @@ class Box:
         effects = self.effects
         if not isinstance(effects, dict) or not effects.keys() <= EFFECTS.keys():
             known = ", ".join(EFFECTS)
-            raise ValueError(f"effects must be a dict of some of {known}, not {effects!r}")
+            raise InputError(f"effects must be a dict of some of {known}, not {effects!r}")
         checked = {
             name: EFFECTS[name].checked(value) if EFFECTS[name].is_number else value
             for name, value in effects.items()
@@ -58,7 +58,7 @@ class Box:
         return {"effects": dict(self.effects)} | box if self.effects else box
 
     def scene(self, radius):
-        """Return the ``Scene`` at a ``radius``; raise ``ValueError`` where there is none."""
+        """Return the ``Scene`` at a ``radius``; raise ``InputError`` where there is none."""
         return Scene(self.width, self.height, radius, **self.effects)
 
     def fits(self, radius):
@@ -66,7 +66,7 @@ class Box:
         radius = length("radius", radius)
         try:
             self.scene(radius)
-        except ValueError:
+        except InputError:
             return False
         return True
 
@@ -87,9 +87,9 @@ class Box:
         return min(self.sides)
 
     def turned(self):
-        """Return the box turned by a quarter; raise ``ValueError`` if it has effects."""
+        """Return the box turned by a quarter; raise ``InputError`` if it has effects."""
         if self.effects:
-            raise ValueError(
+            raise InputError(
                 f"box must be plain to be turned, but it has {', '.join(self.effects)}"
             )
         return replace(self, width=self.height, height=self.width)
@@ -115,7 +115,7 @@ class Box:
             middle = (low + high) / 2
             try:
                 found = holds(self.scene(middle))
-            except ValueError:
+            except InputError:
                 found = False
             low, high = (middle, high) if found else (low, middle)
         return high

@@ -10,26 +10,34 @@ SHORTEST, LONGEST = 1e-60, 1e60
 LARGEST_INTEGER = 2**63 - 1
 
 
+class InputError(ValueError):
+    """What a user got wrong, in a sentence: an argument, a configuration, a file.
+
+    The command lines answer it with that sentence alone. Any other exception is a mistake in the
+    program, and keeps its traceback.
+    """
+
+
 def number(name, value, low, high, kind="number"):
-    """Return ``value`` as a float in [``low``, ``high``], or raise ``ValueError`` naming ``name``.
+    """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
     ``low`` is positive: anything that is not a real number, finite and positive is refused.
     """
     if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
-        raise ValueError(f"{name} must be a positive {kind}, not {value!r}")
+        raise InputError(f"{name} must be a positive {kind}, not {value!r}")
     try:
         found = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} must be a positive {kind}, not {value!r}") from None
+        raise InputError(f"{name} must be a positive {kind}, not {value!r}") from None
     if not math.isfinite(found) or found <= 0:
-        raise ValueError(f"{name} must be a positive, finite {kind}, not {found!r}")
+        raise InputError(f"{name} must be a positive, finite {kind}, not {found!r}")
     if not low <= found <= high:
-        raise ValueError(f"{name} must lie between {low!r} and {high!r}, not {found!r}")
+        raise InputError(f"{name} must lie between {low!r} and {high!r}, not {found!r}")
     return found
 
 
 def length(name, value):
-    """Return ``value`` as a float, or raise ``ValueError`` naming ``name`` if it is no length.
+    """Return ``value`` as a float, or raise ``InputError`` naming ``name`` if it is no length.
 
     A length is a real number, finite and positive, between 1e-60 and 1e60.
     """
@@ -37,36 +45,36 @@ def length(name, value):
 
 
 def whole(name, value, least=1, most=LARGEST_INTEGER):
-    """Return ``value`` as an int; raise ``ValueError`` unless it is an integer in that range."""
+    """Return ``value`` as an int; raise ``InputError`` unless it is an integer in that range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise ValueError(f"{name} must be an integer of at least {least}, not {value!r}")
+        raise InputError(f"{name} must be an integer of at least {least}, not {value!r}")
     if not least <= value <= most:
         end = "2^63 - 1" if most == LARGEST_INTEGER else most
-        raise ValueError(f"{name} must be an integer from {least} to {end}, not {value!r}")
+        raise InputError(f"{name} must be an integer from {least} to {end}, not {value!r}")
     return int(value)
 
 
 def proportion(name, value):
-    """Return ``value`` as a float; raise ``ValueError`` unless it is strictly between 0 and 1."""
+    """Return ``value`` as a float; raise ``InputError`` unless it is strictly between 0 and 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise ValueError(f"{name} must be a number between 0 and 1, not {value!r}")
+        raise InputError(f"{name} must be a number between 0 and 1, not {value!r}")
     if not (math.isfinite(value) and 0 < value < 1):
-        raise ValueError(f"{name} must lie between 0 and 1, ends excluded, not {value!r}")
+        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {value!r}")
     return float(value)
 
 
 def one_of(name, value, allowed):
-    """Return ``value``; raise ``ValueError`` unless it is one of ``allowed``."""
+    """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
     if value not in allowed:
-        raise ValueError(f"{name} must be one of {', '.join(allowed)}, not {value!r}")
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {value!r}")
     return value
 
 
 def ascending(name, values):
-    """Return ``values`` as floats; raise ``ValueError`` unless they are ascending lengths."""
+    """Return ``values`` as floats; raise ``InputError`` unless they are ascending lengths."""
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} must be a sequence of numbers, not {values!r}")
+        raise InputError(f"{name} must be a sequence of numbers, not {values!r}")
     found = [length(name, value) for value in values]
     if not found or sorted(set(found)) != found:
-        raise ValueError(f"{name} must ascend, and there must be some, not {found!r}")
+        raise InputError(f"{name} must ascend, and there must be some, not {found!r}")
     return found

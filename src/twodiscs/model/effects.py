@@ -37,7 +37,7 @@ class Effect:
         return self.low is not None
 
     def checked(self, value):
-        """Return ``value`` as a float; raise ``ValueError`` unless it is absent or in range."""
+        """Return ``value`` as a float; raise ``InputError`` unless it is absent or in range."""
         real = isinstance(value, Real) and not isinstance(value, bool)
         if value is None or (real and value == self.default):
             return self.default

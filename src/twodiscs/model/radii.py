@@ -8,7 +8,7 @@ from hashlib import blake2b
 from itertools import pairwise
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import length, one_of, whole
+from twodiscs.model.checks import InputError, length, one_of, whole
 
 #: The stochastic stages, each with random streams of its own.
 METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory", "unmet")
@@ -33,18 +33,18 @@ def radii(width, height, smallest, count):
     any of the three; from the smallest radius they start evenly. Each is then rounded to the
     fewest digits that leave it near its place.
 
-    Raises ``ValueError`` if ``count`` is not an integer from 1 to ``MOST``, or ``smallest`` is not
+    Raises ``InputError`` if ``count`` is not an integer from 1 to ``MOST``, or ``smallest`` is not
     a length below the largest radius or lies on a threshold.
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
     smallest, count = length("smallest", smallest), whole("count", count, 1, MOST)
     if smallest >= largest * (1 - NARROWEST):
-        raise ValueError(
+        raise InputError(
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
         )
     if smallest in limits:
-        raise ValueError(f"smallest must not be {smallest!r}, where a hop becomes blocked")
+        raise InputError(f"smallest must not be {smallest!r}, where a hop becomes blocked")
 
     edges = [smallest]
     for limit in (*limits, largest):
@@ -76,12 +76,12 @@ def even_radii(smallest, largest, count):
     """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
 
     Each is rounded to the fewest digits that leave it near its place, but for the first. Raises
-    ``ValueError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
+    ``InputError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
     """
     smallest, largest = length("smallest", smallest), length("largest", largest)
     count = whole("count", count, 1, MOST)
     if smallest >= largest:
-        raise ValueError(f"smallest must be below {largest!r}, not {smallest!r}")
+        raise InputError(f"smallest must be below {largest!r}, not {smallest!r}")
     step = (largest - smallest) / max(count - 1, 1)
     places = [largest - i * step for i in reversed(range(count - 1))]
     return (smallest, *(shortest_decimal(p, min(step / 4, p / 100)) for p in places))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model.checks import LONGEST, SHORTEST, length, number
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import DECLARED, EVENTS
 
@@ -39,7 +39,7 @@ class Scene:
     * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
       of the surfaces is reversed too, between discs and at walls. None means smooth.
 
-    Raises ``ValueError`` for a value that is not of its kind, for a radius that leaves the discs no
+    Raises ``InputError`` for a value that is not of its kind, for a radius that leaves the discs no
     room or no motion at total energy 1/2, and for effects that do not go together.
     """
 
@@ -58,11 +58,11 @@ class Scene:
             object.__setattr__(self, name, length(name, getattr(self, name)))
         for name in EFFECTS:
             if isinstance(getattr(self, name), bool):
-                raise ValueError(f"{name} must not be a truth value, {getattr(self, name)!r}")
+                raise InputError(f"{name} must not be a truth value, {getattr(self, name)!r}")
         if self.has_effects:
             self._check_effects()
         if not self._fits():
-            raise ValueError(
+            raise InputError(
                 f"radius {self.radius!r} does not fit: two {self._what} in a box of "
                 f"{self._box} need a radius below {self.largest_radius!r}"
             )
@@ -83,15 +83,15 @@ class Scene:
 
         allowed = "".join(self.axes)
         if not isinstance(self.periodic, str) or len(set(self.periodic)) != len(self.periodic):
-            raise ValueError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
+            raise InputError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
         for axis in self.periodic:
             if axis not in allowed:
-                raise ValueError(
+                raise InputError(
                     f"periodic must be some of the axes {allowed}, not {self.periodic!r}"
                 )
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:
-            raise ValueError(
+            raise InputError(
                 "field must be 0 where y is periodic, for nothing would hold the discs, not "
                 f"{self.field!r}"
             )
@@ -105,19 +105,19 @@ class Scene:
             where = "in a box without walls (the spins would keep I1 ω1/r1 − I2 ω2/r2 for ever)"
         else:
             return
-        raise ValueError(
+        raise InputError(
             f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
         )
 
     def _check_energy(self):
         if self._lowest_potential(self._spread("y")) >= ENERGY:
-            raise ValueError(
+            raise InputError(
                 f"field {self.field!r} is too strong at radius {self.radius!r}: with a total "
                 "energy of 1/2 the discs cannot leave the bottom, where they do not fit side by "
                 "side"
             )
         if (self.radius_ratio, self.mass_ratio) != (1.0, 1.0) and not self.vertical_hops:
-            raise ValueError(
+            raise InputError(
                 "unequal discs in a field need room and energy to pass each other on y1 = y2, or "
                 f"the parts of configuration space are unequal, too; at radius {self.radius!r} "
                 "they lack it"
@@ -347,7 +347,7 @@ class Scene:
     def is_possible(self, event):
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
         if event not in EVENTS:
-            raise ValueError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
+            raise InputError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
         if event not in self.events:
             return False
         found = DECLARED[event]
@@ -371,9 +371,9 @@ def _largest_radius(width, height):
 
 
 def a_scene(value):
-    """Return ``value``; raise ``ValueError`` unless it is a ``Scene``."""
+    """Return ``value``; raise ``InputError`` unless it is a ``Scene``."""
     if not isinstance(value, Scene):
-        raise ValueError(f"scene must be a Scene, not {value!r}")
+        raise InputError(f"scene must be a Scene, not {value!r}")
     return value
 
 

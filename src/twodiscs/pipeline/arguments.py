@@ -5,6 +5,8 @@ import json
 import sys
 from pathlib import Path
 
+from twodiscs.model.checks import InputError
+
 
 class Parser(argparse.ArgumentParser):
     """An argument parser that answers a mistake with one sentence and exit status 2."""
@@ -19,7 +21,7 @@ class Parser(argparse.ArgumentParser):
 def parameters(text):
     """Return the object that ``text`` spells in JSON, or the file that it names as @path.
 
-    Raises ``ValueError`` for anything else, ``OSError`` for a file that cannot be read.
+    Raises ``InputError`` for anything else, ``OSError`` for a file that cannot be read.
     """
     if text.startswith("@"):
         text = Path(text[1:]).read_text(encoding="utf-8")
@@ -28,21 +30,21 @@ def parameters(text):
     except (ValueError, RecursionError):
         value = None
     if not isinstance(value, dict):
-        raise ValueError(f"parameters must be a JSON object, not {text[:80]!r}")
+        raise InputError(f"parameters must be a JSON object, not {text[:80]!r}")
     return value
 
 
 def _no_number(text):
-    raise ValueError(f"{text} is no number")
+    raise InputError(f"{text} is no number")
 
 
 def named(texts, what):
-    """Return {name: value} of arguments NAME=VALUE; raise ``ValueError`` for another form."""
+    """Return {name: value} of arguments NAME=VALUE; raise ``InputError`` for another form."""
     found = {}
     for text in texts:
         name, mark, value = text.partition("=")
         if not mark or not name or not value:
-            raise ValueError(f"{what} must be given as NAME=VALUE, not {text!r}")
+            raise InputError(f"{what} must be given as NAME=VALUE, not {text!r}")
         found[name] = value
     return found
 
@@ -64,12 +66,13 @@ def fail(message):
 def run(main):
     """Call ``main()`` and exit with the status that it returns (None means 0).
 
-    A ``ValueError`` or ``OSError`` becomes one sentence on standard error and exit status 2.
+    What a user got wrong, an ``InputError`` or a file that cannot be read, becomes one sentence on
+    standard error and exit status 2. Any other exception keeps its traceback.
     """
     try:
         status = main()
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}" if error.filename else error)
-    except ValueError as error:
+    except (InputError, UnicodeDecodeError) as error:
         fail(error)
     raise SystemExit(status)

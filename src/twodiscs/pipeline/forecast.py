@@ -275,7 +275,7 @@ def scene_rows(request, pilots, starts, cores):
 def rows(configuration, cores):
     """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` ≥ 1 cores.
 
-    Raises ``ValueError`` for another number of them.
+    Raises ``InputError`` for another number of them.
     """
     cores = whole("cores", cores)
     requests = configuration.scenes

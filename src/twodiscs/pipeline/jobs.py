@@ -22,11 +22,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, named, parameters, run
 
 
 def module_of(name):
-    """Return the module ``name`` of this package; raise ``ValueError`` if there is none."""
+    """Return the module ``name`` of this package; raise ``InputError`` if there is none."""
     parts = name.split(".")
     try:
         if all(part.isidentifier() for part in parts) and find_spec(f"twodiscs.{name}"):
@@ -34,22 +35,22 @@ def module_of(name):
     except ModuleNotFoundError as error:
         if not f"twodiscs.{name}".startswith(f"{error.name}"):
             raise
-    raise ValueError(f"module must be one of the package twodiscs, not {name!r}")
+    raise InputError(f"module must be one of the package twodiscs, not {name!r}")
 
 
 def function_of(module, name):
-    """Return the function ``name`` of a module; raise ``ValueError`` if there is none."""
+    """Return the function ``name`` of a module; raise ``InputError`` if there is none."""
     found = getattr(module_of(module), name, None)
     if not callable(found):
-        raise ValueError(f"{module} must have a function {name}, but has none")
+        raise InputError(f"{module} must have a function {name}, but has none")
     return found
 
 
 class Tables(dict):
-    """The tables of a job, {name: rows}; one that was not given is a ``ValueError``."""
+    """The tables of a job, {name: rows}; one that was not given is an ``InputError``."""
 
     def __missing__(self, name):
-        raise ValueError(f"the table {name} must be given, as --table {name}=CSV")
+        raise InputError(f"the table {name} must be given, as --table {name}=CSV")
 
 
 def table_of(name, beside=""):
@@ -58,12 +59,12 @@ def table_of(name, beside=""):
     for place in ("comparison.scene_tables", *(f"{folder}.table" for folder in folders)):
         try:
             declared = module_of(place)
-        except ValueError:
+        except InputError:
             continue
         for table in vars(declared).values():
             if isinstance(table, type) and hasattr(table, "columns") and table.name() == name:
                 return table
-    raise ValueError(f"there is no table called {name!r}")
+    raise InputError(f"there is no table called {name!r}")
 
 
 def read_tables(texts):
@@ -75,14 +76,14 @@ def read_tables(texts):
 def call(function, given, **more):
     """Call ``function`` with the parameters ``given``, a ``box`` made of those of that name.
 
-    Arguments in ``more`` are passed if the function takes them. Raises ``ValueError`` for
+    Arguments in ``more`` are passed if the function takes them. Raises ``InputError`` for
     parameters that it does not take, and for missing ones.
     """
     if given.get("box") is not None:
         try:
             given = given | {"box": Box(**given["box"])}
         except TypeError:
-            raise ValueError(
+            raise InputError(
                 f"box must have width, height and maybe effects, not {given['box']!r}"
             ) from None
     signature = inspect.signature(function)
@@ -90,7 +91,7 @@ def call(function, given, **more):
     try:
         bound = signature.bind(**given)
     except TypeError as error:
-        raise ValueError(f"parameters of {function.__module__}: {error}") from None
+        raise InputError(f"parameters of {function.__module__}: {error}") from None
     return function(*bound.args, **bound.kwargs)
 
 
@@ -130,7 +131,7 @@ def table(options):
     """Write the table that a module makes of its parameters, of other tables and of points."""
     work = function_of(options.module, options.function)
     if "points" in inspect.signature(work).parameters and not options.points:
-        raise ValueError(f"{options.function} needs --points")
+        raise InputError(f"{options.function} needs --points")
     start = time.process_time()
     rows = call(
         work,
@@ -207,7 +208,7 @@ def main():
     parser.add_argument("--cost", metavar="JSON", help="where to write the work and the seconds")
     options = parser.parse_args()
     if options.parameters is None and options.job not in ("kernels", "verdict"):
-        raise ValueError(f"{options.job} needs --parameters")
+        raise InputError(f"{options.job} needs --parameters")
     return JOBS[options.job](options)
 
 

@@ -11,6 +11,8 @@ from functools import cache
 from hashlib import blake2b
 from pathlib import Path
 
+from twodiscs.model.checks import InputError
+
 PACKAGE = Path(__file__).resolve().parents[1]
 
 
@@ -20,7 +22,7 @@ def imported(*modules, without=()):
     They are dotted names below the package, "dynamics.counting" say. Imports are followed wherever
     they stand, in functions too, through ``__init__.py`` files and relative names; a module that is
     imported by a computed name is not seen. Those in ``without`` are left out, with what only they
-    import: what they say is of no consequence there. Raises ``ValueError`` for a name that is no
+    import: what they say is of no consequence there. Raises ``InputError`` for a name that is no
     module of this package.
     """
     left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
@@ -37,7 +39,7 @@ def _parts(module):
     """Return the parts of the dotted name of a module below the package."""
     name = tuple(module.split(".")) if isinstance(module, str) else ()
     if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
-        raise ValueError(f"module must be a module of {PACKAGE.name}, not {module!r}")
+        raise InputError(f"module must be a module of {PACKAGE.name}, not {module!r}")
     return name
 
 

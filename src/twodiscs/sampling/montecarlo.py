@@ -26,7 +26,7 @@ import math
 import numpy as np
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import one_of, proportion, whole
+from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, inlined, optional, tally, written_out
@@ -184,7 +184,7 @@ def shell_thickness(scene, event, fraction):
     of two discs) and stays inside the box. The room is that to the largest radius or, for a hop,
     the width of the gap between the discs when they pass each other as far apart as they can be.
 
-    Raises ``ValueError`` for an event without a shell and a ``fraction`` that is not between 0 and
+    Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
     one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
@@ -225,7 +225,7 @@ def sample_point(scene, quantities, samples, shell, seed):
     area of all walls takes no shell of its own: ``right_and_top`` is how many samples lie in both
     shells.
 
-    For a scene with effects see ``weighted_point``. Raises ``ValueError`` for an unknown quantity
+    For a scene with effects see ``weighted_point``. Raises ``InputError`` for an unknown quantity
     or a number out of range.
     """
     if a_scene(scene).has_effects:
@@ -257,7 +257,7 @@ def _shells(scene, quantities, shell):
     for quantity in quantities:
         one_of("quantity", quantity, allowed)
     if not quantities:
-        raise ValueError("quantities must name at least one quantity, not none")
+        raise InputError("quantities must name at least one quantity, not none")
     shell = proportion("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and not scene.has_effects:
@@ -323,10 +323,10 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     ``Draw.mass``, is known; so its point has the form of that of ``sample_point``, for the same
     arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded up to
     whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the better
-    choice wherever it accepts a few in a hundred. Raises ``ValueError`` as ``sample_point`` does.
+    choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point`` does.
     """
     if a_scene(scene).has_effects:
-        raise ValueError(f"scene must have no effects for conditioned draws, not {scene.effects}")
+        raise InputError(f"scene must have no effects for conditioned draws, not {scene.effects}")
     wanted, epsilon = _shells(scene, quantities, shell)
     blocks, seed = -(-whole("samples", samples) // PROPOSALS), whole("seed", seed, 0)
     draw, sigma = draw_constants(scene), scene.contact_distance

@@ -9,7 +9,7 @@ weights: they are handed over to ``weighted``, which needs NumPy and is imported
 import math
 from functools import lru_cache
 
-from twodiscs.model.checks import length, one_of
+from twodiscs.model.checks import InputError, length, one_of
 from twodiscs.model.events import DECLARED, EVENTS, SHELLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory import plain
@@ -29,7 +29,7 @@ def volume(scene):
     """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
     Within a few roundings of the exact value for every box and radius. In a field it is weighted
-    with the invariant density (see ``weighted``). Raises ``ValueError`` for anything that is not a
+    with the invariant density (see ``weighted``). Raises ``InputError`` for anything that is not a
     ``Scene``.
     """
     return measures(a_scene(scene))[0]
@@ -51,7 +51,7 @@ def rate(scene, event):
 
     This is the mean over the whole configuration space. A trajectory that can reach the right (top)
     wall at all hits it twice as often where it is confined to one side of the other disc:
-    ``mean_times``. Raises ``ValueError`` for anything that is not a ``Scene`` or one of
+    ``mean_times``. Raises ``InputError`` for anything that is not a ``Scene`` or one of
     ``EVENTS``.
     """
     if a_scene(scene).has_effects:
@@ -66,7 +66,7 @@ def rate(scene, event):
 def event_rate(scene):
     """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
 
-    Raises ``ValueError`` for anything that is not a ``Scene``.
+    Raises ``InputError`` for anything that is not a ``Scene``.
     """
     return rate(scene, "any_wall") + rate(scene, "disc_collision")
 
@@ -88,7 +88,7 @@ def exact(scene):
     """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
 
     Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Raises
-    ``ValueError`` for anything that is not a ``Scene``.
+    ``InputError`` for anything that is not a ``Scene``.
     """
     return {
         "regime": a_scene(scene).regime,
@@ -112,7 +112,7 @@ def shell_expectation(scene, event, epsilon):
 
     Just beyond the radius where a hop becomes blocked its shell is not empty yet, though its area
     is 0. Shells of scenes with effects, whose discs may differ in mass, are in
-    ``weighted.shell_expectation``. Raises ``ValueError`` for anything that is not a ``Scene``, for
+    ``weighted.shell_expectation``. Raises ``InputError`` for anything that is not a ``Scene``, for
     an ``epsilon`` that is not a length up to the radius, and for ``any_wall``, which has no shell
     of its own in a plain scene.
     """
@@ -123,7 +123,7 @@ def shell_expectation(scene, event, epsilon):
     one_of("event", event, SHELLS)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
-        raise ValueError(
+        raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
     return plain.shell_expectation(scene, event, epsilon)

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from twodiscs.model.checks import one_of
+from twodiscs.model.checks import InputError, one_of
 from twodiscs.model.events import DECLARED, EVENTS
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.theory.exact import volume
@@ -24,9 +24,9 @@ TURNED = {
 
 
 def a_plain_scene(scene):
-    """Return ``scene``; raise ``ValueError`` unless it is a ``Scene`` without effects."""
+    """Return ``scene``; raise ``InputError`` unless it is a ``Scene`` without effects."""
     if a_scene(scene).has_effects:
-        raise ValueError(
+        raise InputError(
             "scene must be plain for closed forms, limits and distributions, but it has "
             f"{', '.join(scene.effects)}"
         )
@@ -38,7 +38,7 @@ def closed_form(scene):
 
     For reading, for comparisons and to show how they fail: just above a threshold they can lose
     half of the digits or more, and near the largest radius, at r = (1 − δ) r_max, all of them (the
-    volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``ValueError`` for
+    volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``InputError`` for
     anything that is not a plain ``Scene``.
     """
     r = a_plain_scene(scene).radius
@@ -79,7 +79,7 @@ def small_radius_time(box, event, radius=0.0):
     """Return the mean time between events for small discs, to first order in ``radius``.
 
     With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
-    wall, and infinite for disc collisions, which go like 3wh/(8√2 r). Raises ``ValueError`` for a
+    wall, and infinite for disc collisions, which go like 3wh/(8√2 r). Raises ``InputError`` for a
     ``Box`` with effects, a radius (other than 0) that does not fit, and an event not in ``EVENTS``.
     """
     a_plain_scene(box.tiny)
@@ -107,7 +107,7 @@ def threshold_time(scene, event):
     A hop that becomes blocked before the discs jam gets rare like (w/4 − r)⁻² (vertical) or
     (h/4 − r)⁻² (horizontal). All other times follow from the room left below the largest radius
     r_max: they vanish like r_max − r, except that if one side is more than twice the other those of
-    disc collisions and of the walls at the far ends stay finite. Raises ``ValueError`` for anything
+    disc collisions and of the walls at the far ends stay finite. Raises ``InputError`` for anything
     that is not a plain ``Scene`` or one of ``EVENTS``.
     """
     w, h, r = a_plain_scene(scene).width, scene.height, scene.radius
@@ -159,7 +159,7 @@ class Law(NamedTuple):
 def leading_law(box, event):
     """Return the ``Law`` of a mean time in a plain ``Box``, or None where it stays finite.
 
-    Raises ``ValueError`` for a box with effects, and an event that is not one of ``EVENTS``.
+    Raises ``InputError`` for a box with effects, and an event that is not one of ``EVENTS``.
     """
     limit = box.threshold(one_of("event", event, EVENTS))
     near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))

@@ -24,7 +24,7 @@ def density_at_zero(scene, hop):
         p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
 
     No other way back is as short: a collision of the discs only drives them further to the sides to
-    which they hopped. Raises ``ValueError`` for anything that is not a plain ``Scene`` or
+    which they hopped. Raises ``InputError`` for anything that is not a plain ``Scene`` or
     one of ``HOPS``.
     """
     one_of("hop", hop, HOPS)
@@ -61,7 +61,7 @@ def tail_constant(scene, event):
     it, and only (u1, u2) and (v1, v2) are transversal to none. Argued, not proved, is that what is
     left (neighbourhoods of periodic motions, of the order t⁻³ each in P(none within t)) adds up to
     less, and, for hops, that what comes before and after the drift, with disc collisions, is
-    forgotten exponentially fast. Raises ``ValueError`` for anything that is not a plain ``Scene``,
+    forgotten exponentially fast. Raises ``InputError`` for anything that is not a plain ``Scene``,
     and for a wall.
     """
     one_of("event", event, (*HOPS, "disc_collision"))

@@ -32,7 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import length, one_of, whole
+from twodiscs.model.checks import InputError, length, one_of, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.scene import ENERGY, a_scene
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
@@ -41,7 +41,7 @@ from twodiscs.theory.quadrature import double_exponential, gauss_legendre
 def constant(components):
     """Return c_D: the mean of |n·s| for a unit vector s uniform in D ``components``.
 
-    2/π, 4/(3π), 16/(15π) in two, four and six dimensions. Raises ``ValueError`` unless D is an
+    2/π, 4/(3π), 16/(15π) in two, four and six dimensions. Raises ``InputError`` unless D is an
     integer ≥ 1.
     """
     half = whole("components", components) / 2
@@ -417,7 +417,7 @@ def _areas(scene):
 def volume(scene):
     """Return the weighted volume V of a ``Scene``, in length⁴ (length⁶ for balls).
 
-    Without a field it is the volume of configuration space. Raises ``ValueError`` for anything that
+    Without a field it is the volume of configuration space. Raises ``InputError`` for anything that
     is not a ``Scene``.
     """
     return _volume(a_scene(scene))
@@ -428,7 +428,7 @@ def areas(scene):
 
     In length³ (length⁵ for balls) over the square root of a mass; exactly 0.0 where the event is
     impossible or has no place. ``any_wall`` sums over both discs and all walls. Raises
-    ``ValueError`` for anything that is not a ``Scene``.
+    ``InputError`` for anything that is not a ``Scene``.
     """
     return dict(_areas(a_scene(scene)))
 
@@ -436,7 +436,7 @@ def areas(scene):
 def rate(scene, event):
     """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
 
-    It is c_D A/V for hops and half of that for other events. Raises ``ValueError`` for anything
+    It is c_D A/V for hops and half of that for other events. Raises ``InputError`` for anything
     that is not a ``Scene`` or one of ``EVENTS``.
     """
     area = areas(scene)[one_of("event", event, EVENTS)]
@@ -460,13 +460,13 @@ def shell_expectation(scene, event, epsilon):
         top wall         likewise
         any wall         the sum of the shells of both discs at all walls, ε/√m each
 
-    Raises ``ValueError`` for anything that is not a ``Scene``, for an event that has
+    Raises ``InputError`` for anything that is not a ``Scene``, for an event that has
     no place in it, and for an ``epsilon`` that is not a length up to the radius.
     """
     one_of("event", event, a_scene(scene).events)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
-        raise ValueError(
+        raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
     space = _Space(scene, (scene.velocity_components - 1) / 2)

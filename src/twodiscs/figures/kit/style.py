@@ -11,6 +11,8 @@ import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from twodiscs.model.checks import InputError
+
 #: Width of one column of a two-column journal, in inches.
 COLUMN = 3.4
 
@@ -93,7 +95,7 @@ def new_figure(height, width=COLUMN):
 def save(figure, path):
     """Write ``figure`` to ``path`` (.pdf, .png or .svg) without dates or names of programs in it.
 
-    Raises ``ValueError`` for a file name with another ending.
+    Raises ``InputError`` for a file name with another ending.
     """
     kind = str(path).rpartition(".")[2]
     metadata = {
@@ -102,5 +104,5 @@ def save(figure, path):
         "svg": {"Creator": None, "Date": None},
     }
     if kind not in metadata:
-        raise ValueError(f"output must be a .pdf, .png or .svg file, not {str(path)!r}")
+        raise InputError(f"output must be a .pdf, .png or .svg file, not {str(path)!r}")
     figure.savefig(path, format=kind, metadata=metadata[kind])

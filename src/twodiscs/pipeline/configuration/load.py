@@ -13,6 +13,7 @@ from difflib import get_close_matches
 import yaml
 
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
@@ -43,7 +44,7 @@ LEAST_SHARE = 1e-4
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class ConfigError(ValueError):
+class ConfigError(InputError):
     """A mistake in a configuration, told in one sentence."""
 
 
@@ -230,7 +231,7 @@ def _box(block, path):
     named = {name: value for name, value in named.items() if value != ABSENT[name]}
     try:
         return Box(sides["width"], sides["height"], named)
-    except ValueError as error:
+    except InputError as error:
         raise ConfigError(f"{path}.effects: {error}") from None
 
 
@@ -245,7 +246,7 @@ def _radii(asked, box, path):
             generated = even_radii(smallest, LAST_FRACTION * box.last_radius, asked["count"])
         else:
             generated = radii(box.width, box.height, smallest, asked["count"])
-    except ValueError as error:
+    except InputError as error:
         raise ConfigError(f"{path}: {error}") from None
     return _checked(tuple({*generated, *include}), box, path)
 
@@ -330,7 +331,7 @@ def _checked(found, box, path):
     for radius in found:
         try:
             scene = box.scene(radius)
-        except ValueError as error:
+        except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
         if scene.has_effects and (share := _free_share(scene)) < LEAST_SHARE:
             raise ConfigError(

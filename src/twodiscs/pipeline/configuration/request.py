@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
 
 #: The stages whose jobs run once for each radius, and the module that does the work of each.
@@ -102,11 +103,11 @@ class SceneRequest:
     def job(self, stage, key):
         """Return what the job of a ``stage`` at the radius of this ``key`` depends on.
 
-        Raises ``ValueError`` if there is no such job.
+        Raises ``InputError`` if there is no such job.
         """
         radii = self.keys[stage]
         if key not in radii:
-            raise ValueError(f"key must be one of {', '.join(radii) or 'none'}, not {key!r}")
+            raise InputError(f"key must be one of {', '.join(radii) or 'none'}, not {key!r}")
         sampled = {"areas": list(self.watch.areas), "volume": self.watch.volume}
         settings = {
             "monte_carlo": self.monte_carlo
@@ -136,10 +137,10 @@ class SceneRequest:
         return self._sorted(radii=sorted({*self.radii, *self.watch.hop_histogram}))
 
     def trajectory_job(self):
-        """Return box, radius and seed; raise ``ValueError`` if no trajectory is watched."""
+        """Return box, radius and seed; raise ``InputError`` if no trajectory is watched."""
         radius = self.watch.trajectory
         if radius is None:
-            raise ValueError(f"scene {self.name} watches no trajectory")
+            raise InputError(f"scene {self.name} watches no trajectory")
         return self._sorted(
             radius=radius, seed=stream_seed(self.seed, self.name, "trajectory", key(radius))
         )
@@ -178,9 +179,9 @@ class Configuration:
         return next(iter(self.plain), None)
 
     def scene(self, name):
-        """Return the scene called ``name``, or raise ``ValueError``."""
+        """Return the scene called ``name``, or raise ``InputError``."""
         for scene in self.scenes:
             if scene.name == name:
                 return scene
         names = ", ".join(scene.name for scene in self.scenes)
-        raise ValueError(f"name must be one of {names}, not {name!r}")
+        raise InputError(f"name must be one of {names}, not {name!r}")

@@ -7,6 +7,7 @@ The seed is for a file that names none, as that of the configuration is for a fi
 
 import json
 
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.load import load, read
 
@@ -14,12 +15,12 @@ from twodiscs.pipeline.configuration.load import load, read
 def effects_job(path, seed):
     """Return the arguments of ``studies.effects.measure.job`` for the scene of the file ``path``.
 
-    Raises ``ValueError`` for a file that holds more than one scene, or one without effects or mean
+    Raises ``InputError`` for a file that holds more than one scene, or one without effects or mean
     times, ``OSError`` for one that cannot be read.
     """
     scenes = load({"seed": seed} | read(path)).scenes
     if len(scenes) != 1 or not scenes[0].effects or not scenes[0].watch.mean_times:
-        raise ValueError(f"{path} must hold one scene, with effects, that watches mean times")
+        raise InputError(f"{path} must hold one scene, with effects, that watches mean times")
     (scene,) = scenes
     jobs = [scene.job("dynamics", key) for key in scene.keys["dynamics"]]
     dynamics = [{name: value for name, value in job.items() if name != "box"} for job in jobs]

@@ -7,6 +7,7 @@ import subprocess
 from importlib.metadata import version
 
 from twodiscs.figures.catalogue import FIGURES, NOTES
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
@@ -46,7 +47,7 @@ def typeset(template, output, contents):
     ``captions`` of all figures, the ``commit`` of the template and the
     ``versions``; its entry ``results``, their folder, becomes a path from the root that template
     and results have in common. The same inputs at the same commit give the same bytes on every
-    machine: fonts are those that come with Typst. Raises ``ValueError`` if the template does not
+    machine: fonts are those that come with Typst. Raises ``InputError`` if the template does not
     compile.
     """
     import typst
@@ -69,7 +70,7 @@ def typeset(template, output, contents):
             sys_inputs={"contents": json.dumps(contents)},
         )
     except typst.TypstError as error:
-        raise ValueError(f"{template} does not compile: {error.message}; {error.trace}") from None
+        raise InputError(f"{template} does not compile: {error.message}; {error.trace}") from None
 
 
 def main():

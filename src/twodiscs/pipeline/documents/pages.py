@@ -10,6 +10,7 @@ from pathlib import Path
 
 from twodiscs.comparison import check
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Forecast
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document
 from twodiscs.studies.catalogue import STUDIES, STUDY_TABLES
@@ -59,7 +60,7 @@ def renewed(text, new, start, end=None):
     """Return ``text`` with ``new`` from ``start`` on, or between ``start`` and ``end``."""
     before, mark, rest = text.partition(start)
     if not mark:
-        raise ValueError(f"the page must have a line {start.strip()!r}")
+        raise InputError(f"the page must have a line {start.strip()!r}")
     if end is None:
         return before + new
     return before + start + new + end + rest.partition(end)[2]

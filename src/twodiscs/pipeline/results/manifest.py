@@ -32,7 +32,7 @@ def digest(path):
 def manifest(folder, paths):
     """Return the lines of ``sha256sum`` for the files at ``paths``, named from ``folder``, sorted.
 
-    Raises ``OSError`` for a file that cannot be read, ``ValueError`` for one outside the folder.
+    Raises ``OSError`` for a file that cannot be read, ``InputError`` for one outside the folder.
     """
     names = sorted(Path(path).relative_to(folder).as_posix() for path in paths)
     return "".join(f"{digest(Path(folder, name))}  {name}\n" for name in names)

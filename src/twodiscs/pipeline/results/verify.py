@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.request import STAGES
@@ -122,13 +123,13 @@ def _points_sheet(points):
 def read_points(folder):
     """Return {key: point} of the files of a ``folder`` of points, by radius.
 
-    Raises ``ValueError`` for a file that holds no point.
+    Raises ``InputError`` for a file that holds no point.
     """
     try:
         paths = sorted(Path(folder).glob("*.json"), key=lambda path: float(path.stem))
         return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
     except ValueError as error:
-        raise ValueError(f"{folder} must hold points alone: {error}") from None
+        raise InputError(f"{folder} must hold points alone: {error}") from None
 
 
 # Comparison -----------------------------------------------------------------------------------
@@ -196,13 +197,13 @@ def verify(results, expected):
     """Compare the folder ``results`` with the folder ``expected``.
 
     Returns (sentences, Counter of what was compared: points, counts, tables, floats). Raises
-    ``ValueError`` where one of them holds nothing to compare, or a file is not what its name says.
+    ``InputError`` where one of them holds nothing to compare, or a file is not what its name says.
     """
     results, expected = Path(results), Path(expected)
     paths = sorted(p for p in expected.rglob("*.*") if p.suffix in (".csv", ".json"))
     names = [p.relative_to(expected) for p in paths if p.name != "configuration.json"]
     if not names:
-        raise ValueError(f"{expected} must hold what is expected, but holds no table or point")
+        raise InputError(f"{expected} must hold what is expected, but holds no table or point")
     sentences, compared = [], Counter()
     for name in names:
         here, there = results / name, expected / name
@@ -232,7 +233,7 @@ def write(results, expected, configuration):
     """Make the folder ``expected`` that of these ``results`` of a ``configuration``, a mapping.
 
     Takes the points that the configuration asks for and the tables of ``manifest.sha256``. Raises
-    ``ValueError`` if a table has changed since that was written, ``OSError`` for what is missing.
+    ``InputError`` if a table has changed since that was written, ``OSError`` for what is missing.
     """
     results, expected = Path(results), Path(expected)
     rows, points = {}, {}
@@ -240,7 +241,7 @@ def write(results, expected, configuration):
         known, name = line.split(maxsplit=1)
         path = results / name
         if digest(path) != known:
-            raise ValueError(f"{path} must be as in manifest.sha256, but has changed since")
+            raise InputError(f"{path} must be as in manifest.sha256, but has changed since")
         if path.suffix == ".csv":
             rows[name] = thinned(path.stem, TABLES[path.stem].read(path))
     for scene in load(configuration).scenes:
@@ -250,7 +251,7 @@ def write(results, expected, configuration):
                 found = read_points(folder)
                 missing = [key for key in keys if key not in found]
                 if missing:
-                    raise ValueError(f"{folder} must have a point at {missing[0]}, but has none")
+                    raise InputError(f"{folder} must have a point at {missing[0]}, but has none")
                 points[f"{scene.name}/points/{method}.json"] = {key: found[key] for key in keys}
 
     for old in (*expected.rglob("*.csv"), *expected.rglob("*.json")):
@@ -286,7 +287,7 @@ def main():
 
     results, expected = options.results, options.expected
     if not any(path.is_dir() for path in results.glob("*/points")):
-        raise ValueError(f"{results} holds no results to verify: they are built by make")
+        raise InputError(f"{results} holds no results to verify: they are built by make")
     configuration = parameters(options.configuration or f"@{results / 'configuration.json'}")
     if options.write:
         write(results, expected, configuration)
@@ -294,10 +295,10 @@ def main():
         return 0
 
     if not (expected / "configuration.json").exists():
-        raise ValueError(f"{expected} holds no results to compare with: --write puts them there")
+        raise InputError(f"{expected} holds no results to compare with: --write puts them there")
     other = other_configuration(configuration, parameters(f"@{expected / 'configuration.json'}"))
     if other:
-        raise ValueError(
+        raise InputError(
             f"{expected} holds the results of the default configuration, and this is another one: "
             f"{other}"
         )

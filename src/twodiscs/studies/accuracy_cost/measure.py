@@ -593,7 +593,7 @@ def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
 
     Of the least work every method does its share, so a few seconds are spent whatever is asked.
     ``repetitions`` ≥ 2. ``report``, if given, is called with a text on what is done and the work
-    left, over that done. Raises ``ValueError`` for a number out of range.
+    left, over that done. Raises ``InputError`` for a number out of range.
     """
     scale = length("seconds", seconds) / USUAL_SECONDS
     repetitions = whole("repetitions", repetitions, 2)

@@ -129,7 +129,7 @@ def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
     """Count all events as ``counting.run_blocks`` does, but with states of ``dtype``.
 
     Returns (Σ N_e in the order of ``COUNTED``, mean and root mean square of the relative error of
-    the energy at the end of a replica). Raises ``ValueError`` for a scene, a seed or a duration
+    the energy at the end of a replica). Raises ``InputError`` for a scene, a seed or a duration
     that is none, a range without blocks, and a ``dtype`` other than numpy's float32 and float64.
     """
     a_scene(scene)

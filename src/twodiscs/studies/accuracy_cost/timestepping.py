@@ -100,7 +100,7 @@ def run_blocks(scene, seed, first, stop, duration, step):
     """Count all events as ``counting.run_blocks`` does, but by steps of ``step``.
 
     The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of ``COUNTED``. Raises
-    ``ValueError`` for a scene, seed, duration or step that is none, or a range without blocks.
+    ``InputError`` for a scene, seed, duration or step that is none, or a range without blocks.
     """
     a_scene(scene)
     seed, first = whole("seed", seed, 0), whole("first", first, 0)

@@ -20,7 +20,7 @@ from twodiscs.comparison.scores import chi2_p, student_deviate
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box
-from twodiscs.model.checks import length, one_of, whole
+from twodiscs.model.checks import InputError, length, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
@@ -99,7 +99,7 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
 def _whole_counts(counts, fewest):
     values = [whole("count", n, 0) for n in counts]
     if len(values) < fewest:
-        raise ValueError(f"counts must be of at least {fewest} bins, not {len(values)}")
+        raise InputError(f"counts must be of at least {fewest} bins, not {len(values)}")
     return np.array(values, float)
 
 
@@ -109,14 +109,14 @@ def exponential_rate(counts, width):
     It is that of a maximum of the likelihood within the bins, whatever lies outside them. Returns
     (rate, chi2, degrees): the rate as an ``Estimate`` with the error from Fisher's information, and
     Pearson's χ² of the law with its degrees of freedom, from bins joined to ``PER_BIN`` counts on
-    average. Raises ``ValueError`` for fewer than ``FEWEST`` counts, and for counts that are not
+    average. Raises ``InputError`` for fewer than ``FEWEST`` counts, and for counts that are not
     those of at least three bins.
     """
     n = _whole_counts(counts, 3)
     width = length("width", width)
     total, bins = n.sum(), np.arange(n.size)
     if total < FEWEST:
-        raise ValueError(f"counts must be at least {FEWEST} in all, not {int(total)}")
+        raise InputError(f"counts must be at least {FEWEST} in all, not {int(total)}")
     middle = (n.size - 1) / 2
     goal, slope = (n @ bins) / total, 0.0
     for _ in range(60):  # Newton; the law of the bin is ∝ exp(−slope × bin)
@@ -142,13 +142,13 @@ def density_at_zero(counts, intervals, width):
     ``counts`` are those of the first bins of ``width`` from 0, out of so many independent
     ``intervals``; the error is that of multinomial counts. There is no linear term: discs that
     touch right after a hop are side by side and exchange velocities along x, which does not change
-    when they hop back. Raises ``ValueError`` for fewer than two bins and for counts beyond
+    when they hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
     ``intervals``.
     """
     n = _whole_counts(counts, 2)[:2]
     intervals, width = whole("intervals", intervals), length("width", width)
     if n.sum() > intervals:
-        raise ValueError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
+        raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
     weights = np.array([7, -1]) / 6
     share = weights @ n / intervals
     spread = weights**2 @ n / intervals - share**2
@@ -195,13 +195,13 @@ def measured(scene, hop, seed, events=EVENTS):
 
     These are rows of distributions.csv but for the columns that name scene and hop. ``events`` is
     how many wall and disc events the intervals, and the first passages, take at most. Raises
-    ``ValueError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
+    ``InputError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
     range.
     """
     one_of("hop", hop, HOPS)
     constant = tails.tail_constant(scene, hop)
     if constant is None:
-        raise ValueError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
+        raise InputError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
     seed, events = whole("seed", seed, 0), whole("events", events)
     mean = exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
@@ -253,7 +253,7 @@ def rows(scenes, seed, events=EVENTS):
 
     ``scenes`` are dicts of name, box, and event and radii of hops; of the first one the radii that
     approach the blocking of its hops are added (``near_threshold``). Every case has a stream of its
-    own, from the root ``seed``, its scene, hop and radius. Raises ``ValueError`` as ``measured``
+    own, from the root ``seed``, its scene, hop and radius. Raises ``InputError`` as ``measured``
     does.
     """
     for i, one in enumerate(scenes):

@@ -66,7 +66,7 @@ def unmet(scene, times, blocks, seed):
     """Return for how many starts of a ``Scene`` the discs have not met by each of ``times``.
 
     Of ``blocks`` × ``REPLICAS`` starts of the invariant measure, a list of integers. Raises
-    ``ValueError`` for anything that is not a ``Scene``, for ``times`` that do not ascend, and for a
+    ``InputError`` for anything that is not a ``Scene``, for ``times`` that do not ascend, and for a
     number out of range.
     """
     law, (draw, prism) = law_of(a_scene(scene)), origins(scene)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from mpmath import mp, mpf
 
+from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.studies.errata.statements import GENERAL, LIMITS, NEAR, REGIMES, SAME, STATEMENTS
 from twodiscs.theory.reference import DIGITS, QUANTITIES, MpScene
@@ -128,16 +129,16 @@ def _boxes(name, tabled):
 
 
 def _confirm(quantity, radius, measured, exact):
-    """Return the true value; raise ``ValueError`` where theory.csv or a measurement differs."""
+    """Return the true value; raise ``InputError`` where theory.csv or a measurement differs."""
     true = QUANTITIES[quantity](MpScene.of(WIDTH, HEIGHT, radius))
     stable = exact.get((radius, quantity))
     if stable is not None and abs(stable / true - 1) > STABLE:
-        raise ValueError(
+        raise InputError(
             f"theory.csv must have {quantity} {float(true)!r} at radius {radius!r}, not {stable!r}"
         )
     for method, (factor, error) in measured.items():
         if abs(factor - 1) > VETO * error:
-            raise ValueError(
+            raise InputError(
                 f"{method} must agree with the truth, but finds {shown(factor, error)} of the "
                 f"{quantity} at radius {radius!r}"
             )
@@ -198,7 +199,7 @@ def judge(statement, found=None, exact=None):
 
     ``found`` is what ``measurements`` returns, ``exact`` maps (radius, quantity) to the values of
     theory.csv. The row tells of the first regime or limit for which the statement fails, if it does
-    for any. Raises ``ValueError`` where a measurement or theory.csv contradicts the truth.
+    for any. Raises ``InputError`` where a measurement or theory.csv contradicts the truth.
     """
     with mp.workdps(DIGITS):
         findings = [
@@ -223,7 +224,7 @@ def rows(tables, box):
 
     ``tables`` maps theory, volume, areas and mean_times to the rows of a scene in this ``Box``;
     each may be missing. Those of another box than the source's say nothing about it, so that theory
-    decides alone. Raises ``ValueError`` as ``judge`` does.
+    decides alone. Raises ``InputError`` as ``judge`` does.
     """
     if (box.width, box.height) != (WIDTH, HEIGHT):
         tables = {}

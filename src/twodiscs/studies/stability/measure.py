@@ -431,14 +431,14 @@ def run(scene, number, seed):
 
 
 def _checked(seed, ordinary, hard):
-    """Return the three as integers; raise ``ValueError`` for one that is out of range."""
+    """Return the three as integers; raise ``InputError`` for one that is out of range."""
     return whole("seed", seed, 0), whole("ordinary", ordinary), whole("hard", hard)
 
 
 def dynamics_rows(box, seed, ordinary, hard):
     """Yield what runs of ``ordinary`` events, and of ``hard`` events at hard radii, have seen.
 
-    Raises ``ValueError`` for a number out of range.
+    Raises ``InputError`` for a number out of range.
     """
     seed, ordinary, hard = _checked(seed, ordinary, hard)
     bounds = {
@@ -660,7 +660,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
 def rows(box, seed, ordinary, hard):
     """Return all rows of stability.csv for a plain ``Box``.
 
-    ``ordinary`` and ``hard`` are events of the long runs. Raises ``ValueError`` for a number out of
+    ``ordinary`` and ``hard`` are events of the long runs. Raises ``InputError`` for a number out of
     range, before anything is computed.
     """
     seed, ordinary, hard = _checked(seed, ordinary, hard)

@@ -22,7 +22,7 @@ from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two
 from twodiscs.dynamics.law import DISC, after_event, crosses, crossing_time, law_of, next_event
 from twodiscs.model.box import Box
-from twodiscs.model.checks import ascending, one_of, whole
+from twodiscs.model.checks import InputError, ascending, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_in_disc
@@ -142,7 +142,7 @@ def _prepared(scene, event, times):
     """Return (times as an array, the scene on its side for horizontal hops, is it a hop)."""
     one_of("event", event, TAILED)
     if tails.tail_constant(scene, event) is None:
-        raise ValueError(
+        raise InputError(
             f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
         )
     values = ascending("times", times)
@@ -157,7 +157,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
     ``samples`` starts are drawn in each stratum of each of ``blocks`` ≥ 2 independent blocks, whose
     spread gives the standard error; the strata reach down to the drifts that last for the longest
-    of the times, and the work grows with it. Raises ``ValueError`` for an event that is blocked or
+    of the times, and the work grows with it. Raises ``InputError`` for an event that is blocked or
     has no interval, and for a number out of range.
     """
     times, upright, hop = _prepared(scene, event, times)
@@ -193,7 +193,7 @@ def counted(scene, event, times, replicas, seed):
     For comparison with ``tail``: ``replicas`` ≥ 2 starts of the invariant measure, in each of which
     the intervals that begin within eight mean times are counted, however long they last. Their
     number is on average eight, which the estimate divides by. Errors are from the spread between
-    replicas. Raises ``ValueError`` as ``tail`` does.
+    replicas. Raises ``InputError`` as ``tail`` does.
     """
     times, upright, hop = _prepared(scene, event, times)
     replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
@@ -205,7 +205,7 @@ def decay(scene, event, first, last, replicas, seed):
     """Return an ``Estimate`` of the rate at which P(T > t) falls from ``first`` to ``last``.
 
     It is ln[P(T > first)/P(T > last)]/(last − first) from the intervals that ``counted`` counts,
-    with its error by the delta method over replicas. Raises ``ValueError`` as ``counted`` does, and
+    with its error by the delta method over replicas. Raises ``InputError`` as ``counted`` does, and
     where no interval is longer than ``last``.
     """
     times, upright, hop = _prepared(scene, event, [first, last])
@@ -213,7 +213,7 @@ def decay(scene, event, first, last, replicas, seed):
     counts = _counts(scene, event, upright, hop, times, replicas, seed)
     early, late = counts.mean(axis=0)
     if not late:
-        raise ValueError(f"last must be shorter: none of the intervals lasts longer than {last!r}")
+        raise InputError(f"last must be shorter: none of the intervals lasts longer than {last!r}")
     spread = np.std(counts[:, 0] / early - counts[:, 1] / late, ddof=1) / math.sqrt(replicas)
     return Estimate(math.log(early / late) / (last - first), spread / (last - first), replicas)
 
