@@ -5,7 +5,8 @@ import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))

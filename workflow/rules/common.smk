@@ -1,5 +1,6 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
+import sys
 from hashlib import blake2b
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
