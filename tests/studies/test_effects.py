@@ -269,7 +269,7 @@ def costs():
 def drawn(rows):
     """The figure of the six scenes."""
     with style.context():
-        return figure.draw(None, {"effects": rows, "effects_cost": costs()})
+        return figure.draw(tables={"effects": rows, "effects_cost": costs()})
 
 
 def test_texts_of_the_figure_stand_clear(drawn):

@@ -41,6 +41,10 @@ os.environ.update(
 )
 
 
+# Longer arguments go into a file: Linux takes 131072 letters in all that a shell is told.
+LONG = 30_000
+
+
 wildcard_constraints:
     scene="|".join(SCENES),
     key=r"[0-9][0-9.e+-]*",
@@ -75,9 +79,23 @@ def table_code(module, table):
     return code(module, table.__module__.partition(".")[2])
 
 
+def kept(text):
+    """Return the path of a file that holds ``text``, which is named by its hash."""
+    name = blake2b(text.encode(), digest_size=16).hexdigest()
+    path = Path(".snakemake", "parameters", name)
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
+    return str(path)
+
+
 def as_json(value):
-    """Return what a job depends on as one JSON object, its keys sorted."""
-    return json.dumps(dict(sorted(value.items())))
+    """Return what a job depends on as one JSON object, its keys sorted.
+
+    For what is too long for a command line it is the @path of a file that holds the object.
+    """
+    text = json.dumps(dict(sorted(value.items())))
+    return text if len(text) < LONG else f"@{kept(text)}"
 
 
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):

@@ -74,14 +74,17 @@ rule report:
     benchmark:
         benchmark_of("report")
     params:
-        configuration=lambda w, output: json.dumps(
-            config | {"results": os.path.dirname(output.html)},
-            indent=1,
-            sort_keys=True,
+        configuration=lambda w, output: kept(
+            json.dumps(
+                config | {"results": os.path.dirname(output.html)},
+                indent=1,
+                sort_keys=True,
+            )
+            + "\n"
         ),
         snakefile=str(HERE / "Snakefile"),
     shell:
-        "printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
+        "cp {params.configuration:q} {output.configuration:q};"
         " snakemake --snakefile {params.snakefile:q} --report {output.html:q}"
         " --report-stylesheet {input.style:q} --nolock --workflow-profile none"
         " --configfile {output.configuration:q} -- {input.results:q} > {log:q} 2>&1"
@@ -97,9 +100,10 @@ rule manifest:
     benchmark:
         benchmark_of("manifest")
     params:
+        files=lambda w, input: "@" + kept("\n".join(input.files)),
         code=code("pipeline.results.manifest"),
     shell:
-        "python -m twodiscs.pipeline.results.manifest {input.files:q} --output {output.manifest:q}"
+        "python -m twodiscs.pipeline.results.manifest {params.files:q} --output {output.manifest:q}"
         " > {log:q} 2>&1"
 
 

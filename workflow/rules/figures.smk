@@ -53,7 +53,7 @@ rule shared_figure:
     wildcard_constraints:
         figure="|".join(STUDY_FIGURES),
     params:
-        job=as_json({"box": MAIN.box.parameters() if MAIN else None}),
+        job=as_json({"box": MAIN.box.parameters()} if MAIN else {}),
         module=lambda w: STUDY_FIGURES[w.figure].module,
         tables=lambda w, input: named_tables(
             study_figure_tables(STUDY_FIGURES[w.figure]), input.tables

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number, one_of, shown
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import DECLARED, EVENTS
 
@@ -56,9 +56,8 @@ class Scene:
     def __post_init__(self):
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
-        for name in EFFECTS:
-            if isinstance(getattr(self, name), bool):
-                raise InputError(f"{name} must not be a truth value, {getattr(self, name)!r}")
+        for name, effect in EFFECTS.items():
+            object.__setattr__(self, name, effect.checked(getattr(self, name)))
         if self.has_effects:
             self._check_effects()
         if not self._fits():
@@ -77,18 +76,11 @@ class Scene:
             # Six lengths are multiplied.
             for name in ("depth", "width", "height", "radius"):
                 settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
-        for name, effect in EFFECTS.items():
-            if effect.is_number:
-                settle(name, effect.checked(getattr(self, name)))
-
         allowed = "".join(self.axes)
-        if not isinstance(self.periodic, str) or len(set(self.periodic)) != len(self.periodic):
-            raise InputError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
-        for axis in self.periodic:
-            if axis not in allowed:
-                raise InputError(
-                    f"periodic must be some of the axes {allowed}, not {self.periodic!r}"
-                )
+        if len(set(self.periodic)) != len(self.periodic) or not set(self.periodic) <= {*allowed}:
+            raise InputError(
+                f"periodic must be some of the axes {allowed}, not {shown(self.periodic)}"
+            )
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:
             raise InputError(
@@ -346,9 +338,7 @@ class Scene:
 
     def is_possible(self, event):
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
-        if event not in EVENTS:
-            raise InputError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
-        if event not in self.events:
+        if one_of("event", event, EVENTS) not in self.events:
             return False
         found = DECLARED[event]
         if found.kind == "hop":
@@ -373,7 +363,7 @@ def _largest_radius(width, height):
 def a_scene(value):
     """Return ``value``; raise ``InputError`` unless it is a ``Scene``."""
     if not isinstance(value, Scene):
-        raise InputError(f"scene must be a Scene, not {value!r}")
+        raise InputError(f"scene must be a Scene, not {shown(value)}")
     return value
 
 

@@ -22,8 +22,25 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, shown
 from twodiscs.pipeline.arguments import Parser, named, parameters, run
+
+#: What parameters must be, in words and as a shape, for the functions that take them check values
+#: alone. A shape is a type, a list of one shape, a dict of the keys that are needed or, by ``str``,
+#: of any keys, or a choice of shapes.
+BOX, RADIUS = {"width": object, "height": object}, int | float | str
+CASE = {"box": BOX, "name": str, "event": str, "radii": [RADIUS]}
+TEXTS = "a list of texts", [str]
+SHAPES = {
+    "areas": TEXTS,
+    "box": ("a block of width, height and maybe effects", BOX),
+    "events": ("a list of texts, or an integer", ([str], int)),
+    "keys": ("a block of lists of texts", {str: [str]}),
+    "radii": ("a list of numbers", [RADIUS]),
+    "scenes": ("a list or a block of scenes", ([CASE], {str: BOX})),
+    "volume": ("true or false", bool),
+    "watched": TEXTS,
+}
 
 
 def module_of(name):
@@ -73,19 +90,32 @@ def read_tables(texts):
     return Tables({name: table_of(Path(path).stem).read(path) for name, path in paths.items()})
 
 
+def _has_shape(value, shape):
+    if isinstance(shape, tuple):
+        return any(_has_shape(value, one) for one in shape)
+    if isinstance(shape, list):
+        return isinstance(value, list) and all(_has_shape(one, shape[0]) for one in value)
+    if not isinstance(shape, dict):
+        return isinstance(value, shape)
+    if not isinstance(value, dict):
+        return False
+    needed = dict.fromkeys(value, shape[str]) if str in shape else shape
+    known = shape is not BOX or value.keys() <= {*BOX, "effects"}
+    return known and all(key in value and _has_shape(value[key], needed[key]) for key in needed)
+
+
 def call(function, given, **more):
     """Call ``function`` with the parameters ``given``, a ``box`` made of those of that name.
 
     Arguments in ``more`` are passed if the function takes them. Raises ``InputError`` for
     parameters that it does not take, and for missing ones.
     """
-    if given.get("box") is not None:
-        try:
-            given = given | {"box": Box(**given["box"])}
-        except TypeError:
-            raise InputError(
-                f"box must have width, height and maybe effects, not {given['box']!r}"
-            ) from None
+    for name in SHAPES.keys() & given.keys():
+        what, shape = SHAPES[name]
+        if not _has_shape(given[name], shape):
+            raise InputError(f"{name} must be {what}, not {shown(given[name])}")
+    if "box" in given:
+        given = given | {"box": Box(**given["box"])}
     signature = inspect.signature(function)
     given = given | {name: v for name, v in more.items() if name in signature.parameters}
     try:

@@ -2,7 +2,8 @@
 
     python -m twodiscs.pipeline.results.manifest results/paper/areas.csv … --output manifest.sha256
 
-Files are named from the folder of the manifest, as ``sha256sum --check`` reads it.
+Files are named from the folder of the manifest, as ``sha256sum --check`` reads it. An argument
+@FILE stands for the lines of a file.
 """
 
 from hashlib import sha256
@@ -39,7 +40,11 @@ def manifest(folder, paths):
 
 
 def main():
-    parser = Parser(prog="twodiscs.pipeline.results.manifest", description=__doc__.split("\n")[0])
+    parser = Parser(
+        prog="twodiscs.pipeline.results.manifest",
+        description=__doc__.split("\n")[0],
+        fromfile_prefix_chars="@",
+    )
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE")
     options = parser.parse_args()
