@@ -7,6 +7,7 @@ from snakemake.utils import min_version
 
 from twodiscs.pipeline.configuration.load import check_results, load
 from twodiscs.pipeline.configuration.reading import check, or_exit
+from twodiscs.pipeline.results.locks import release
 
 min_version("9.27")
 
@@ -31,6 +32,8 @@ for path in workflow.configfiles:
     check(os.path.abspath(path))
 CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
+if workflow.is_main_process:
+    release()
 
 
 include: "workflow/rules/common.smk"

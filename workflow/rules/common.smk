@@ -33,11 +33,12 @@ GATHERED = {
     "cost": [*STAGES],
 }
 
-# The Python that runs Snakemake also runs the jobs.
+# The Python that runs Snakemake also runs the jobs, which end when it does.
 os.environ.update(
+    TWODISCS_WORKFLOW=str(os.getpid()),
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
-    )
+    ),
 )
 
 

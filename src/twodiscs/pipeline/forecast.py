@@ -22,7 +22,7 @@ from twodiscs.comparison.scene_tables import Forecast
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import whole
-from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.studies.catalogue import STUDIES
 
@@ -178,7 +178,7 @@ def _run_pilot(stage_and_job):
 
 def run_pilots(jobs, cores):
     """Return the ``Pilot`` of each of ``jobs``, pairs (stage, parameters), ``cores`` at a time."""
-    with ProcessPoolExecutor(cores, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(cores, get_context("spawn"), end_with_workflow) as pool:
         return list(pool.map(_run_pilot, jobs))
 
 
