@@ -1,4 +1,4 @@
-"""After a kill: jobs end, the next run goes on by itself, and what was half written is made anew."""
+"""After a kill jobs end, the next run goes on by itself, and what was half written is made anew."""
 
 import os
 import signal
