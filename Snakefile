@@ -34,6 +34,11 @@ CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
 if workflow.is_main_process:
     release()
+    if CONFIGURATION.days > 1:
+        logger.warning(
+            f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"
+            " snakemake forecast says it better."
+        )
 
 
 include: "workflow/rules/common.smk"

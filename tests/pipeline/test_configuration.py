@@ -200,7 +200,9 @@ def test_hop_histograms_have_three_forms():
     assert one(watch={"hop_histogram": True}).watch.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
     listed = one(watch={"hop_histogram": [0.2, 0.1]})
     assert listed.watch.hop_histogram == (0.1, 0.2)
-    assert listed.histogram == {"event": "vertical_hop", "intervals": 10**6}
+    assert listed.histogram == {
+        "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6
+    }  # fmt: skip
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
     assert block.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     assert block.job("intervals", "0.025")["event"] == "horizontal_hop"
@@ -443,7 +445,8 @@ PLAIN_JOBS = {
         "seed": 7773604374841850693,
     },
     ("intervals", "0.2"): {
-        "box": BOX, "event": "vertical_hop", "intervals": 1000000, "radius": 0.2,
+        "box": BOX, "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6,
+        "radius": 0.2,
         "seed": 8420814236072247529,
     },
 }  # fmt: skip
@@ -808,3 +811,24 @@ def test_an_override_of_a_shared_block_is_no_duplicate(tmp_path):
     path = tmp_path / "shared.yaml"
     path.write_text(text, encoding="utf-8")
     assert read(path) == yaml.safe_load(text)
+
+
+def test_a_histogram_that_would_not_end_is_refused():
+    watch = {"hop_histogram": {"radii": [0.24999999], "event": "horizontal_hop"}}
+    with pytest.raises(load.ConfigError, match=r"at 0.24999999 each one takes 3.9e\+14 events"):
+        one(watch=watch)
+    watch["hop_histogram"]["radii"] = [0.249]
+    assert one(watch=watch).watch.hop_histogram == (0.249,)
+
+
+def test_what_takes_longer_than_a_day_is_known_before():
+    assert one().days < 0.1
+    assert 1 < one(accuracy=1e-6, event_budget=1e15).days < 1000
+    assert one(event_budget=1e15).days < 1  # the accuracy is reached long before
+    assert one(watch={"volume": True}, monte_carlo={"samples": 1e15}).days > 100
+
+
+def test_the_fewest_intervals_are_a_block():
+    from twodiscs.dynamics import intervals
+
+    assert load.LEAST_INTERVALS == intervals.CHAINS * intervals.RETURNS

@@ -32,7 +32,7 @@ from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, tally
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -197,7 +197,7 @@ def replica_duration(scene):
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts of wall hits
     have two states: then more and shorter replicas know the mean better for the same work.
     """
-    rate = exact.event_rate(scene)
+    rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
     times = exact.mean_times(scene)
     if any(scene.is_possible(hop) and HOPS_PER_REPLICA * times[hop] > duration for hop in HOPS):
@@ -258,6 +258,8 @@ def count_events(scene, target, budget, seed, report=None):
         one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
     }
     budget, seed = whole("budget", budget), whole("seed", seed, 0)
+    budget = max(1, int(budget / exact.work_per_event(scene)))
+    require_room(scene)
 
     duration = replica_duration(scene)
     events = [event for event in EVENTS if event in target]
@@ -285,7 +287,7 @@ def count_events(scene, target, budget, seed, report=None):
         excess = relative_errors(sums, products, eligible)[index] / goals
         worst = float(np.max(excess))
         # In units of the work done so far: what the error asks for, and what the budget allows.
-        missing, affordable = 1.05 * worst * worst - 1.0, budget / simulated - 1.0
+        missing, affordable = 1.05 * worst * worst - 1.0, budget / max(simulated, 1) - 1.0
         if report is not None:
             done_so_far = f"{simulated:.3g} events, error {worst:.2f} of the target"
             report(done_so_far, max(0.0, min(missing, affordable)))
@@ -330,8 +332,8 @@ def job(box, radius, accuracy, event_budget, seed, report=None):
 def compile_kernels(box=None, events=()):
     """Compile the kernel that counts ``events`` in a ``Box``; without one those of plain scenes."""
     if box is not None:
-        run_blocks(box.tiny, events, 0, 0, 1, 1.0, replicas=1)
+        run_blocks(box.tiny, events, 0, 0, 0, 1.0)  # no blocks: for some boxes they take long
         return
     scene = Box(1.5, 1.0).scene(0.2)
     for one in (EVENTS, HOPS[:1], WALLS[:1], ("any_wall",)):
-        run_blocks(scene, one, 0, 0, 1, 1.0, replicas=1)
+        run_blocks(scene, one, 0, 0, 0, 1.0)

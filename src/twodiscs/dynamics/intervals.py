@@ -23,7 +23,7 @@ from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
+from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -31,6 +31,9 @@ from twodiscs.theory import exact
 RETURNS = 256
 CHAINS = 256
 BINS = 512
+
+#: The usual budget.
+BUDGET = 10**11
 
 
 @compiled
@@ -102,13 +105,31 @@ def record_returns(
                 histogram[min(np.int64(found[k] * per_width), last_bin)] += 1
 
 
-def hop_intervals(scene, event, intervals, seed):
+def recorded(scene, event, blocks, chains, returns, seed):
+    """Return (times of the chains, histogram, width of its bins) of ``record_returns``."""
+    width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
+    upright, horizontal = scene, None
+    if event == "horizontal_hop" and scene.has_effects:
+        horizontal = True
+    elif event == "horizontal_hop":
+        # That is a vertical hop of the box on its side.
+        upright = Box.of(scene).turned().scene(scene.radius)
+    histogram = np.zeros(BINS + 1, np.int64)
+    totals = record_returns(
+        np.uint64(seed), 0, blocks, chains, LANES, returns, law_of(upright), *origins(upright),
+        horizontal, width, histogram,
+    )  # fmt: skip
+    return totals, histogram, width
+
+
+def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     """Draw intervals between hops of one kind, each one exact, and count them in bins.
 
-    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least.
-    Chains of ``RETURNS`` successive intervals start on the hop's surface with the flux-weighted
-    measure, which the map from hop to hop preserves: so every interval of a chain has the law of
-    the interval between hops. Intervals within a chain are correlated, chains are independent.
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least, as
+    far as the ``budget`` of wall and disc events allows. Chains of ``RETURNS`` successive intervals
+    start on the hop's surface with the flux-weighted measure, which the map from hop to hop
+    preserves: so every interval of a chain has the law of the interval between hops. Intervals
+    within a chain are correlated, chains are independent.
 
     Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
     number of intervals and of chains, and the mean with its standard error over chains. Raises
@@ -120,20 +141,17 @@ def hop_intervals(scene, event, intervals, seed):
         raise InputError(
             f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
         )
+    seed, budget = whole("seed", seed, 0), whole("budget", budget)
     blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
-    seed = whole("seed", seed, 0)
-    width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
-    upright, horizontal = scene, None
-    if event == "horizontal_hop" and scene.has_effects:
-        horizontal = True
-    elif event == "horizontal_hop":
-        # That is a vertical hop of the box on its side.
-        upright = Box.of(scene).turned().scene(scene.radius)
-    histogram = np.zeros(BINS + 1, np.int64)
-    totals = record_returns(
-        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, law_of(upright), *origins(upright),
-        horizontal, width, histogram,
-    )  # fmt: skip
+    require_room(scene)
+    events = exact.events_per_interval(scene, event)
+    blocks = min(blocks, int(budget / (CHAINS * RETURNS * events)))
+    if blocks == 0:
+        raise InputError(
+            f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} of "
+            f"{events:.2g} events each, not {budget!r}"
+        )
+    totals, histogram, width = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
     means = totals / RETURNS
     return {
         "radius": scene.radius,
@@ -152,11 +170,14 @@ def hop_intervals(scene, event, intervals, seed):
 WORK = "intervals"
 
 
-def job(box, radius, event, intervals, seed):
+def job(box, radius, event, intervals, seed, event_budget=BUDGET):
     """Return ``hop_intervals`` for plain values: the job of one radius."""
-    return hop_intervals(box.scene(radius), event, intervals, seed)
+    return hop_intervals(box.scene(radius), event, intervals, seed, event_budget)
 
 
 def compile_kernels(box=None, event="vertical_hop"):
-    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes."""
-    hop_intervals(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 1, 0)
+    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes.
+
+    It records none, for in some boxes one takes long.
+    """
+    recorded(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 0, CHAINS, RETURNS, 0)

@@ -89,7 +89,7 @@ def trajectory(scene, seed):
     start = states(a_scene(scene), 1, whole("seed", seed, 0))
     components = 8 + 4 * (scene.depth is not None) + 2 * (scene.moment_of_inertia is not None)
     start = tuple(map(float, start[:components, 0]))
-    rate = exact.event_rate(scene)
+    rate = exact.event_rate(scene) * exact.work_per_event(scene)
     hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
     duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
     return list(follow(scene, start, nearest_power_of_two(duration)))

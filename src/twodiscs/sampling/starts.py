@@ -18,13 +18,23 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import weighted
 
 #: Rows of an array of starts.
 COMPONENTS = 12
 
 
+def require_room(scene):
+    """Raise ``InputError`` for a ``Scene`` whose starts are too rare in its prism to be drawn."""
+    if scene.has_effects:
+        weighted.require_room(scene)
+
+
 def origins(scene):
-    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None."""
+    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None.
+
+    A scene with effects needs room (``require_room``), or draws from its prism hardly end.
+    """
     if scene.has_effects:
         return None, prism_of(scene)
     return draw_constants(scene), None
@@ -117,6 +127,7 @@ def states(scene, number, seed, block=0, sides=(0, 0)):
     ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
     ``draw_configuration``).
     """
+    require_room(scene)
     found = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, found, prism)

@@ -411,6 +411,26 @@ def _areas(scene):
     return {event: _area(space, event) for event in EVENTS}
 
 
+#: The least share of the prism, in which both centres keep to their ranges, that must be free of
+#: overlaps: starts are drawn from the prism by rejection.
+LEAST_SHARE = 1e-4
+
+
+def require_room(scene):
+    """Raise ``InputError`` if starts of a ``Scene`` with effects would be too rare in the prism."""
+    ranges = (
+        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
+        for axis in scene.axes
+        for radius in scene.radii
+    )
+    share = volume(scene) / math.prod(ranges)
+    if share < LEAST_SHARE:
+        raise InputError(
+            f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
+            f"a scene with effects needs more room, {LEAST_SHARE:g} of it"
+        )
+
+
 # What is exact ------------------------------------------------------------------------------------
 
 

@@ -19,6 +19,7 @@ from twodiscs.pipeline.configuration.reading import ConfigError, shown
 from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
+from twodiscs.theory.exact import events_per_interval
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -36,9 +37,8 @@ BELOW_THRESHOLD = 0.5
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9
 
-#: The least share of the prism, in which both centres keep to their ranges, that must be free of
-#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
-LEAST_SHARE = 1e-4
+#: The fewest intervals of a hop that are recorded.
+LEAST_INTERVALS = 2**16
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
@@ -181,6 +181,14 @@ def _scene(block, path, seed):
     if not watch.quantities:
         known = ", ".join(Watch.__dataclass_fields__)
         raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    for radius in watch.hop_histogram:
+        events = events_per_interval(box.scene(radius), histogram["event"])
+        if events * LEAST_INTERVALS > histogram["event_budget"]:
+            raise ConfigError(
+                f"{path}.watch.hop_histogram must keep to radii at which {LEAST_INTERVALS} "
+                f"intervals fit into its event_budget, {histogram['event_budget']:g}; at "
+                f"{radius!r} each one takes {events:.2g} events"
+            )
     accuracy = block["accuracy"]
     if not isinstance(accuracy, dict):
         accuracy = {"default": accuracy}
@@ -307,31 +315,21 @@ def _checked(found, box, path):
     seen = set()
     for radius in found:
         try:
-            scene = box.scene(radius)
+            _check_room(box.scene(radius))
         except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
-        if scene.has_effects and (share := _free_share(scene)) < LEAST_SHARE:
-            raise ConfigError(
-                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
-                f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
-            )
         if radius in seen:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
         seen.add(radius)
     return tuple(sorted(found))
 
 
-def _free_share(scene):
-    """Return the share of the prism in which the discs are free, weighted in a field."""
-    # Numerical packages are imported here, for nothing else needs them.
-    from twodiscs.theory import weighted
+def _check_room(scene):
+    if scene.has_effects:
+        # Numerical packages are imported here, for nothing else needs them.
+        from twodiscs.theory.weighted import require_room
 
-    ranges = (
-        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
-        for axis in scene.axes
-        for radius in scene.radii
-    )
-    return weighted.volume(scene) / math.prod(ranges)
+        require_room(scene)
 
 
 def _shared(asked, all_have_effects):
