@@ -8,6 +8,7 @@ from snakemake.utils import min_version
 from twodiscs.pipeline.configuration.load import check_results, load
 from twodiscs.pipeline.configuration.reading import check, or_exit
 from twodiscs.pipeline.results.locks import release
+from twodiscs.pipeline.results.record import notice
 
 min_version("9.27")
 
@@ -33,7 +34,8 @@ for path in workflow.configfiles:
 CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
 if workflow.is_main_process:
-    release()
+    if release():
+        notice(CONFIGURATION.results)
     if CONFIGURATION.days > 1:
         logger.warning(
             f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"
@@ -54,3 +56,4 @@ rule all:
         rules.report.input.results,
         rules.report.output if "report" in CONFIGURATION.shared else [],
         rules.manifest.output,
+        rules.provenance.output,

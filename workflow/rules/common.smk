@@ -42,6 +42,9 @@ os.environ.update(
 )
 
 
+# The end of the command of every job that keeps a record of what it wrote.
+RECORDED = " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+
 # Longer arguments go into a file: Linux takes 131072 letters in all that a shell is told.
 LONG = 30_000
 
@@ -97,6 +100,12 @@ def as_json(value):
     """
     text = json.dumps(dict(sorted(value.items())))
     return text if len(text) < LONG else f"@{kept(text)}"
+
+
+def about(scene, seed=CONFIGURATION.seed):
+    """Return what the record of a job calls the scene and the root seed; None for what is not used."""
+    words = {"scene": scene, "seed": seed}
+    return ", ".join(f"{k} {v}" for k, v in words.items() if v is not None)
 
 
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):

@@ -107,6 +107,39 @@ rule manifest:
         " > {log:q} 2>&1"
 
 
+# Where and when: this alone says what differs between two runs of the same.
+
+
+rule provenance:
+    input:
+        files=rules.report.input.results,
+    output:
+        json=f"{RESULTS}/provenance.json",
+    log:
+        log_of("provenance"),
+    benchmark:
+        benchmark_of("provenance")
+    params:
+        sources=str(HERE),
+    shell:
+        "python -m twodiscs.pipeline.results.provenance --sources {params.sources:q}"
+        " --output {output.json:q} > {log:q} 2>&1"
+
+
+# All results against the record of the jobs that wrote them.
+
+
+rule:
+    name:
+        "audit"
+    log:
+        log_of("audit"),
+    params:
+        results=RESULTS,
+    shell:
+        "python -m twodiscs.pipeline.results.record {params.results:q} 2> {log:q}"
+
+
 # It builds nothing: it has no input that could be out of date, and no output, so that it is done
 # whenever it is asked for.
 

@@ -174,6 +174,47 @@ def table(options):
     table_of(Path(path).stem, options.module).write(path, rows)
 
 
+def inputs_of(options):
+    """Return {name: paths} of the files that a job reads; raise ``InputError`` for a damaged one.
+
+    Those are the files that are no longer what their own jobs wrote.
+    """
+    found = {name: [path] for name, path in named(options.table, "--table").items()}
+    for path in map(Path, options.points):
+        if path.is_file():
+            found.setdefault("points", []).append(path)
+            continue
+        for stage, keys in parameters(options.parameters).get("keys", {}).items():
+            cost = options.function == "cost_rows"
+            names = [f"cost/{stage}-{key}" if cost else f"{stage}/{key}" for key in keys]
+            found[stage] = [path / f"{name}.json" for name in names]
+    for path in (path for paths in found.values() for path in paths):
+        module_of("pipeline.results.record").require(path)
+    return found
+
+
+def keep_record(options, inputs):
+    """Record what made the files of a job."""
+    made = {"about": options.about, "code": options.code, "job": options.job}
+    made |= {"function": options.function, "module": options.module}
+    made["parameters"] = parameters(options.parameters) if options.parameters else {}
+    paths = [*options.output, *([options.cost] if options.cost else [])]
+    module_of("pipeline.results.record").write(paths, inputs, **made)
+
+
+def origin(options):
+    """Return a line that says what made a figure: the scene, the seed, and hashes of the rest."""
+    record = module_of("pipeline.results.record")
+    tables = [path for _, path in sorted(named(options.table, "--table").items())]
+    words = [
+        options.about,
+        f"code {options.code}",
+        f"parameters {record.short(options.parameters)}",
+    ]
+    words += [f"tables {record.digest(*tables)[:16]}"] if tables else []
+    return "twodiscs: " + ", ".join(filter(None, words))
+
+
 def figure(options):
     """Draw the figure of a module."""
     draw = function_of(options.module, "draw")
@@ -182,7 +223,7 @@ def figure(options):
     with style.context():
         drawn = call(draw, given, tables=tables)
         for path in options.output:
-            style.save(drawn, path)
+            style.save(drawn, path, origin(options))
 
 
 def animation(options):
@@ -236,10 +277,16 @@ def main():
     )
     parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
     parser.add_argument("--cost", metavar="JSON", help="where to write the work and the seconds")
+    parser.add_argument("--about", help="the scene and the root seed, for the record")
+    parser.add_argument("--code", help="the fingerprint of the sources, for the record")
     options = parser.parse_args()
     if options.parameters is None and options.job not in ("kernels", "verdict"):
         raise InputError(f"{options.job} needs --parameters")
-    return JOBS[options.job](options)
+    inputs = inputs_of(options)
+    status = JOBS[options.job](options)
+    if not status and options.job != "kernels":
+        keep_record(options, inputs)
+    return status
 
 
 if __name__ == "__main__":

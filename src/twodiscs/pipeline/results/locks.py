@@ -15,7 +15,8 @@ def release(folder=".snakemake"):
 
     A run shares a lock of the operating system on the file ``held``, which ends with the process
     however that ends. Where the file system knows no such locks, or another machine was the last to
-    use the folder, Snakemake's own locks stay, and with them its advice.
+    use the folder, Snakemake's own locks stay, and with them its advice. Returns whether no other
+    run lives.
     """
     place, host = Path(folder), socket.gethostname()
     try:
@@ -26,8 +27,9 @@ def release(folder=".snakemake"):
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:  # another run lives
-            pass
+            alone = False
         else:
+            alone = True
             stale = sorted(place.glob("locks/*.lock"))
             if stale and held.read() == host:
                 for path in stale:
@@ -40,4 +42,5 @@ def release(folder=".snakemake"):
                 held.flush()
         fcntl.flock(held, fcntl.LOCK_SH)
     except OSError:
-        return
+        return False
+    return alone
