@@ -13,7 +13,7 @@ FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
 #: Rules for all scenes together, whatever else is built once.
-ALWAYS = {"check", "compile", "manifest"}
+ALWAYS = {"check", "compile", "manifest", "provenance"}
 
 DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
 

@@ -30,7 +30,7 @@ def test_linter_only_misses_a_container(unbuilt):
 
 
 #: They build nothing.
-WITHOUT_OUTPUT = ("verify", "forecast")
+WITHOUT_OUTPUT = ("verify", "forecast", "audit")
 
 
 def test_every_rule_keeps_a_log_and_a_benchmark():
@@ -54,5 +54,16 @@ def test_pages_made_from_declarations_are_up_to_date(page):
 
 def test_readme_lists_every_target():
     page = (REPOSITORY / "README.md").read_text()
-    targets = ("all", "check", "paper", "report", "verify", "forecast", *FIGURES, *STUDIES)
+    targets = (
+        "all",
+        "check",
+        "paper",
+        "report",
+        "verify",
+        "forecast",
+        "audit",
+        "provenance",
+        *FIGURES,
+        *STUDIES,
+    )
     assert [name for name in targets if f"`{name}`" not in page] == []

@@ -108,6 +108,12 @@ def about(scene, seed=CONFIGURATION.seed):
     return ", ".join(f"{k} {v}" for k, v in words.items() if v is not None)
 
 
+def contents(*paths):
+    """Return a hash of files, for inputs whose time stamps may not tell that they were edited."""
+    texts = b"".join(Path(path).read_bytes() for path in paths)
+    return blake2b(texts, digest_size=8).hexdigest()
+
+
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):
     """Return what the jobs of these stages found, a file for each stage and radius."""
     return [

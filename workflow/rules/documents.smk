@@ -37,6 +37,7 @@ if MAIN:
             contents=lambda w, output: as_json(
                 manuscript_job(os.path.dirname(output.pdf))
             ),
+            texts=contents(*PAPER.values()),
             code=code("pipeline.documents.manuscript"),
         shell:
             "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"
@@ -83,6 +84,7 @@ rule report:
             + "\n"
         ),
         snakefile=str(HERE / "Snakefile"),
+        texts=lambda w, input: contents(*input.texts, input.style),
     shell:
         "cp {params.configuration:q} {output.configuration:q};"
         " snakemake --snakefile {params.snakefile:q} --report {output.html:q}"

@@ -67,6 +67,7 @@ rule effects_point:
     params:
         about=about(None),
         seed=CONFIGURATION.seed,
+        texts=lambda w, input: contents(input.scene, input.schema),
         code=code(
             "studies.effects.measure",
             "pipeline.configuration.scene_file",
@@ -128,6 +129,7 @@ rule effects_cost:
     benchmark:
         benchmark_of("effects_cost")
     params:
+        texts=contents(*EFFECTS.values()),
         code=code("benchmark", without=NAMES_ALONE),
     shell:
         "python -m twodiscs.benchmark --table effects_cost --scenes {input.scenes:q}"
