@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals
+from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
+from twodiscs.model.scene import FOLLOWED
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory import exact
 
@@ -49,6 +50,22 @@ def passes(scene, duration):
     """Return the events of a time, and how often discs leave a periodic cell at most."""
     leaves = sum(math.sqrt(1 + 1 / scene.mass_ratio) / scene.side(a) for a in scene.periodic)
     return duration * exact.event_rate(scene), duration * leaves
+
+
+@pytest.mark.parametrize("width", [1.0, 1.5])
+def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
+    box = Box(width, 1.0)
+    for run in (lambda scene: counting.count_events(scene, {"any_wall": 0.5}, 1, 1),
+                lambda scene: trajectory.trajectory(scene, 1)):  # fmt: skip
+        with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
+            run(box.scene(box.largest_radius * (1 - 1e-13)))
+    # It holds at the closest radius: five standard errors.
+    scene = box.scene(box.largest_radius * (1 - FOLLOWED))
+    found = counting.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
+    mean = found["counts"]["disc_collision"] / found["replicas"] / found["duration"]
+    assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
+    # Where each disc spans the short side, nothing is lost.
+    require_room(Box(3.0, 1.0).scene(0.5 * (1 - 1e-15)))
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)

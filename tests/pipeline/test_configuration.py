@@ -832,3 +832,19 @@ def test_the_fewest_intervals_are_a_block():
     from twodiscs.dynamics import intervals
 
     assert load.LEAST_INTERVALS == intervals.CHAINS * intervals.RETURNS
+
+
+def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
+    largest = Box(1.5, 1.0).largest_radius
+    close, far = largest * (1 - 3e-14), largest * (1 - 1.01e-12)
+    with pytest.raises(load.ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"):
+        one(radii=[close])
+    assert one(radii=[far]).radii == (far,)
+    assert one(radii=[close], watch={"volume": True}).radii == (close,)
+
+
+def test_stability_needs_sides_that_leave_room_below():
+    scene = {"name": "a", "box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
+    with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
+        load.load({"scenes": [scene]})
+    assert load.load({"scenes": [scene], "shared": ["errata"]}).main.name == "a"

@@ -21,6 +21,10 @@ from twodiscs.model.events import DECLARED, EVENTS
 #: What is open to the discs, named by the hops that remain.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
+#: How close to the largest radius dynamics in doubles holds, relatively: at a tenth of that mean
+#: times begin to be off by more than 1e-4.
+FOLLOWED = 1e-12
+
 #: The total energy, kinetic and potential.
 ENERGY = 0.5
 
@@ -242,6 +246,18 @@ class Scene:
             root = math.sqrt(total**2 - (n - 1) * squares)
             limits.append(squares / (total + root) / (1 + self.radius_ratio))
         return min(limits)
+
+    def require_followable(self):
+        """Raise ``InputError`` where dynamics in doubles is off: too close to the largest radius.
+
+        Where discs jam along a diagonal, the room left to them is lost in the roundings of places.
+        """
+        jams = not self.has_effects and self.largest_radius < min(self.width, self.height) / 2
+        if jams and self.radius > (closest := self.largest_radius * (1 - FOLLOWED)):
+            raise InputError(
+                f"radius {self.radius!r} must not exceed {closest!r} for molecular dynamics: "
+                f"beyond it, roundings count in the room that is left below {self.largest_radius!r}"
+            )
 
     def _lowest_potential(self, spread):
         """Return the least potential energy of discs whose separation but for y has this square.

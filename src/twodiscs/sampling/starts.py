@@ -25,7 +25,8 @@ COMPONENTS = 12
 
 
 def require_room(scene):
-    """Raise ``InputError`` for a ``Scene`` whose starts are too rare in its prism to be drawn."""
+    """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
+    scene.require_followable()
     if scene.has_effects:
         weighted.require_room(scene)
 

@@ -37,6 +37,9 @@ BELOW_THRESHOLD = 0.5
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9
 
+#: The range of sides that the study of stability can take: lengths end at 1e-60 and 1e60.
+LOW, HIGH = 1e-40, 1e40
+
 #: The fewest intervals of a hop that are recorded.
 LEAST_INTERVALS = 2**16
 
@@ -84,9 +87,15 @@ def _load(mapping):
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
     shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
-    return Configuration(
+    found = Configuration(
         settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
     )
+    if "stability" in shared and not all(LOW <= side <= HIGH for side in found.main.box.sides):
+        raise ConfigError(
+            f"shared must leave out 'stability' unless the sides of the scene {found.main.name!r} "
+            f"lie between {LOW:g} and {HIGH:g}, for it goes far below them"
+        )
+    return found
 
 
 def _types(node):
@@ -181,6 +190,11 @@ def _scene(block, path, seed):
     if not watch.quantities:
         known = ", ".join(Watch.__dataclass_fields__)
         raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    if watch.mean_times:
+        try:
+            box.scene(found[-1]).require_followable()
+        except InputError as error:
+            raise ConfigError(f"{path}.radii: {error}") from None
     for radius in watch.hop_histogram:
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
