@@ -6,7 +6,7 @@
 CORES ?= 2
 PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
-PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check
+PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 
 .PHONY: all test
@@ -28,15 +28,12 @@ test: .venv/ready
 	  pytest --ignore=tests/workflow; status=$$?; \
 	  wait $$other || status=1; cat .workflow-tests.log; exit $$status'
 
-# The exact packages of requirements.lock, then this one; again whenever either list changes.
+# The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
+# there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.
 .venv/ready: requirements.lock pyproject.toml
 	@echo "Setting up .venv"
 	@if command -v uv > /dev/null; then \
-	  rm -rf .venv && \
-	  uv venv --quiet --python "$(or $(PYTHON),>=3.11)" .venv && \
-	  export VIRTUAL_ENV="$(CURDIR)/.venv" && \
-	  uv pip install --quiet --compile-bytecode --require-hashes -r requirements.lock && \
-	  uv pip install --quiet --no-deps --no-build-isolation --editable . ; \
+	  rm -rf .venv && uv venv --quiet --seed --python "$(or $(PYTHON),>=3.11)" .venv; \
 	else \
 	  for python in $(CANDIDATES) none; do \
 	    if $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then break; fi; \
@@ -44,9 +41,13 @@ test: .venv/ready
 	  if [ $$python = none ]; then \
 	    echo "This needs Python 3.11 or newer; make PYTHON=<path> says where it is." >&2; exit 1; \
 	  fi; \
-	  rm -rf .venv && \
-	  $$python -m venv .venv && \
-	  $(PIP) --require-hashes -r requirements.lock && \
-	  $(PIP) --no-deps --no-build-isolation --editable . ; \
+	  rm -rf .venv && $$python -m venv .venv && \
+	  awk '/^[^ ]/ { uv = /^uv==/ } uv' requirements.lock > .venv/uv.lock && \
+	  { $(PIP) --require-hashes --requirement .venv/uv.lock || true; }; \
 	fi
+	@$(IN_VENV) VIRTUAL_ENV="$(CURDIR)/.venv" sh -c '\
+	  uv pip install --quiet --require-hashes --requirement requirements.lock 2> .venv/uv.log && \
+	  uv pip install --quiet --no-deps --no-build-isolation --editable . 2>> .venv/uv.log' || { \
+	  $(PIP) --require-hashes --requirement requirements.lock && \
+	  $(PIP) --no-deps --no-build-isolation --editable .; }
 	@touch $@

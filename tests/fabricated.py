@@ -6,7 +6,6 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.comparison import exact_rows
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.pipeline.arguments import run
@@ -22,7 +21,7 @@ def scenes(radii=RADII):
 
 def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
-    return exact_rows.theory_rows(BOX, radii)
+    return exact.theory_rows(BOX, radii)
 
 
 class Laws:
@@ -71,23 +70,17 @@ class Laws:
         slowest = max(self.times[event] for event in events if event in self.times)
         duration = 2 * slowest / (relative**2 * replicas)
         counts = {}
-        confined = dict(zip(("right_wall", "top_wall"), self.scene.confined, strict=True))
-        eligible = {}
         for event in events:
-            mean = duration / self.times[event] if event in self.times else 0.0
+            mean = 0.0
+            if event in self.times:
+                mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
-            eligible[event] = replicas // 2 if confined.get(event) else replicas
-            if confined.get(event):
-                # The starts in a component alternate for one wall, and come in pairs for the other.
-                turn = np.arange(replicas) // (1 if event == "right_wall" else 2)
-                counts[event][turn % 2 == 1] = 0
         return {
             "radius": self.scene.radius,
             "duration": duration,
             "replicas": replicas,
             "rounds": 1,
             "events": 10**6,
-            "eligible": eligible,
             "counts": {event: int(counts[event].sum()) for event in events},
             "products": {
                 f"{a}*{b}": int((counts[a] * counts[b]).sum())
@@ -96,6 +89,7 @@ class Laws:
             },
             "target": dict.fromkeys(events, relative),
             "status": {e: "reached" if e in self.times else "impossible" for e in events},
+            "strips": {},
         }
 
     def intervals(self, rng, chains=1024, relative=3e-4):
@@ -105,11 +99,19 @@ class Laws:
         width, intervals = mean / 4, math.ceil(relative**-2)
         edges = np.exp(-0.25 * np.arange(13))
         counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
+
+        def of_chains(counts):
+            """Return counts and sums of squares of chains that hold them by Poisson's law."""
+            whole = [int(n) for n in counts]
+            return {"counts": whole, "squares": [n + -(-n * n // chains) for n in whole]}
+
+        wide = [0, 1, 2, 4, 8, 12]
         return {
             "radius": self.scene.radius,
             "event": "vertical_hop",
             "bin_width": width,
-            "counts": [int(n) for n in counts[:-1]],
+            **of_chains(counts[:-1]),
+            "wide": {"edges": wide, **of_chains(np.add.reduceat(counts[:-1], wide[:-1]))},
             "overflow": int(counts[-1]),
             "intervals": intervals,
             "chains": chains,

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.text import Text
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.dynamics.intervals import wide_edges
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model import radii
 from twodiscs.model.box import Box
@@ -53,7 +54,7 @@ def tables_of(name):
             found["areas"].append(sampled(rng, radius, f"{event}_area", area, relative))
         for event, time in exact.mean_times(scene).items():
             found["mean_times"].append(simulated(rng, scene, event, time, relative))
-        if scene.vertical_hops and len(found["hop_histogram"]) < 4 * 512:
+        if scene.vertical_hops and len({row["radius"] for row in found["hop_histogram"]}) < 4:
             found["hop_histogram"] += histogram(rng, scene)
     found["trajectory"] = trajectory(rng)
     for table, rows in found.items():
@@ -104,9 +105,11 @@ def histogram(rng, scene, intervals=10**6, bins=512):
     row |= {"exact_mean": mean, "mean": mean, "mean_stderr": mean / 1000, "z": 0.0}
     return [
         row
-        | {"left": float(left), "right": float(right), "count": int(n)}
-        | {"density": 16 * n / (mean * intervals), "stderr": 16 * n**0.5 / (mean * intervals)}
-        for (left, right), n in zip(pairwise(edges), counts[:-1], strict=True)
+        | {"bins": name, "left": float(edges[i]), "right": float(edges[j]), "count": n}
+        | {"density": n * per_count, "stderr": n**0.5 * per_count}
+        for name, places in (("equal", range(bins + 1)), ("wide", wide_edges(bins)))
+        for i, j in pairwise(places)
+        for n, per_count in [(int(counts[i:j].sum()), 1 / ((edges[j] - edges[i]) * intervals))]
     ]
 
 

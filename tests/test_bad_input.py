@@ -212,8 +212,8 @@ def test_a_configuration_that_makes_no_sense(mapping):
 PLACE = {"box": BOX.parameters(), "radius": 0.2, "seed": 1}
 EXACT = {"box": BOX.parameters(), "radii": [0.1, 0.2]}
 JOBS = {
-    "grid": (("table", "comparison.exact_rows", "--function", "grid_rows"), EXACT),
-    "theory": (("table", "comparison.exact_rows", "--function", "theory_rows"), EXACT),
+    "grid": (("table", "theory.exact", "--function", "grid_rows"), EXACT),
+    "theory": (("table", "theory.exact", "--function", "theory_rows"), EXACT),
     "monte_carlo": (
         ("point", "sampling.montecarlo"),
         PLACE | {"areas": [], "samples": 1, "shell": 0.02, "volume": True},

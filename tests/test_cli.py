@@ -10,6 +10,7 @@ import pytest
 from fabricated import command
 
 from twodiscs import cli
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -50,7 +51,8 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
     assert status == 0
     numbers = exact_numbers(Scene(1.5, 1, 0.3))
     rows = {line.split()[0]: line.split()[1:] for line in out.splitlines() if line}
-    assert rows["volume"] == [repr(numbers["volume"])]
+    assert rows["volume"] == [repr(numbers["volume"]), "length⁴"]
+    assert rows["event"] == ["area", "(length³)", "mean", "time", "(time)"]
     for event in EVENTS:
         time = numbers["mean_times"][event]
         assert rows[event] == [
@@ -181,7 +183,7 @@ def test_a_number_is_a_float_or_a_mistake_of_the_caller():
 @pytest.mark.parametrize(
     ("error", "sentence"),
     [
-        (ValueError("two\n  lines"), "error: two lines\n"),
+        (InputError("two\n  lines"), "error: two lines\n"),
         (FileNotFoundError(2, "No such file", "a.csv"), "error: a.csv: No such file\n"),
         (OSError("broken"), "error: broken\n"),
     ],

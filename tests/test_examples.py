@@ -28,7 +28,10 @@ from twodiscs.pipeline.configuration import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
 
-PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+PAGES = [
+    *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),
+    *sorted((REPOSITORY / "docs").glob("*.md")),
+]
 NAMES = [path.relative_to(REPOSITORY).as_posix() for path in PAGES]
 
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -121,7 +124,9 @@ def test_every_block_is_of_a_kind_that_is_tried(name):
     assert {kind for kind, _ in blocks(name)} <= {
         "yaml", "console", "shell", "python", "math", "text",
     }  # fmt: skip
-    assert {words[0] for words, _ in examples(name)} <= {"twodiscs", "snakemake", "make"}
+    assert {words[0] for words, _ in examples(name)} <= {
+        "twodiscs", "snakemake", "make", "source", "ruff", "snakefmt",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -144,10 +149,19 @@ def test_pictures_are_small_and_shown():
 def test_citation_agrees_with_the_package():
     citation = yaml.safe_load((REPOSITORY / "CITATION.cff").read_text(encoding="utf-8"))
     package = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
-    assert f'version = "{citation["version"]}"' in package
+    assert citation["version"] == twodiscs.__version__
     assert f'license = "{citation["license"]}"' in package
     assert f"{citation['license']} License" in (REPOSITORY / "LICENSE").read_text(encoding="utf-8")
     assert twodiscs.__name__ == citation["title"].partition(":")[0]
+
+
+def test_the_engine_has_one_ratio_everywhere():
+    found = re.search(
+        r"([\d.]+) times as many .+AVX2; ([\d.]+) times with AVX-512", page("README.md")
+    )
+    avx2, avx512 = found.groups()
+    assert f"| lock-step ensemble, counting | {avx512} |" in page("docs/engine.md")
+    assert f"the first ratio is {avx2}: " in page("docs/engine.md")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -243,7 +257,8 @@ def agreement(folder, scene):
     compared = [abs(row["z"]) for row in rows if row["passed"] is not None]
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
     events = sum(point["events"] for point in points.values())
-    counts = f"{len(points)} | {len(compared)} | {max(compared):.1f} | {events:.1e}"
+    independent = sum(row["independent"] for row in rows)
+    counts = f"{len(points)} | {len(compared)} | {independent} | {max(compared):.1f} | {events:.1e}"
     return f"| {scene.box.width:g} × {scene.box.height:g} | {counts.replace('e+', 'e')} |"
 
 
@@ -306,7 +321,7 @@ def checked(tmp_path_factory):
         for key in scene.keys[stage]:
             job("point", module, scene.job(stage, key), points / stage / f"{key}.json")
     theory = job(
-        "table", "comparison.exact_rows", scene.theory_job(), folder / "theory.csv",
+        "table", "theory.exact", scene.theory_job(), folder / "theory.csv",
         "--function", "theory_rows",
     )  # fmt: skip
     return job(
@@ -344,5 +359,5 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
 
 def test_the_example_passes(checked, monkeypatch, tmp_path):
     words = ("--table", f"look={checked}", "--output", tmp_path / "check.passed")
-    assert command(monkeypatch, jobs, "verdict", "comparison.check", *words) == 0
+    assert command(monkeypatch, jobs, "verdict", "pipeline.results.verdict", *words) == 0
     assert (tmp_path / "check.passed").read_text().startswith("look: ")

@@ -80,15 +80,15 @@ def lockstep_intervals(intervals=5_000_000):
 def total_rate():
     """Return wall and disc events per unit of time, from one count of many."""
     duration = counting.replica_duration(SCENE)
-    sums, _, eligible = counting.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
-    return counting.simulated_events(sums) / (int(eligible[0]) * duration)
+    sums, _ = counting.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
+    return counting.simulated_events(sums) / (BLOCKS * REPLICAS * duration)
 
 
 def scalar_engine(blocks=BLOCKS // 8):
     """Do the same as ``lockstep`` one trajectory at a time."""
     duration = counting.replica_duration(SCENE)
     draw = draw_constants(SCENE)
-    arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0), (False, False))
+    arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
     counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
     return scalar.simulated_events(counted[0]), seconds
 

@@ -1,10 +1,17 @@
-"""``twodiscs``: exact numbers for people and scripts, without the workflow."""
+"""``twodiscs``: exact numbers, measurements and trajectories for people and scripts."""
 
+import csv
 import json
+import os
+import sys
 
+import twodiscs
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline.arguments import Parser, number, run
+from twodiscs.pipeline.arguments import Parser, number, run, whole_number
+
+#: What the examples of ``--help`` are about.
+EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
 
 
 def main():
@@ -13,30 +20,132 @@ def main():
 
 
 def _main():
-    parser = Parser(prog="twodiscs", description="Two hard discs in a box.")
-    commands = parser.add_subparsers(dest="command", required=True)
-    exact = commands.add_parser(
-        "exact",
-        help="exact volume, areas and mean times of one scene",
-        description="Exact volume, areas and mean times; disc 1 has mass 1, total energy is 1/2.",
-    )
-    for name in ("width", "height", "radius"):
-        exact.add_argument(f"--{name}", type=number, required=True)
-    effects = exact.add_argument_group("effects", "what the scene calls for besides")
-    for name, effect in EFFECTS.items():
-        kind = number if effect.is_number else str
-        effects.add_argument(f"--{name.replace('_', '-')}", type=kind, help=effect.meaning)
-    exact.add_argument("--json", action="store_true", help="print one JSON object")
+    parser = _parser()
     options = parser.parse_args()
-
+    if options.command is None:
+        parser.print_help()
+        return
     named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
+    if "periodic" in named:
+        named["periodic"] = "".join(named["periodic"])
     scene = Scene(options.width, options.height, options.radius, **named)
-    from twodiscs.theory.exact import exact as exact_numbers
+    try:
+        options.work(scene, options)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # Who reads has seen enough: what is left goes nowhere, in silence.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
-    numbers = exact_numbers(scene)
-    print(
-        json.dumps(numbers, indent=2, allow_nan=False) if options.json else _table(scene, numbers)
+
+def _parser():
+    parser = Parser(
+        prog="twodiscs",
+        description="Two hard discs in a box: exact times between events, Monte Carlo and molecular"
+        " dynamics. Disc 1 has mass 1 and the total energy is 1/2: times are lengths over a speed"
+        " of 1.",
+        epilog=f"Example: twodiscs exact {EXAMPLE}. More on a command: twodiscs exact --help.",
     )
+    version = f"%(prog)s {twodiscs.__version__}"
+    parser.add_argument("--version", action="version", version=version)
+    commands = parser.add_subparsers(dest="command", title="commands", metavar="COMMAND")
+
+    def command(name, work, text, more=""):
+        found = commands.add_parser(name, help=text, description=f"{text.capitalize()}. {more}")
+        for side in ("width", "height", "radius"):
+            found.add_argument(f"--{side}", type=number, required=True, help="a length")
+        effects = found.add_argument_group("effects", "what the scene calls for besides")
+        for effect in EFFECTS.values():
+            option, kind = f"--{effect.name.replace('_', '-')}", {"type": number}
+            if not effect.is_number:
+                kind = {"nargs": "+", "metavar": "AXIS"}
+            effects.add_argument(option, help=effect.meaning, **kind)
+        form = found.add_mutually_exclusive_group()
+        form.add_argument("--json", action="store_true", help="print JSON")
+        form.add_argument("--csv", action="store_true", help="print CSV, as the tables of results")
+        found.set_defaults(work=work)
+        return found
+
+    command("exact", _exact, "exact volume, areas and mean times of one scene")
+    some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
+    some.add_argument("--error", type=number, default=1e-3, help="relative, of every time (1e-3)")
+    some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
+    some.add_argument("--events", nargs="+", metavar="EVENT", help="what to watch (all)")
+    _seed(some)
+    some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
+    some.add_argument("--samples", type=whole_number, default=10**7, help="at least (1e7)")
+    some.add_argument("--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area")
+    some.add_argument("--shell", type=number, default=0.02, help="thickness, a share (0.02)")
+    _seed(some)
+    some = command("trajectory", _trajectory, "one trajectory, event by event")
+    some.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
+    some.add_argument("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
+    _seed(some)
+    return parser
+
+
+def _seed(command):
+    command.add_argument("--seed", type=whole_number, default=1, help="of the random numbers (1)")
+    command.add_argument("--name", help="that of a scene in a configuration, for its numbers")
+
+
+def _exact(scene, options):
+    numbers = twodiscs.exact(scene)
+    if options.csv:
+        from twodiscs.model.box import Box
+        from twodiscs.theory.exact import theory_rows
+
+        _print_csv(theory_rows(Box.of(scene), [scene.radius]))
+    elif options.json:
+        _print_json(numbers)
+    else:
+        print(_table(scene, numbers))
+
+
+def _simulate(scene, options):
+    _print_measured(
+        twodiscs.simulate(
+            scene, options.error, options.seed, options.budget, options.events, options.name
+        ),
+        options,
+    )
+
+
+def _sample(scene, options):
+    _print_measured(
+        twodiscs.sample(
+            scene, options.samples, options.seed, options.quantities, options.shell, options.name
+        ),
+        options,
+    )
+
+
+def _print_measured(found, options):
+    if options.csv:
+        _print_csv(found.rows)
+    elif options.json:
+        _print_json(dict(zip(found, found.rows, strict=True)))
+    else:
+        print(found)
+
+
+def _trajectory(scene, options):
+    found = twodiscs.trajectory(scene, options.seed, options.start, options.duration, options.name)
+    if options.csv:
+        found.to_csv(sys.stdout, index=False)
+    elif options.json:
+        _print_json(found.to_dict("records"))
+    else:
+        print(f"{scene}; times in time, places in length\n\n{found.to_string(index=False)}")
+
+
+def _print_json(value):
+    print(json.dumps(value, indent=2, allow_nan=False))
+
+
+def _print_csv(rows):
+    table = csv.DictWriter(sys.stdout, list(rows[0]), lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
 
 
 def _table(scene, numbers):
@@ -46,19 +155,18 @@ def _table(scene, numbers):
         effects.append(f"{'velocity components':<20}{scene.velocity_components}")
     if scene.conserved:
         effects.append(f"{'total momentum':<20}0 along {', '.join(scene.conserved)}")
-    what = "discs" if scene.depth is None else "balls"
-    box = " × ".join(repr(scene.side(axis)) for axis in scene.axes)
+    volume, area = scene.unit("volume"), scene.unit("area")
     return "\n".join(
         [
-            f"Two {what} of radius {scene.radius!r} in a box of {box}",
+            str(scene).partition(",")[0],
             "",
             *effects,
             f"{'regime':<20}{numbers['regime']}",
             f"{'ergodic components':<20}{numbers['ergodic_components']}",
-            f"{'largest radius':<20}{numbers['largest_radius']!r}",
-            f"{'volume':<20}{numbers['volume']!r}",
+            f"{'largest radius':<20}{numbers['largest_radius']!r:<24}length",
+            f"{'volume':<20}{numbers['volume']!r:<24}{volume}",
             "",
-            f"{'event':<20}{'area':<24}mean time",
+            f"{'event':<20}{f'area ({area})':<24}mean time (time)",
             *(f"{event:<20}{area!r:<24}{times[event]}" for event, area in numbers["areas"].items()),
         ]
     )

@@ -7,11 +7,12 @@ import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
 
-from twodiscs.comparison import check, exact_rows, rows, scores
+from twodiscs.comparison import check, rows, scores
 from twodiscs.comparison.scene_tables import Check
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.pipeline import jobs
+from twodiscs.pipeline.results import verdict
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
@@ -211,7 +212,7 @@ def errors_times(factor, point):
     """Return the point with all errors changed by ``factor``, and the means kept."""
     products = dict(point["products"])
     for event, total in point["counts"].items():
-        n, key = point["eligible"][event], f"{event}*{event}"
+        n, key = point["replicas"], f"{event}*{event}"
         spread = n * products[key] - total**2
         products[key] = (total**2 + round(factor**2 * spread)) // n + 1
     return {**point, "products": products}
@@ -253,7 +254,7 @@ def test_a_common_shift_below_one_error_shows_in_the_mean():
 
 def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
     rng = np.random.default_rng(6)
-    interval = {**laws[1].intervals(rng), "chains": 50}
+    interval = laws[1].intervals(rng, chains=50)
     dynamics = laws[1].dynamics(rng, replicas=64, relative=1e-2)
     found = table_of({"dynamics": [dynamics], "intervals": [interval]}, theory)
     untested = [row for row in found if row["passed"] is None]
@@ -268,11 +269,12 @@ def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
 
 
 def theory_of(scene):
-    return rows.exact_values(exact_rows.theory_rows(Box.of(scene), [scene.radius]))
+    return rows.exact_values(exact.theory_rows(Box.of(scene), [scene.radius]))
 
 
-def test_the_sum_rule_is_for_plain_scenes():
-    for scene, expected in ((SCENE, ["sum_rule"]), (SCENES["rough"], [])):
+def test_the_sum_rule_is_for_equal_discs_between_walls():
+    cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
+    for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
         found = check.comparisons(scene, [], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
@@ -309,28 +311,38 @@ def bad(points, theory):
 
 
 def test_a_verdict_sums_up_what_passed(good):
-    failures, text = check.verdict({"good": good, "again": good})
+    failures, text = verdict.verdict({"good": good, "again": good})
     assert failures == []
     largest = max(abs(row["z"]) for row in good)
-    line = f"132 comparisons passed, largest |z| {largest:.3g}; "
+    line = f"132 comparisons passed, 80 of them independent tests, largest |z| {largest:.3g}; "
     few = sum(row["status"] in ("too-few", "none-seen") for row in good)
-    line += f"{few} of them had too few events for an error, 0 more could not be compared\n"
+    line += f"{few} had too few events for an error, 0 more could not be compared\n"
     assert text == f"good: {line}again: {line}"
-    assert check.verdict({}) == ([], "")
 
 
 def test_a_verdict_says_what_could_not_be_compared(laws, theory):
     dynamics = laws[1].dynamics(np.random.default_rng(6), replicas=64, relative=1e-2)
-    failures, text = check.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)})
+    failures, text = verdict.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)})
     assert failures == []
     assert text.startswith("scene: 6 comparisons passed, ")
-    assert text.endswith(
-        "6 of them had too few events for an error, 1 more could not be compared\n"
-    )
+    assert text.endswith("6 had too few events for an error, 1 more could not be compared\n")
+
+
+def test_independent_rows_could_fail_and_follow_from_no_other(good):
+    independent = [row for row in good if row["independent"]]
+    assert {row["comparison"] for row in independent} == {
+        "volume", "area", "mean_time", "hop_interval",
+    }  # fmt: skip
+    others = [row for row in good if not row["independent"]]
+    for row in others:
+        derived = row["comparison"] in ("sum_rule", "z_mean", "z_spread")
+        assert derived or row["test"] == "certain" or row["quantity"] == "any_wall_area"
+    assert not any(row["test"] == "certain" for row in independent)
+    assert len(independent) == 80
 
 
 def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):
-    failures, _ = check.verdict({"good": good, "bad": bad})
+    failures, _ = verdict.verdict({"good": good, "bad": bad})
     wrong = [row for row in bad if row["passed"] is False]
     assert len(failures) == len(wrong) >= 2
     assert all(line.startswith("bad: ") and "top_wall_time" in line for line in failures)
@@ -341,7 +353,7 @@ def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad
             f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
         ) in failures
     row = {**wrong[0], "radius": None, "comparison": "z_mean"}
-    assert check.failure("bad", row).startswith(
+    assert verdict.failure("bad", row).startswith(
         "bad: z_mean of top_wall_time over all radii by dynamics has z = "
     )
 
@@ -356,14 +368,21 @@ def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, g
 
     def judge(*tables):
         return command(
-            monkeypatch, jobs, "verdict", "comparison.check", "--table", *tables, "--output", out
+            monkeypatch,
+            jobs,
+            "verdict",
+            "pipeline.results.verdict",
+            "--table",
+            *tables,
+            "--output",
+            out,
         )
 
     assert judge(tables[0]) == 0
-    assert out.read_text() == capsys.readouterr().out == check.verdict({"good": good})[1]
+    assert out.read_text() == capsys.readouterr().out == verdict.verdict({"good": good})[1]
     out.unlink()
     assert judge(*tables) == 1
-    assert capsys.readouterr().err.splitlines() == check.verdict({"bad": bad})[0]
+    assert capsys.readouterr().err.splitlines() == verdict.verdict({"bad": bad})[0]
     assert not out.exists()
 
 
@@ -374,7 +393,7 @@ def test_a_verdict_on_what_is_no_table(tmp_path, monkeypatch, capsys, name):
         path.parent.mkdir()
         path.write_text("radius\n")
     words = ("--table", f"{name}={path}", "--output", tmp_path / "out")
-    assert command(monkeypatch, jobs, "verdict", "comparison.check", *words) == 2
+    assert command(monkeypatch, jobs, "verdict", "pipeline.results.verdict", *words) == 2
     error = capsys.readouterr().err
     assert str(path) in error
     assert error.count("\n") == 1

@@ -216,7 +216,10 @@ def test_the_interval_of_clustered_counts_covers_as_it_says(effective):
 
 
 def exact_rates(width, height, radius):
-    """Return the rates of the sum rule's events where both hops are open, in 40 digits."""
+    """Return the rates of the sum rule's events where both hops are open, in 40 digits.
+
+    Both discs and both walls of an axis count.
+    """
     with mpmath.workdps(40):
         w, h, r = (mpmath.mpf(x) for x in (width, height, radius))
         a, b = w / 2 - r, h / 2 - r
@@ -227,20 +230,23 @@ def exact_rates(width, height, radius):
             "right_wall": 8 * a * b**2 - 4 * pi * b * r**2 + 16 * r**3 / 3,
             "top_wall": 8 * a**2 * b - 4 * pi * a * r**2 + 16 * r**3 / 3,
         }
-        return {event: area / volume * 2 / (3 * pi) for event, area in areas.items()}
+        scale = {event: 1 if event == "disc_collision" else 4 for event in areas}
+        return {e: scale[e] * area / volume * 2 / (3 * pi) for e, area in areas.items()}
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.1, 0.2, 0.24])
 def test_sum_rule_holds_for_the_exact_rates(radius):
-    replicas = 10**9
-    counts = {e: int(mpmath.nint(x * replicas)) for e, x in exact_rates(1.5, 1, radius).items()}
+    replicas, time = 10**12, 2.0**-6
+    rates = exact_rates(1.5, 1, radius)
+    counts = {e: int(mpmath.nint(x * replicas * time)) for e, x in rates.items()}
     # No two events in one replica: only the squares are not zero.
     products = {f"{x}*{y}": counts[x] * (x == y) for x in counts for y in counts}
-    found = estimates.sum_rule(Scene(1.5, 1.0, radius), 1.0, replicas, counts, products)
+    found = estimates.sum_rule(Scene(1.5, 1.0, radius), time, replicas, counts, products)
     assert found.value == pytest.approx(1, abs=1e-8)  # counts are rounded to some 1e-9
-    scale = 3 * math.pi / 4
+    scale = 3 * math.pi / (4 * time)
     weights = {"disc_collision": scale * 2 * radius / math.sqrt(8)}
-    weights |= {"right_wall": scale * (1.5 - 2 * radius), "top_wall": scale * (1 - 2 * radius)}
+    weights |= {"right_wall": scale / 4 * (1.5 - 2 * radius)}
+    weights |= {"top_wall": scale / 4 * (1 - 2 * radius)}
     second = sum(weights[e] ** 2 * counts[e] for e in counts) / replicas
     assert found.stderr == pytest.approx(math.sqrt((second - 1) / replicas), rel=1e-7)
 

@@ -7,13 +7,14 @@ import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
-from twodiscs.comparison import estimates, exact_rows, rows
+from twodiscs.comparison import estimates, rows
 from twodiscs.comparison.scene_tables import Areas, Grid, MeanTimes, Theory, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.theory.exact import exact, rate
+from twodiscs.theory import exact
+from twodiscs.theory.exact import rate
 
 SCENE = BOX.scene(0.2)
 
@@ -46,12 +47,12 @@ def test_a_radius_must_not_come_twice(theory, laws):
 @pytest.mark.parametrize("box", [BOX, Box(1.5, 1.0, {"periodic": "x", "field": 0.3})])
 def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
     radii = (0.3, 0.1)
-    found = exact_rows.theory_rows(box, radii)
+    found = exact.theory_rows(box, radii)
     Theory.write(tmp_path / "theory.csv", found)
     assert Theory.read(tmp_path / "theory.csv") == found
     values = iter(found)
     for radius in radii:
-        numbers = exact(box.scene(radius))
+        numbers = exact.exact(box.scene(radius))
         expected = [("volume", numbers["volume"])]
         expected += [(f"{event}_area", numbers["areas"][event]) for event in EVENTS]
         expected += [(f"{event}_time", numbers["mean_times"][event]) for event in EVENTS]
@@ -61,7 +62,7 @@ def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
 
 
 def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
-    found = exact_rows.grid_rows(BOX, RADII)
+    found = exact.grid_rows(BOX, RADII)
     Grid.write(tmp_path / "grid.csv", found)
     assert [row["radius"] for row in found] == list(RADII)
     regimes = {row["radius"]: (row["regime"], row["ergodic_components"]) for row in found}
@@ -153,14 +154,15 @@ def time_row(event="vertical_hop", radius=0.37, exact=50.0, **change):
     point = {
         "radius": radius,
         "duration": 10.0,
-        "eligible": {event: 2048},
+        "replicas": 2048,
+        "strips": {},
         "counts": {event: 0},
         "products": {f"{event}*{event}": 0},
         "target": {event: 3e-4},
         "status": {event: "budget"},
     }
     for key, value in change.items():
-        point[key] = value if key == "duration" else {**point[key], **value}
+        point[key] = {**point[key], **value} if isinstance(value, dict) else value
     exact = {(radius, f"{event}_time"): exact}
     (row,) = rows.mean_time_rows(BOX.scene(radius), exact, [point])
     return row
@@ -194,15 +196,36 @@ def test_rows_of_mean_times(theory, laws):
             assert row["estimate"] is row["stderr"] is row["exact"] is None
 
 
-def test_a_wall_that_half_the_replicas_reach_counts_those(theory, laws):
-    law = laws[RADII.index(0.3)]
-    point = law.dynamics(np.random.default_rng(4))
-    assert point["eligible"]["right_wall"] == point["replicas"] // 2
+def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
+    """Four pairs of a disc and a wall beneath h/4, beyond it two of them for either component."""
+    for radius, copies in ((0.2, 4), (0.3, 2)):
+        law = laws[RADII.index(radius)]
+        point = law.dynamics(np.random.default_rng(4))
+        found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
+        row = found["right_wall"]
+        assert row["copies"] == copies
+        assert abs(row["z"]) < 5
+        assert row["estimate"] == copies * row["duration"] * row["replicas"] / row["count"]
+        # Averaged over all initial conditions disc 1 hits the right wall copies/4 as often.
+        assert row["exact"] == pytest.approx(copies / 4 / rate(law.scene, "right_wall"))
+
+
+def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
+    law = laws[RADII.index(0.24)]
+    point = law.dynamics(np.random.default_rng(5), relative=0.1)
+    tau = law.times["horizontal_hop"]
+    strip = {"duration": 0.125, "share": 0.004, "replicas": 10**7, "count": 0, "status": "reached"}
+    strip["count"] = round(0.125 * 10**7 / 0.004 / tau)
+    point["strips"] = {"horizontal_hop": strip | {"squares": strip["count"]}}
     found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
-    assert found["right_wall"]["replicas"] == 512
-    assert abs(found["right_wall"]["z"]) < 5
-    # Averaged over all initial conditions the right wall is hit half as often.
-    assert found["right_wall"]["exact"] == pytest.approx(0.5 / rate(law.scene, "right_wall"))
+    assert [row["starts"] for row in found.values()].count("strip") == 1
+    row = found["horizontal_hop"]
+    assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, strip["count"])
+    assert row["estimate"] == pytest.approx(tau, rel=1e-6)
+    (other,) = rows.seen_anyway(SCENE, theory, [point])
+    assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
+    assert other["count"] == point["counts"]["horizontal_hop"]
+    assert other["replicas"] == point["replicas"]
 
 
 def test_none_seen_gives_a_bound_and_no_estimate():
@@ -213,9 +236,6 @@ def test_none_seen_gives_a_bound_and_no_estimate():
     assert abs(row["z"]) < 2
     # Where 400 were due, even four to a replica, to see none is wrong.
     assert time_row(exact=51.2)["z"] > 10
-    nobody = time_row("right_wall", eligible={"right_wall": 0})
-    assert nobody["status"] == "none-seen"
-    assert nobody["z"] is nobody["bound"] is None
 
 
 def test_too_few_events_show_no_error():
@@ -235,7 +255,7 @@ def test_too_few_events_show_no_error():
 
 def test_few_replicas_show_no_error():
     few = counted(10**6, 2 * 10**10)
-    assert time_row(eligible={"vertical_hop": 99}, **few)["status"] == "too-few"
+    assert time_row(replicas=99, **few)["status"] == "too-few"
 
 
 def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
@@ -250,7 +270,7 @@ def test_rows_of_the_histogram(theory, laws):
     rng = np.random.default_rng(5)
     points = [laws[i].intervals(rng) for i in (2, 1)]
     found = rows.histogram_rows(theory, points)
-    assert [row["radius"] for row in found] == [0.1] * 12 + [0.2] * 12
+    assert [row["radius"] for row in found] == [0.1] * 17 + [0.2] * 17
     for row in found:
         tau = row["exact_mean"]
         left, right = row["left"], row["right"]
@@ -258,11 +278,11 @@ def test_rows_of_the_histogram(theory, laws):
         assert row["density"] == pytest.approx(density, abs=5 * row["stderr"])
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
-    empty = {**points[0], "counts": [0, 5]}
-    first, second = rows.histogram_rows(theory, [empty])
+    empty = {**points[0], "counts": [0, 5], "squares": [0, 5]}
+    first, second = [row for row in rows.histogram_rows(theory, [empty]) if row["bins"] == "equal"]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = rows.histogram_rows(theory, [{**points[0], "chains": 99}])
+    few = rows.histogram_rows(theory, [laws[2].intervals(rng, chains=99)])
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
@@ -272,7 +292,7 @@ def test_rows_of_the_histogram(theory, laws):
 def exact_of(*scenes):
     """Return the exact values as theory.csv has them: of all events, whatever has a place."""
     radii = [scene.radius for scene in scenes]
-    return rows.exact_values(exact_rows.theory_rows(Box.of(scenes[0]), radii))
+    return rows.exact_values(exact.theory_rows(Box.of(scenes[0]), radii))
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -150,6 +150,7 @@ CHECK_ROW = {
     "p": 0.0,
     "bound": 5,
     "passed": False,
+    "independent": True,
     "status": "none-seen",
     "test": "exact-tail",
 }
@@ -179,7 +180,7 @@ def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
     Check.write(tmp_path / "x.csv", [CHECK_ROW])
     assert (tmp_path / "x.csv").read_text().splitlines()[1] == (
         "area,right_wall_area,0.1,monte_carlo,0.3333333333333333,,,-inf,0.0,5.0,false,"
-        "none-seen,exact-tail"
+        "true,none-seen,exact-tail"
     )
 
 
@@ -247,7 +248,8 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
     [
         ("comparison.tables", ("numpy", "scipy", "pandas")),
         ("comparison.scene_tables", ("numpy", "scipy", "pandas")),
-        ("comparison.exact_rows", ("numpy", "scipy", "pandas")),
+        ("theory.exact", ("numpy", "scipy", "pandas")),
+        ("pipeline.results.verdict", ("numpy", "scipy", "pandas")),
         ("comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
         ("comparison.gather", ("scipy.stats", "pandas", "numba", "matplotlib")),
     ],

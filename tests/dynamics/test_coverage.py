@@ -78,7 +78,7 @@ def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
     """What a table shows as estimate ± stderr comes from the same sums by the same function."""
     point = counting.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
     count, squares = point["counts"]["right_wall"], point["products"]["right_wall*right_wall"]
-    replicas, duration = point["eligible"]["right_wall"], point["duration"]
+    replicas, duration = point["replicas"], 4 * point["duration"]
     estimate = estimates.mean_time(count, squares, replicas, duration)
     variance = squares / replicas - (count / replicas) ** 2
     error = math.sqrt(variance / (replicas - 1)) / (count / replicas)

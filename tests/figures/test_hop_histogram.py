@@ -19,16 +19,23 @@ def test_densities_at_zero_are_marked():
     np.testing.assert_allclose(sorted(marked), sorted(exact), rtol=1e-14)
 
 
-def test_joined_bins_hold_what_they_should():
+def test_a_curve_ends_before_a_bin_that_holds_too_few():
     rows = [
-        {"left": i / 4, "right": (i + 1) / 4, "count": n, "intervals": 2000}
-        for i, n in enumerate([500, 400, 300, 200, 100, 60, 30, 20, 4, 3, 9, 9])
+        {"left": i / 4, "right": (i + 1) / 4, "count": n, "density": 2.0 * n, "stderr": 1.0 * n}
+        | {"exact_mean": 0.5}
+        for i, n in enumerate([500, 400, 9, 30])
     ]
-    edges, density, errors = hop_histogram.joined(rows, 0, 1)
-    assert edges.tolist() == [i / 4 for i in range(13)]
-    np.testing.assert_allclose(density * 2000 / 4, [r["count"] for r in rows], rtol=1e-14)
-    np.testing.assert_allclose(errors[0] * 2000 / 4, (500 * 0.75) ** 0.5, rtol=1e-14)
-    edges, density, _ = hop_histogram.joined(rows, 0.3, 20)
-    assert edges.tolist() == [0, 0.25, 0.5, 0.75, 1, 1.5, 2]
-    counts = density * 2000 * np.diff(edges)
-    np.testing.assert_allclose(counts, [500, 400, 300, 200, 160, 50], rtol=1e-14)
+    for fewest, shown in ((10, 2), (1, 4), (1000, 0)):
+        edges, density, errors = hop_histogram.curve(rows, fewest)
+        assert edges.tolist() == [i / 2 for i in range(shown + 1)]
+        assert density.tolist() == [row["count"] for row in rows[:shown]]
+        assert errors.tolist() == [row["count"] / 2 for row in rows[:shown]]
+
+
+def test_a_density_that_bins_are_too_wide_for_is_not_marked():
+    rows = [row for row in tables_of("paper")["hop_histogram"] if row["left"] == 0]
+    wide = [row | {"right": row["right"] + 0.2 * (i > 0)} for i, row in enumerate(rows)]
+    with style.context():
+        axes = [hop_histogram.draw(PAPER, {"hop_histogram": r}).axes[1] for r in (rows, wide)]
+    marked = [sum(not line.get_clip_on() for line in one.lines) for one in axes]
+    assert marked[0] > marked[1]

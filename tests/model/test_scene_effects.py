@@ -6,6 +6,7 @@ joined. The scenes are some way off every threshold, for a grid to see it.
 
 from itertools import product
 
+import effect_scenes
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +14,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from twodiscs.dynamics.law import law_of
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import ENERGY, Scene
 
@@ -174,3 +176,14 @@ def test_strongest_field(width):
         Scene(width, 1.5, 0.2, field=1.001 * ENERGY / lowest)
     with pytest.raises(ValueError, match="pass each other"):
         Scene(width, 1.5, 0.2, field=0.1, mass_ratio=2.0)
+
+
+@pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
+def test_the_motion_has_the_lengths_of_the_theory(scene):
+    """The motion takes doubles and the theory fractions, from properties of their own."""
+    assert scene.contact_distance == pytest.approx(float(scene.exact_contact), rel=1e-15)
+    law = law_of(scene)
+    for axis in scene.walled:
+        halves = [getattr(law, f"half_{axis}{disc}") for disc in "12"]
+        reach = halves[0] + (halves[0] if halves[1] is None else halves[1])
+        assert reach == pytest.approx(float(scene.reach(axis)), rel=1e-15)

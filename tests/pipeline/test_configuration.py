@@ -462,10 +462,8 @@ def test_what_is_built_once():
     assert load.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
     # The manuscript brings along what it reads.
     paper = load.load(PLAIN | {"shared": ["paper"]}).shared
-    assert paper == (
-        *("errata", "accuracy_cost", "stability", "tails", "distributions", "thresholds"),
-        *("effects", "paper"),
-    )  # fmt: skip
+    assert paper == tuple(name for name in known if name != "report")
+    assert {"errata", "effects", "paper"} < {*paper}
     assert not [name for name, study in STUDIES.items() if study.shared != (name in known)]
 
 
@@ -627,9 +625,6 @@ SCENES = {
     "effects: {mass_ratio: -1}": ".effects.mass_ratio must be a ratio between …, not -1.0",
     "effects: {mass_ratio: heavy}": ".effects.mass_ratio must be a ratio between …, not 'heavy'",
     "effects: {mass_ratio: true}": ".effects.mass_ratio must be a ratio between …, not True",
-    "effects: {periodic: x}": ".effects.periodic must be a list of different axes …, not 'x'",
-    "effects: {periodic: xy}": ".effects.periodic must be a list of different axes …, not 'xy'",
-    "effects: {periodic: y}": ".effects.periodic must be a list of different axes …, not 'y'",
     "effects: {periodic: true}": ".effects.periodic must be a list of different axes …, not True",
     "effects: {periodic: [x, x]}": ".effects.periodic must be a list of …, not ['x', 'x']",
     "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",

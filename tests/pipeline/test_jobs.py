@@ -73,7 +73,7 @@ def test_a_long_job_says_what_it_has_done_and_what_is_left(run, capsys):
 def exact_table(path, function="theory_rows", radii=RADII):
     """Return the words that make theory.csv, or another exact table."""
     given = {"box": BOX.parameters(), "radii": list(radii)}
-    return ("table", "comparison.exact_rows", "--function", function, "--parameters", given,
+    return ("table", "theory.exact", "--function", function, "--parameters", given,
             "--output", path)  # fmt: skip
 
 
@@ -110,15 +110,15 @@ def test_every_table_is_found_by_its_name(name):
 
 def test_verdict_writes_a_line_a_scene_or_names_what_failed(run, tmp_path, capsys):
     good = Check.empty(comparison="volume", quantity="volume", method="monte_carlo", radius=0.1)
-    good |= {"z": 0.5, "bound": 4.0, "passed": True}
+    good |= {"z": 0.5, "bound": 4.0, "passed": True, "independent": True}
     bad = good | {"radius": 0.2, "z": 9.0, "passed": False}
     for scene, rows in {"a": [good], "b": [good, bad]}.items():
         (tmp_path / scene).mkdir()
         Check.write(tmp_path / scene / "check.csv", rows)
-    words = ("verdict", "comparison.check", "--table", "a=a/check.csv")
+    words = ("verdict", "pipeline.results.verdict", "--table", "a=a/check.csv")
     assert run(*words, "--output", "check.passed") == 0
     text = (tmp_path / "check.passed").read_text()
-    assert text.startswith("a: 1 comparisons passed, largest |z| 0.5;")
+    assert text.startswith("a: 1 comparisons passed, 1 of them independent tests, largest |z| 0.5;")
     assert capsys.readouterr().out == text
     assert run(*words, "b=b/check.csv", "--output", "other") == 1
     said = capsys.readouterr().err
@@ -221,8 +221,8 @@ MISTAKES = {
         "event must be one of vertical_hop, horizontal_hop, not 'top_wall'",
     ),
     "a function of another name": (
-        words("table", "comparison.exact_rows", OF_BOX | {"radii": [0.1]}),
-        "comparison.exact_rows must have a function rows",
+        words("table", "theory.exact", OF_BOX | {"radii": [0.1]}),
+        "theory.exact must have a function rows",
     ),
     "no such table": (exact_table("output"), "there is no table called 'output'"),
     "a path without a name": (
@@ -230,15 +230,19 @@ MISTAKES = {
         "--table must be given as NAME=VALUE, not 'theory.csv'",
     ),
     "a table that is not there": (
-        words("verdict", "comparison.check", {}, "--table", "a=no/check.csv"),
+        words("verdict", "pipeline.results.verdict", {}, "--table", "a=no/check.csv"),
         "no/check.csv: No such file or directory",
+    ),
+    "no table for a verdict": (
+        words("verdict", "pipeline.results.verdict", {}),
+        "verdict needs --table, the check table of a scene or of several",
     ),
     "a table that is needed": (
         words("figure", "figures.hop_histogram", OF_BOX),
         "the table hop_histogram must be given, as --table hop_histogram=CSV",
     ),
     "a trajectory that is needed": (
-        words("animation", "figures.animation", OF_BOX | {"radius": 0.2}),
+        words("animation", "figures.motion.animation", OF_BOX | {"radius": 0.2}),
         "the table trajectory must be given, as --table trajectory=CSV",
     ),
     "points that are needed": (

@@ -62,7 +62,7 @@ def place(monkeypatch):
 
     def look_at(folder):
         monkeypatch.setattr(sources, "PACKAGE", folder)
-        for known in (sources._imports, sources._read, sources.fingerprint):
+        for known in (sources._file, sources._imports, sources._read, sources.fingerprint):
             known.cache_clear()
 
     real = sources.PACKAGE
@@ -82,7 +82,7 @@ def package(tmp_path, place):
 
 @pytest.mark.parametrize("module", CASES)
 def test_imports_are_followed(package, module):
-    expected = {"__init__.py"} | {f"{name}.py" for name in CASES[module]}
+    expected = {f"{name}.py" for name in CASES[module]}
     found = sources.imported(module)
     assert {path.relative_to(package).as_posix() for path in found} == expected
     assert found == sorted(found)
@@ -98,7 +98,7 @@ def test_unknown_module_is_an_error(package, module):
 def test_modules_are_left_out_with_what_only_they_import(package):
     found = sources.imported("chain", "pack.inner", without=["pack"])
     assert {path.relative_to(package).as_posix() for path in found} == {
-        *("__init__.py", "chain.py", "absolute.py", "alone.py", "pack/inner.py", "pack/sibling.py"),
+        *("chain.py", "absolute.py", "alone.py", "pack/inner.py", "pack/sibling.py"),
     }
     assert sources.imported("chain", without=["alone", "helper"]) == sources.imported(
         "chain", without=["alone"]
@@ -210,6 +210,9 @@ def test_fingerprints_follow_imports_and_names_and_see_no_time_stamps(package, p
     assert now("chain", "absolute") == now("absolute", "chain") == before["chain"]
     os.utime(package / "alone.py", (1, 1))
     assert {name: now(name) for name in CASES} == before
+    # Nothing depends on the face, though it is imported with every module.
+    (package / "__init__.py").write_text("from twodiscs import alone\n")
+    assert {name: now(name) for name in CASES} == before
     (package / "alone.py").write_text("import math\n")
     os.utime(package / "alone.py", (1, 1))
     changed = {name for name in CASES if now(name) != before[name]}
@@ -281,7 +284,8 @@ def test_what_python_really_imports_is_listed():
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {Path(name).resolve() for name in run.stdout.split()}
-    assert loaded <= set(sources.imported("dynamics.counting"))
+    face = sources.PACKAGE / "__init__.py"
+    assert loaded <= {face, *sources.imported("dynamics.counting")}
 
 
 def test_standard_library_only():
@@ -298,3 +302,25 @@ def test_standard_library_only():
         check=True,
     )
     assert "twodiscs.pipeline.sources" in run.stdout.split()
+
+
+@pytest.mark.parametrize("damage", [None, "", "[1]", "{"])
+def test_what_is_remembered_of_sources_changes_no_fingerprint(place, package, monkeypatch, damage):
+    """The memory is by the text of each file; one that cannot be read is as good as none."""
+    monkeypatch.setattr(sources, "_used", {})
+    memory = package.parent / ".snakemake" / "memory.json"
+    memory.parent.mkdir()
+    monkeypatch.setattr(sources, "MEMORY", memory)
+    sources._memory.cache_clear()
+    first = sources.fingerprint("chain")
+    sources._remember()
+    assert len(json.loads(memory.read_text())) == len(sources.imported("chain"))
+    if damage is not None:
+        memory.write_text(damage)
+    place(package)
+    sources._memory.cache_clear()
+    if damage is None:
+        monkeypatch.setattr(sources, "_parsed", None)  # what is remembered is not parsed
+    assert sources.fingerprint("chain") == first
+    monkeypatch.undo()
+    sources._memory.cache_clear()

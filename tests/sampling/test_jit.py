@@ -17,10 +17,14 @@ from twodiscs.sampling import jit
 from twodiscs.sampling.jit import numba
 
 SCRIPT = """
-from twodiscs.dynamics.counting import run_blocks
-from twodiscs.model.events import EVENTS
+import numpy as np
 from twodiscs.model.scene import Scene
-print(run_blocks(Scene(1.5, 1.0, 0.2), EVENTS, 1, 0, 1, 4.0, replicas=64)[0].tolist())
+from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.starts import draw_starts
+from twodiscs.sampling.streams import open_stream
+starts = np.zeros((8, 20))
+draw_starts(open_stream(np.uint64(1), 0), draw_constants(Scene(1.5, 1.0, 0.2)), 0, 0, starts)
+print(starts.tolist())
 """
 
 
@@ -52,44 +56,78 @@ def output(process):
     return out
 
 
-def test_an_edit_of_the_event_law_changes_the_result(package):
-    """Numba alone would go on with the old law, for the edited file is not the kernel's own."""
+def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
+    """However old the edited file says it is, and where a process inherits the cache of another.
+
+    Numba alone would go on as before, for the edited file is not the kernel's own.
+    """
     sources, environment = package
     before = output(start(environment))
-    caches = sorted((sources.parent / "cache").iterdir())
-    assert len(caches) == 1
-    assert any(caches[0].rglob("*.nbc"))
-    law = sources / "dynamics" / "law.py"
-    text = law.read_text()
-    edited = text.replace("exchange = exchange if", "exchange = 0.9 * exchange if")
-    assert edited != text
-    law.write_text(edited)
-    after = output(start(environment))
-    assert after != before
-    law.write_text(text)
+    (cache,) = (sources.parent / "cache").iterdir()
+    kernels = [path for path in cache.iterdir() if path.name != jit.MARK]
+    assert any("draw_starts" in path.name for path in kernels)
+    # The same text elsewhere needs no compiling, and what was cut short is compiled again.
+    moved = shutil.copytree(sources.parent, sources.parents[1] / "elsewhere") / "twodiscs"
+    for path in kernels:
+        path.write_bytes(path.read_bytes()[: 0 if "splitmix" in path.name else 1000])
     assert output(start(environment)) == before
+    again = {path: path.stat().st_mtime_ns for path in kernels}
+    assert output(start(environment | {"PYTHONPATH": str(moved.parent)})) == before
+    assert again == {path: path.stat().st_mtime_ns for path in kernels}
+
+    streams = sources / "sampling" / "streams.py"
+    stamp, text = streams.stat().st_mtime, streams.read_text()
+    edited = text.replace("UNIT = 2.0**-53", "UNIT = 2.0**-54")
+    assert len(edited) == len(text)
+    assert edited != text
+    streams.write_text(edited)
+    os.utime(streams, (stamp - 1000, stamp - 1000))
+    assert output(start(environment | {"NUMBA_CACHE_DIR": str(cache)})) != before
+
+
+def test_old_caches_of_this_package_go_and_nothing_else(package):
+    sources, environment = package
+    home = sources.parent / "cache"
+    for i in range(9):
+        folder = home / f"kernels-{i:016x}"
+        folder.mkdir(parents=True)
+        (folder / jit.MARK).touch()
+        os.utime(folder, (i, i))
+    others = "something else", "sources-project1", "kernels-project1", f"kernels-{10:016x}"
+    for name in others:
+        (home / name).mkdir()
+        os.utime(home / name, (0, 0))
+    assert cache_folder(environment).parent == home
+    assert {path.name for path in home.iterdir()} >= set(others)
+    assert len(list(home.iterdir())) == 4 + len(others)
+
+
+def cache_folder(environment):
+    """Return where a process keeps the kernels of the dynamics, None where nowhere."""
+    script = "from twodiscs.sampling import jit; print(jit.cache_folder('dynamics'))"
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
+    )
+    assert (done.stderr != "") == (done.stdout == "None\n")
+    return None if done.stdout == "None\n" else Path(done.stdout.rstrip())
+
+
+def test_where_one_folder_cannot_be_made_another_is_taken_or_a_sentence_says_so(package):
+    sources, environment = package
+    blocked = sources.parent / "file"
+    blocked.touch()
+    environment |= {"NUMBA_CACHE_DIR": str(blocked / "below")}
+    name = f"kernels-{jit.sources_hash('dynamics')}"
+    assert cache_folder(environment) == sources / "__pycache__" / name
+    shutil.rmtree(sources / "__pycache__")
+    (sources / "__pycache__").touch()
+    assert cache_folder(environment) is None
 
 
 def test_parallel_first_runs_do_not_race(package):
     _, environment = package
-    results = {output(process) for process in [start(environment) for _ in range(3)]}
+    results = {output(process) for process in [start(environment) for _ in range(2)]}
     assert len(results) == 1
-
-
-def test_old_caches_go(package):
-    sources, environment = package
-    home = sources.parent / "cache"
-    for i in range(9):
-        (home / f"sources-{i:016x}").mkdir(parents=True)
-        os.utime(home / f"sources-{i:016x}", (i, i))
-    (home / "something else").mkdir()
-    script = "import twodiscs.sampling.jit, os; print(os.environ['NUMBA_CACHE_DIR'])"
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
-    )
-    assert Path(done.stdout.strip()).parent == home
-    assert (home / "something else").is_dir()
-    assert len(list(home.glob("sources-*"))) == 4
 
 
 def test_a_users_choice_of_processor_wins(package):
@@ -104,32 +142,27 @@ def test_a_users_choice_of_processor_wins(package):
 
 def test_the_hash_knows_every_source_by_its_text_and_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(jit, "PACKAGE", tmp_path)
-    (tmp_path / "folder").mkdir()
-    sources = {"a.py": "x = 1", "folder/b.py": "y = 2"}
+    sources = {"model/a.py": "x = 1", "dynamics/b.py": "y = 2", "figures/c.py": "z = 3"}
 
-    def hashed(**changes):
+    def hashed(room, **changes):
         for path in tmp_path.rglob("*.py"):
             path.unlink()
         for name, text in (sources | changes).items():
+            (tmp_path / name).parent.mkdir(exist_ok=True)
             (tmp_path / name).write_text(text)
-        return jit.sources_hash()
+        return jit.sources_hash.__wrapped__(room)
 
-    first = hashed()
+    first = hashed("dynamics")
     assert re.fullmatch("[0-9a-f]{16}", first)
-    assert hashed() == first
-    changed = [
-        hashed(**change)
-        for change in (
-            {"a.py": "x = 3"},
-            {"folder/b.py": "y = 2 "},
-            {"folder/c.py": ""},
-            {"c.py": ""},
-        )
-    ]
-    assert len({first, *changed}) == 5
-    (tmp_path / "notes.txt").write_text("no source")
-    (tmp_path / "c.py").unlink()
-    assert jit.sources_hash() == first
+    assert hashed("sampling") == first
+    changes = [{"model/a.py": "x = 3"}, {"dynamics/b.py": "y = 2 "}, {"sampling/b.py": ""}]
+    assert len({first, *(hashed("dynamics", **change) for change in changes)}) == 4
+    # What imports kernels changes none of them, but those that stand there themselves.
+    elsewhere = {"figures/c.py": "z = 4"}
+    assert hashed("dynamics", **elsewhere) == first
+    assert hashed("studies", **elsewhere) != hashed("studies")
+    (tmp_path / "model" / "notes.txt").write_text("no source")
+    assert hashed("dynamics") == first
 
 
 # Functions that are made --------------------------------------------------------------------
@@ -232,6 +265,8 @@ def test_absent_effects_leave_no_instruction(package):
     walls; the compiler never sees the code of the effects.
     """
     sources, environment = package
+    # The copy has the sources of this package, and so its kernels, if they are compiled.
+    environment |= {"NUMBA_CACHE_DIR": str(jit.cache_folder("dynamics").parent)}
     present = instructions(environment)
     assert instructions(environment, moment_of_inertia=0.5) != present
 

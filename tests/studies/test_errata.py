@@ -122,6 +122,9 @@ def test_verdicts_are_those_found_by_hand():
 def test_whatever_is_not_right_says_what_is():
     for row in verdicts().values():
         assert row["verdict"] == "right" or row["correction"]
+        assert (row["verdict"] == "right") == (row["severity"] is None)
+        assert row["severity"] in (None, "major", "minor", "slip")
+        assert (row["correction"] or "").count("`") % 2 == 0
         assert row["decided_by"] == "theory"
 
 

@@ -44,16 +44,15 @@ def test_single_precision_has_the_exact_rates_where_there_is_room(radius):
     scene = PAPER.with_radius(radius)
     duration, blocks = counting.replica_duration(scene), 8
     counts, _, energy = precision.run_blocks(scene, 1, 0, blocks, duration)
-    double, products, eligible = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
-    noise = counting.relative_errors(double, products, eligible)
+    double, products = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
+    noise = ensemble.relative_errors(double, products, blocks * ensemble.REPLICAS)
     for e, event in enumerate(EVENTS):
         if not scene.is_possible(event):
             assert counts[e] == 0
         elif double[e] >= 1000:
-            expected = exact.rate(scene, event) * duration * blocks * ensemble.REPLICAS
-            # Wall counts are over all replicas here, so half of them may see none.
-            share = 2 if eligible[e] < eligible[-1] else 1
-            assert abs(counts[e] / expected - 1) < 5 * share * noise[e], event
+            expected = scene.copies(event) / exact.mean_times(scene)[event] * duration
+            expected *= blocks * ensemble.REPLICAS
+            assert abs(counts[e] / expected - 1) < 5 * noise[e], event
     assert 1e-8 < energy < 1e-5
 
 
@@ -61,8 +60,9 @@ def test_single_precision_goes_wrong_where_there_is_no_room():
     scene = PAPER.with_radius(PAPER.largest_radius * (1 - 1e-6))
     duration, blocks = counting.replica_duration(scene), 8
     expected = exact.rate(scene, "disc_collision") * duration * blocks * ensemble.REPLICAS
-    double, products, eligible = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
-    noise = counting.relative_errors(double, products, eligible)[counting.COLLISIONS]
+    double, products = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
+    noise = ensemble.relative_errors(double, products, blocks * ensemble.REPLICAS)
+    noise = noise[counting.COLLISIONS]
     single = precision.run_blocks(scene, 1, 0, blocks, duration)[0]
     assert abs(double[counting.COLLISIONS] / expected - 1) < 5 * noise
     assert abs(single[counting.COLLISIONS] / expected - 1) > 10 * noise

@@ -25,8 +25,8 @@ def plain(scene, start, steps, step):
         x = x + v * step
         beyond = (np.abs(x) > half) & (x * v > 0)
         counts["any_wall"] += beyond.sum()
-        counts["right_wall"] += beyond[0, 0] and v[0, 0] > 0
-        counts["top_wall"] += beyond[0, 1] and v[0, 1] > 0
+        counts["right_wall"] += beyond[:, 0].sum()
+        counts["top_wall"] += beyond[:, 1].sum()
         v = np.where(beyond, -v, v)
         apart = x[0] - x[1]
         changed = (before < 0) != (apart < 0)

@@ -8,9 +8,17 @@ import math
 
 from mpmath import mp, mpf
 
-from twodiscs.model.events import HOPS
+from twodiscs.model.events import AXIS, DECLARED, HOPS, WALLS, by_kind
 
 DIGITS = 150
+
+#: {event: that of the box turned by a quarter}, of the events that have one.
+TURNED = {
+    one.name: other.name
+    for one in DECLARED.values()
+    for other in DECLARED.values()
+    if (one.kind, one.side) == (other.kind, other.side) and (one is other) == (one.axis is None)
+}
 
 
 def relative_error(value, exact):
@@ -73,16 +81,16 @@ def reference(scene):
         k = mp.sqrt(s * s - u * u)
         return a * b * mp.asin(u / s) + b * k - a * u + u * u / 2
 
-    right, top = profile.integral(a, 2, 0), 2 * profile.weighted(a, a, 1)
-    return {
-        "volume": 2 * profile.weighted(a, a, 2),
-        "vertical_hop": mp.sqrt(2) * b * max(a - s, mpf(0)) ** 2,
-        "horizontal_hop": mp.sqrt(2) * a * max(b - s, mpf(0)) ** 2,
-        "disc_collision": 4 * mp.sqrt(2) * s * (antiderivative(end) - antiderivative(profile.u0)),
-        "right_wall": right,
-        "top_wall": top,
-        "any_wall": 4 * (right + top),
+    hops = {"x": a * max(b - s, mpf(0)) ** 2, "y": b * max(a - s, mpf(0)) ** 2}
+    walls = {"x": profile.integral(a, 2, 0), "y": 2 * profile.weighted(a, a, 1)}
+    contact = 4 * mp.sqrt(2) * s * (antiderivative(end) - antiderivative(profile.u0))
+    areas = {
+        "hop": lambda event: mp.sqrt(2) * hops[event.axis],
+        "collision": lambda event: contact,
+        "wall": lambda event: walls[event.axis],
+        "walls": lambda event: 4 * sum(walls.values()),
     }
+    return {"volume": 2 * profile.weighted(a, a, 2)} | by_kind("antiderivatives.py", areas)
 
 
 def reference_times(scene):
@@ -91,11 +99,12 @@ def reference_times(scene):
     volume = exact.pop("volume")
     one_sided = 3 * mp.pi / 2 * volume
     times = {event: one_sided / area if area else None for event, area in exact.items()}
-    for hop, wall in (("horizontal_hop", "right_wall"), ("vertical_hop", "top_wall")):
-        if times[hop] is None:
-            times[wall] /= 2
-        else:
+    for hop in HOPS:
+        if times[hop] is not None:
             times[hop] /= 2
+            continue
+        for wall in WALLS:
+            times[wall] /= 2 if AXIS[wall] == AXIS[hop] else 1
     return times
 
 
@@ -106,7 +115,7 @@ def reference_shell(scene, event, epsilon):
     if event == "disc_collision":
         outer = s + mp.sqrt(2) * thick
         return (reference_volume(a, b, s) - reference_volume(a, b, outer)) / thick
-    if event in ("horizontal_hop", "top_wall"):
+    if AXIS[event] != ("y" if event in HOPS else "x"):
         a, b = b, a
     if event in HOPS:
         # ∬ over v ≤ √2 ε of 4 (A − u)(B − v), over 2ε: the profile with the axes exchanged.

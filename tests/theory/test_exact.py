@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, weighted
 
@@ -23,7 +23,7 @@ GOOD = Scene(*PAPER, 0.3)
 @pytest.mark.parametrize("box", [PAPER, (1.0, 1.7), (1.0, 1.0)])
 def test_nothing_jumps_at_a_threshold_but_the_wall_times(box):
     """From one double to the next but one, numbers move by up to 4 parts in the room left."""
-    for threshold, wall in ((box[0] / 4, "top_wall"), (box[1] / 4, "right_wall")):
+    for threshold, axis in ((box[0] / 4, "y"), (box[1] / 4, "x")):
         below = Scene(*box, math.nextafter(threshold, 0))
         above = Scene(*box, math.nextafter(threshold, 1))
         rel = BOUND + 5 * (above.radius - below.radius) / (below.largest_radius - threshold)
@@ -32,8 +32,8 @@ def test_nothing_jumps_at_a_threshold_but_the_wall_times(box):
         for event in EVENTS:
             assert after[event] == pytest.approx(before[event], rel=rel, abs=1e-30)
         before, after = exact.mean_times(below), exact.mean_times(above)
-        walls = {"top_wall", "right_wall"} if box[0] == box[1] else {wall}
-        for event in EVENTS[2:]:
+        walls = {wall for wall in WALLS if box[0] == box[1] or AXIS[wall] == axis}
+        for event in {*EVENTS} - {*HOPS}:
             factor = 0.5 if event in walls else 1
             assert after[event] == pytest.approx(factor * before[event], rel=rel)
 
@@ -52,7 +52,7 @@ def test_a_blocked_hop_has_no_area_and_no_time(radius):
 )
 def test_rates_average_over_all_components_and_times_over_those_that_meet(radius, right, top):
     scene = Scene(*PAPER, radius)
-    share = {"right_wall": right, "top_wall": top}
+    share = {wall: {"x": right, "y": top}[AXIS[wall]] for wall in WALLS}
     for event, time in exact.mean_times(scene).items():
         if time is not None:
             assert time * exact.rate(scene, event) == pytest.approx(share.get(event, 1), rel=1e-15)

@@ -1,15 +1,16 @@
 """Closed forms, and the laws of mean times where the discs are small and where events die out."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
+from twodiscs.model import scene as scene_module
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import DECLARED, EVENTS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import exact
+from twodiscs.theory import exact, laws
 from twodiscs.theory.laws import (
-    TURNED,
     closed_form,
     leading_law,
     small_radius_time,
@@ -162,15 +163,17 @@ def test_what_stays_finite_in_a_slim_box_has_no_leading_law():
     assert finite == ["disc_collision", "right_wall"]
 
 
-def test_turning_the_box_exchanges_the_events_of_its_axes():
-    assert TURNED == {
-        "vertical_hop": "horizontal_hop",
-        "horizontal_hop": "vertical_hop",
-        "disc_collision": "disc_collision",
-        "right_wall": "top_wall",
-        "top_wall": "right_wall",
-        "any_wall": "any_wall",
-    }
+@pytest.mark.parametrize("box", [PAPER, (1.0, 1.5), (3.0, 1.0), (1.0, 3.0)])
+@pytest.mark.parametrize("wall", WALLS)
+def test_walls_at_both_ends_have_the_same_laws(monkeypatch, box, wall):
+    """Also where only one of the two is an event that is declared."""
+    here = Box(*box).scene(0.9 * Box(*box).largest_radius)
+    monkeypatch.setitem(DECLARED, "other_end", replace(DECLARED[wall], name="other_end", side=-1))
+    for module in (laws, scene_module):
+        monkeypatch.setattr(module, "EVENTS", (*EVENTS, "other_end"))
+    there = here.with_radius(here.radius)
+    assert threshold_time(there, "other_end") == threshold_time(here, wall)
+    assert small_radius_time(Box(*box), "other_end") == small_radius_time(Box(*box), wall)
 
 
 # Bad input --------------------------------------------------------------------------------------

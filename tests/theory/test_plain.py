@@ -14,6 +14,7 @@ from mpmath import mp, mpf
 from scipy.special import bdtr, bdtrc
 from theory.antiderivatives import (
     DIGITS,
+    TURNED,
     lengths,
     reference,
     reference_shell,
@@ -25,7 +26,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
-from twodiscs.theory.laws import TURNED
 
 BOUND = 1e-13
 

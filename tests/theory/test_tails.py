@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from theory.antiderivatives import TURNED
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.theory.laws import TURNED
 from twodiscs.theory.tails import density_at_zero, tail_constant
 
 BOUND = 1e-13

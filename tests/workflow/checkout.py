@@ -5,12 +5,51 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import yaml
+from snakemake import cli
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper")
+
+
+def forked(arguments, folder, sources):
+    """Run snakemake in ``folder`` in a copy of this process; return the completed one."""
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as error:
+        child = os.fork()
+        if child == 0:
+            status = 1
+            try:
+                os.dup2(out.fileno(), 1)
+                os.dup2(error.fileno(), 2)
+                sys.stdout, sys.stderr = (os.fdopen(os.dup(fd), "w") for fd in (1, 2))
+                os.chdir(folder)
+                os.environ["PYTHONPATH"] = sources
+                for name in [name for name in sys.modules if name.partition(".")[0] == "twodiscs"]:
+                    del sys.modules[name]
+                sys.path.insert(0, sources)
+                status = snakemake_main(arguments)
+            finally:
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(status)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        for file in (out, error):
+            file.seek(0)
+        return subprocess.CompletedProcess(arguments, status, out.read(), error.read())
+
+
+def snakemake_main(arguments):
+    """Run the command ``snakemake``; return its exit status."""
+    try:
+        cli.main(list(arguments))
+    except SystemExit as ended:
+        if isinstance(ended.code, str):
+            print(ended.code, file=sys.stderr)
+        return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+    return 0
 
 
 class Checkout:
@@ -24,15 +63,22 @@ class Checkout:
         self.configuration = path / "config" / "config.yaml"
 
     def snakemake(self, *arguments, passes=True):
-        """Run snakemake here; by default it must succeed. Returns the completed process."""
-        environment = os.environ | {"PYTHONPATH": str(self.home.path / "src")}
-        run = subprocess.run(
-            [sys.executable, "-m", "snakemake", *arguments],
-            cwd=self.path,
-            env=environment,
-            capture_output=True,
-            text=True,
-        )
+        """Run snakemake here; by default it must succeed. Returns the completed process.
+
+        A dry run starts no job: a copy of this process is enough for it, which has imported
+        Snakemake already, but nothing of the package.
+        """
+        sources = str(self.home.path / "src")
+        if "--dry-run" in arguments:
+            run = forked(arguments, self.path, sources)
+        else:
+            run = subprocess.run(
+                [sys.executable, "-m", "snakemake", *arguments],
+                cwd=self.path,
+                env=os.environ | {"PYTHONPATH": sources},
+                capture_output=True,
+                text=True,
+            )
         if passes:
             assert run.returncode == 0, run.stdout + run.stderr
         return run

@@ -61,7 +61,7 @@ COUNTED = {"monte_carlo", "dynamics", "intervals", "compile", "effects_point", "
     ("module", "drawn"),
     [
         ("figures/hop_histogram.py", ("figure", SIX, "figure=hop_histogram")),
-        ("figures/animation.py", ("animate", SIX)),
+        ("figures/motion/animation.py", ("animate", SIX)),
         ("studies/tails/figure.py", ("shared_figure", "figure=tails")),
     ],
 )

@@ -1,8 +1,9 @@
-"""The report in a browser: everything is in it, is shown, and comes from nowhere else.
+"""The report, and Snakemake's own behind it, in a browser: all is shown and from nowhere else.
 
 Skipped where no Chromium is installed.
 """
 
+import csv
 import html
 import json
 import re
@@ -32,9 +33,50 @@ addEventListener("securitypolicyviolation", e => problems.push("refused: " + e.b
 </script>
 """
 
-#: After it: look at the graph, at every result, at one figure in its place; leave what was seen.
+#: After it: what was seen is left as the only text of the page.
 AFTER = """
 <script>
+LOOK
+look().catch(error => ({problems: [...problems, String(error)]})).then(seen => {
+    document.documentElement.innerHTML = "<pre>";
+    document.querySelector("pre").textContent = JSON.stringify(seen);
+});
+</script>
+"""
+
+#: Look at the report: where every part of it is.
+LOOK_AT_FRONT = """
+async function look() {
+    await new Promise(done => addEventListener("load", done));
+    const all = selector => [...document.querySelectorAll(selector)];
+    const place = element => element.getBoundingClientRect();
+    return {
+        problems,
+        title: document.title,
+        heading: document.querySelector("h1").innerText,
+        verdict: document.querySelector(".verdict").innerText,
+        rows: all("#agreement tr").map(row => [...row.cells].map(cell => cell.innerText)),
+        figures: all("figure").map(figure => {
+            const [image, caption] = ["img", "figcaption"].map(tag => figure.querySelector(tag));
+            return {loaded: image.naturalWidth, title: image.alt, caption: caption.innerText,
+                    beneath: place(caption).top >= place(image).bottom, shown: place(image).width};
+        }),
+        tops: ["h1", ".verdict", "#agreement", "#animation", ".key", ".files", "#rules"].map(
+            selector => place(document.querySelector(selector)).top),
+        opening: place(document.querySelector("#animation img")).bottom,
+        wider: document.documentElement.scrollWidth - innerWidth,
+        hidden: place(document.querySelector("#agreement")).right - innerWidth,
+        smallest: Math.min(...all("p, td, th, figcaption, li").map(
+            element => parseFloat(getComputedStyle(element).fontSize))),
+        links: all("a").map(link => link.getAttribute("href")),
+        rules: all("#rules text").map(text => text.textContent),
+        last: document.querySelector("main").lastElementChild.querySelector("svg").id,
+    };
+}
+"""
+
+#: Look at Snakemake's report: at the graph, at every result, at one figure in its place.
+LOOK_AT_WORKFLOW = """
 async function until(condition) {
     while (!condition()) await new Promise(done => setTimeout(done, 50));
 }
@@ -70,30 +112,25 @@ async function look() {
                    caption: document.querySelector("#app nav").innerText};
     return seen;
 }
-
-look().catch(error => ({problems: [...problems, String(error)]})).then(seen => {
-    document.documentElement.innerHTML = "<pre>";
-    document.querySelector("pre").textContent = JSON.stringify(seen);
-});
-</script>
 """
 
 #: The tallest figure, which has to be made smaller.
 PLACED = "six/figures/mean_hop_time.png"
 
 
-def look_at(report, folder):
-    """Return what a browser sees of a ``report``, as a dict."""
+def look_at(report, folder, look, width=1400):
+    """Return what the script ``look`` sees of a ``report`` in a browser, as a dict."""
     before, mark, after = report.read_text(encoding="utf-8").partition("<head>")
     body, end, rest = after.rpartition("</body>")
     assert mark
     assert end
     page = folder / "report.html"
-    looked = AFTER.replace("PLACED", PLACED)
+    looked = AFTER.replace("LOOK", look)
     page.write_text(f"{before}{mark}{BEFORE}{body}{looked}{end}{rest}", encoding="utf-8")
     run = subprocess.run(
         [
-            *(BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,1000"),
+            *(BROWSER, "--headless", "--no-sandbox", "--disable-gpu"),
+            f"--window-size={width},1000",
             *(f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=1000000"),
             *("--dump-dom", page.as_uri()),
         ],
@@ -110,8 +147,24 @@ def look_at(report, folder):
 
 @pytest.fixture(scope="module")
 def seen(complete, tmp_path_factory):
-    """What a browser sees of the report on everything."""
-    return look_at(complete.path / "results" / "report.html", tmp_path_factory.mktemp("browser"))
+    """What a browser sees of Snakemake's report on everything."""
+    page = complete.path / "results" / "report-workflow.html"
+    look = LOOK_AT_WORKFLOW.replace("PLACED", PLACED)
+    return look_at(page, tmp_path_factory.mktemp("browser"), look)
+
+
+#: Pixels: a screen, and the narrowest window of this browser.
+@pytest.fixture(scope="module", params=[1280, 500])
+def front(request, complete, tmp_path_factory):
+    """What a browser sees of the report, in a wide window and in a narrow one."""
+    page, folder = complete.path / "results" / "report.html", tmp_path_factory.mktemp("browser")
+    return look_at(page, folder, LOOK_AT_FRONT, request.param) | {"width": request.param}
+
+
+def rows(complete, table):
+    """Return the rows of a table of results as {column: text}."""
+    with open(complete.path / "results" / table, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
 
 
 def plain(text):
@@ -119,8 +172,63 @@ def plain(text):
     return " ".join(text.split())
 
 
-def test_nothing_goes_wrong_and_nothing_is_asked_for(seen):
-    assert seen["problems"] == []
+def test_nothing_goes_wrong_and_nothing_is_asked_for(seen, front):
+    assert seen["problems"] + front["problems"] == []
+
+
+def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
+    assert front["title"] == front["heading"] == "Two discs in a box"
+    tables = {name: rows(complete, f"{name}/check.csv") for name in ("six", "walls")}
+    compared = {n: [r for r in some if r["passed"]] for n, some in tables.items()}
+    largest = {n: max(abs(float(r["z"])) for r in some) for n, some in compared.items()}
+    total = sum(map(len, compared.values()))
+    single = {n: sum(r["independent"] == "true" for r in some) for n, some in compared.items()}
+    said = f"All {total} comparisons with the exact theory passed, {sum(single.values())} of them"
+    assert said in plain(front["verdict"])
+    assert f"largest deviation is {max(largest.values()):.1f} standard" in plain(front["verdict"])
+    six, walls = front["rows"][1:]
+    counts = [str(len(compared["six"])), str(single["six"])]
+    assert six[:5] == ["six, 1.5 × 1", "6", *counts, f"{largest['six']:.1f}"]
+    assert walls[:2] == ["walls, 3 × 1", "2"]
+    events = sum(
+        int(r["events"]) for r in rows(complete, "six/cost.csv") if r["stage"] == "dynamics"
+    )
+    assert six[5] == "{} × 10{}".format(*re.fullmatch(r"(.*)e\+0?(.*)", f"{events:.1e}").groups())
+
+
+def test_key_figures_have_their_captions_beneath_them(front):
+    first, *key = front["figures"]
+    assert first["title"] == ANIMATION.title
+    titles = {entry.title: entry for entry in (FIGURES | STUDY_FIGURES).values()}
+    assert len({figure["title"] for figure in key}) == 5
+    for figure in front["figures"]:
+        assert figure["loaded"] > 300
+        assert figure["beneath"]
+        # Nearly as wide as a column of a journal in its natural size, or as the window.
+        assert figure["shown"] > 300
+    for figure in key:
+        caption = titles[figure["title"]].full_caption()
+        assert caption.replace("_", "") in plain(figure["caption"])
+
+
+def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):
+    heading, verdict, table, movie, *rest = front["tops"]
+    assert heading < verdict < table
+    assert max(table, movie) < rest[0]
+    assert rest == sorted(rest)
+    assert front["last"] == "rules"
+    assert front["wider"] <= 0
+    assert front["hidden"] <= 0, "the table of agreement has to be pushed aside"
+    assert front["smallest"] >= 13
+    if front["width"] > 1000:
+        assert front["opening"] < 1000, "the animation is in the first window"
+
+
+def test_links_of_the_report_lead_to_files(front, complete):
+    results = complete.path / "results"
+    assert [link for link in front["links"] if not (results / link).is_file()] == []
+    assert {"paper.pdf", "report-workflow.html", "six/check.csv"} <= set(front["links"])
+    assert {"monte_carlo", "dynamics", "table", "check", "figure"} <= set(front["rules"])
 
 
 def test_every_figure_is_shown_with_its_caption_and_category(seen, complete):

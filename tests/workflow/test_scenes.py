@@ -8,6 +8,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.studies.catalogue import STUDIES
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
@@ -17,26 +18,29 @@ ALWAYS = {"check", "compile", "manifest", "provenance"}
 
 DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
 
+
+def showing(quantity):
+    """Return the names of the figures that show a quantity."""
+    return {name for name, figure in FIGURES.items() if quantity in figure.needs}
+
+
 #: What a scene watches, the jobs that find it, the tables that hold it, the figures that show it.
 WATCHED = {
-    "volume": (True, {"monte_carlo"}, {"volume"}, {"volume"}),
-    "areas": (["right_wall"], {"monte_carlo"}, {"areas"}, {"wall_area"}),
-    "mean_times": (["top_wall"], {"dynamics"}, {"mean_times"}, {"mean_wall_time"}),
-    "hop_histogram": ([0.1], {"intervals"}, {"hop_histogram"}, {"hop_histogram"}),
-    "trajectory": (0.1, {"trajectory", "animate"}, set(), {"hopping_trajectory"}),
+    "volume": (True, {"monte_carlo"}, {"volume"}, showing("volume")),
+    "areas": (["right_wall"], {"monte_carlo"}, {"areas"}, showing("right_wall_area")),
+    "mean_times": (["top_wall"], {"dynamics"}, {"mean_times"}, showing("top_wall_time")),
+    "hop_histogram": ([0.1], {"intervals"}, {"hop_histogram"}, showing("hop_histogram")),
+    "trajectory": (0.1, {"trajectory", "animate"}, set(), showing("trajectory")),
 }
 
-#: The figures that the six scenes call for.
-AREAS = {"collision_area", "wall_area"}
-TIMES = {"mean_collision_time", "mean_wall_time"}
+#: The figures that scenes with effects call for: all, but where something has no place.
+ALL = {name for name, figure in FIGURES.items() if figure.needs}
 HOPS = {"vertical_hop_area", "horizontal_hop_area", "mean_hop_time", "hopping_trajectory"}
 CALLED = {
-    "unequal": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
-    "torus": {"volume", "collision_area", "mean_collision_time"},
-    "channel": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS} - {"horizontal_hop_area"},
-    "field": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
-    "rough": {"volume", *AREAS, *TIMES, *HOPS},
-    "balls": {"volume", "hop_histogram", *AREAS, *TIMES, *HOPS},
+    "torus": ALL - {*HOPS, "hop_histogram", "wall_area", "mean_wall_time", "pressure"},
+    "channel": ALL - {"horizontal_hop_area"},
+    "field": ALL - {"pressure"},
+    "rough": ALL - {"hop_histogram"},
 }
 
 
@@ -93,15 +97,16 @@ def test_kernels_that_nothing_needs_are_not_compiled(unbuilt, tmp_path):
     assert [w for rule, w in found if rule == "compile"] == [("kernels=montecarlo",)]
 
 
-def test_the_six_scenes_call_for_what_has_a_place(unbuilt, tmp_path):
+def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
     scenes = [block["scenes"][0] for block in BLOCKS.values()]
-    assert [scene["name"] for scene in scenes] == list(BLOCKS) == sorted(CALLED)
+    assert [scene["name"] for scene in scenes] == list(BLOCKS)
+    assert {*CALLED} <= {*BLOCKS}
     found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
     assert shared == ALWAYS - {"compile"}  # nothing without effects is compiled
     for request in load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
-        assert figures == CALLED[request.name]
+        assert figures == CALLED.get(request.name, ALL)
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
         assert rules - {"intervals", "trajectory"} == {
@@ -143,14 +148,11 @@ def test_a_file_builds_its_scene_alone(unbuilt):
 
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
     made = {
-        "errata": {"errata_table"},
-        "accuracy_cost": {"accuracy_cost_table", "shared_figure"},
-        "stability": {"stability_table", "shared_figure"},
-        "tails": {"tails_table", "shared_figure"},
-        "distributions": {"distributions_table", "shared_figure"},
-        "thresholds": {"thresholds_table", "shared_figure"},
-        "effects": {"effects_point", "effects_table", "effects_cost", "shared_figure"},
+        name: {f"{name}_table"} | ({"shared_figure"} if study.figures else set())
+        for name, study in STUDIES.items()
+        if study.shared
     }
+    made["effects"] |= {"effects_point", "effects_cost"}
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path = tmp_path / "shared.yaml"
     for names in (["errata", "report"], ["paper"]):

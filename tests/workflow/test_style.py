@@ -1,10 +1,13 @@
 """The Snakefiles: their format, what Snakemake's linter says of them, and the pages about them."""
 
+import json
 import re
 import subprocess
 import sys
 
+import jsonschema
 import pytest
+import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
@@ -46,10 +49,26 @@ def test_every_rule_keeps_a_log_and_a_benchmark():
     assert rules > 15
 
 
-@pytest.mark.parametrize("page", ["results/README.md", "config/README.md", "README.md"])
+@pytest.mark.parametrize(
+    "page", ["results/README.md", "config/README.md", "config/schema.json", "README.md"]
+)
 def test_pages_made_from_declarations_are_up_to_date(page):
     text = (REPOSITORY / page).read_text(encoding="utf-8")
     assert text == pages.pages(REPOSITORY)[page], f"python -m {pages.__name__}"
+
+
+CONFIGURATIONS = [*REPOSITORY.glob("config/**/*.yaml"), *REPOSITORY.glob("tests/**/*.yaml")]
+
+
+@pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.stem)
+def test_editors_find_the_schema_of_a_configuration(path):
+    head, text = path.read_text(encoding="utf-8").split("\n", 1)
+    (place,) = re.fullmatch(r"# yaml-language-server: \$schema=(.+)", head).groups()
+    schema = json.loads((path.parent / place).read_text(encoding="utf-8"))
+    # As YAML 1.2 has it, 2e9 is a number.
+    numbers = re.sub(r"\b\de-?\d\b", lambda found: str(float(found[0])), text)
+    validator = jsonschema.Draft202012Validator(schema)
+    assert [error.message for error in validator.iter_errors(yaml.safe_load(numbers))] == []
 
 
 def test_readme_lists_every_target():
@@ -66,4 +85,8 @@ def test_readme_lists_every_target():
         *FIGURES,
         *STUDIES,
     )
-    assert [name for name in targets if f"`{name}`" not in page] == []
+    (table,) = re.findall(r"^\| target \|.*\n\|[-|]+\n((?:\|.*\n)+)", page, re.MULTILINE)
+    others = ("verify", "forecast", "audit", "long_runs")
+    assert [
+        name for name in targets if f"`{name}`" not in (page if name in others else table)
+    ] == []

@@ -256,5 +256,26 @@ def manuscript_job(results):
             }
             for scene in CONFIGURATION.plain
         ],
+        "seed": CONFIGURATION.seed,
         "tables": shared_tables(),
     }
+
+
+def report_scenes():
+    """Return what the report says of the scenes."""
+    return [
+        {
+            "box": " × ".join(
+                f"{side:g}"
+                for side in (
+                    scene.box.width,
+                    scene.box.height,
+                    scene.effects.get("depth"),
+                )
+                if side
+            ),
+            "effects": scene.effects,
+            "name": scene.name,
+        }
+        for scene in SCENES.values()
+    ]

@@ -4,7 +4,7 @@ from twodiscs.pipeline.results.manifest import is_reproducible
 
 PAPER = {
     name: str(HERE / "paper" / name)
-    for name in ("paper.typ", "results.typ", "references.bib")
+    for name in ("paper.typ", "results.typ", "references.bib", "../CITATION.cff")
 }
 
 
@@ -13,7 +13,7 @@ if MAIN:
     rule paper:
         input:
             template=PAPER["paper.typ"],
-            others=[PAPER["results.typ"], PAPER["references.bib"]],
+            others=list(PAPER.values())[1:],
             figures=[files[0] for files in figure_files(MAIN).values()],
             tables=[
                 path
@@ -44,8 +44,8 @@ if MAIN:
             " --parameters {params.contents:q} --output {output.pdf:q} > {log:q} 2>&1"
 
 
-# Snakemake's own report. It is written by a second Snakemake while the first one still runs: that one
-# takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
+# The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one still
+# runs: it takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
 # the whole configuration, however that was put together, and the folder in which results came to be.
 
 
@@ -67,8 +67,10 @@ rule report:
         ],
         texts=sorted(map(str, HERE.glob("workflow/report/*.rst"))),
         style=str(HERE / "workflow/report/style.css"),
+        front=str(HERE / "workflow/report/front.html"),
     output:
         html=f"{RESULTS}/report.html",
+        workflow=f"{RESULTS}/report-workflow.html",
         configuration=f"{RESULTS}/configuration.json",
     log:
         log_of("report"),
@@ -84,12 +86,17 @@ rule report:
             + "\n"
         ),
         snakefile=str(HERE / "Snakefile"),
-        texts=lambda w, input: contents(*input.texts, input.style),
+        scenes=as_json({"scenes": report_scenes()}),
+        texts=lambda w, input: contents(*input.texts, input.style, input.front),
+        code=code("pipeline.documents.report"),
     shell:
-        "cp {params.configuration:q} {output.configuration:q};"
-        " snakemake --snakefile {params.snakefile:q} --report {output.html:q}"
-        " --report-stylesheet {input.style:q} --nolock --workflow-profile none"
-        " --configfile {output.configuration:q} -- {input.results:q} > {log:q} 2>&1"
+        "{{ cp {params.configuration:q} {output.configuration:q};"
+        " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
+        ' "$@" --configfile {output.configuration:q} -- {input.results:q}; }};'
+        " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
+        " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results:q}"
+        " --template {input.front:q} --parameters {params.scenes:q}"
+        " --workflow report-workflow.html --output {output.html:q}; }} > {log:q} 2>&1"
 
 
 rule manifest:

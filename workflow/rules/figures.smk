@@ -87,9 +87,9 @@ rule animate:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(figure_job(SCENES[w.scene], ANIMATION)),
         caption=ANIMATION.full_caption(),
-        code=figure_code("figures.animation"),
+        code=figure_code("figures.motion.animation"),
     shell:
-        "python -m twodiscs.pipeline.jobs animation figures.animation --parameters {params.job:q}"
+        "python -m twodiscs.pipeline.jobs animation figures.motion.animation --parameters {params.job:q}"
         " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q}"
         + RECORDED
 

@@ -12,9 +12,9 @@ rule grid:
     params:
         about=lambda w: about(w.scene, None),
         job=lambda w: as_json(SCENES[w.scene].grid_job()),
-        code=table_code("comparison.exact_rows", SCENE_TABLES["grid"]),
+        code=table_code("theory.exact", SCENE_TABLES["grid"]),
     shell:
-        "python -m twodiscs.pipeline.jobs table comparison.exact_rows --function grid_rows"
+        "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
         " --parameters {params.job:q} --output {output.table:q}" + RECORDED
 
 
@@ -28,9 +28,9 @@ rule theory:
     params:
         about=lambda w: about(w.scene, None),
         job=lambda w: as_json(SCENES[w.scene].theory_job()),
-        code=table_code("comparison.exact_rows", SCENE_TABLES["theory"]),
+        code=table_code("theory.exact", SCENE_TABLES["theory"]),
     shell:
-        "python -m twodiscs.pipeline.jobs table comparison.exact_rows --function theory_rows"
+        "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
         " --parameters {params.job:q} --output {output.table:q}" + RECORDED
 
 

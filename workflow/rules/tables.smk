@@ -54,7 +54,7 @@ rule check:
         tables=lambda w, input: named_tables(
             [scene.name for scene in CHECKED], input.tables
         ),
-        code=table_code("comparison.check", SCENE_TABLES["check"]),
+        code=table_code("pipeline.results.verdict", SCENE_TABLES["check"]),
     shell:
-        "python -m twodiscs.pipeline.jobs verdict comparison.check --table {params.tables:q}"
+        "python -m twodiscs.pipeline.jobs verdict pipeline.results.verdict --table {params.tables:q}"
         " --output {output.passed:q}" + RECORDED

@@ -12,6 +12,10 @@ by design and would look too narrow.
 
 A row without an honest error says so in `status`. It is still compared wherever a bound holds: no
 hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
+
+A row is `independent` if it could fail and follows from no other: not one of an event that is
+certain or impossible, of an area or a sum rule put together from other rows, or of the scores of
+others. Rows of one method at one radius still share their samples or trajectories.
 """
 
 import math
@@ -19,12 +23,16 @@ from itertools import groupby
 
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.rows import ordered
+from twodiscs.theory import virial
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
 
-def _comparison(name, quantity, method, values):
-    """Return a row of check.csv, without a verdict; ``values`` has the columns not named here."""
+def _comparison(name, quantity, method, values, derived=False):
+    """Return a row of check.csv, without a verdict; ``values`` has the columns not named here.
+
+    It is ``derived`` if it follows from other rows.
+    """
     z = values["z"]
     return {
         "comparison": name,
@@ -38,6 +46,7 @@ def _comparison(name, quantity, method, values):
         "p": None if z is None else scores.two_sided_p(z),
         "bound": None,
         "passed": None,
+        "independent": z is not None and values["test"] != "certain" and not derived,
         "status": values["status"],
         "test": values["test"],
     }
@@ -67,22 +76,24 @@ def _sum_rule(scene, point):
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
     values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)
-    return _comparison("sum_rule", "mean_times", "dynamics", values)
+    return _comparison("sum_rule", "mean_times", "dynamics", values, derived=True)
 
 
 def comparisons(scene, volume, areas, times, histogram, dynamics):
     """Return one comparison for every estimate at a radius, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, for the sum rule of plain scenes wherever its three events were counted.
+    points, for the sum rule of virials wherever its three events were counted.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
         for row in table:
             values = {**row, "exact": row["expectation"]}
-            rows.append(_comparison(name, row["quantity"], row["method"], values))
+            joined = name == "area" and row["epsilon"] is None  # two shells
+            rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
     for row in times:
-        rows.append(_comparison("mean_time", f"{row['event']}_time", "dynamics", row))
+        method = "dynamics" if row["starts"] == "invariant" else row["starts"]
+        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         values = _normal_values(
@@ -90,7 +101,7 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
         )
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in ordered(dynamics):
-        if set(SUM_RULE) <= set(point["counts"]) and not scene.has_effects:
+        if set(SUM_RULE) <= set(point["counts"]) and virial.weights(scene):
             rows.append(_sum_rule(scene.with_radius(point["radius"]), point))
     return sorted(rows, key=lambda row: row["radius"])
 
@@ -125,7 +136,7 @@ def distributions(rows):
             }
             for name, values in (("z_mean", mean), ("z_spread", spread)):
                 values |= {"radius": None, "status": None}
-                found.append(_comparison(name, quantity, method, values))
+                found.append(_comparison(name, quantity, method, values, derived=True))
     return found
 
 
@@ -146,34 +157,3 @@ def check_rows(rows, alarm=scores.FALSE_ALARM):
     for the comparisons at a radius and half for the distributions.
     """
     return judged(rows, alarm / 2) + judged(distributions(rows), alarm / 2)
-
-
-def failure(scene, row):
-    """Return the sentence on a comparison that failed, naming quantity and radius."""
-    where = "over all radii" if row["radius"] is None else f"at radius {row['radius']!r}"
-    return (
-        f"{scene}: {row['comparison']} of {row['quantity']} {where} by {row['method']} has "
-        f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
-    )
-
-
-def summary(scene, rows):
-    """Return the sentence on a scene that passed, with how much of it says little."""
-    tested = [row for row in rows if row["passed"] is not None]
-    few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
-    largest = max((abs(row["z"]) for row in tested), default=0.0)
-    return (
-        f"{scene}: {len(tested)} comparisons passed, largest |z| {largest:.3g}; {few} of them had "
-        f"too few events for an error, {len(rows) - len(tested)} more could not be compared"
-    )
-
-
-def verdict(tables):
-    """Return (failures, text that sums up) of the check tables of scenes, {scene: rows}."""
-    failures = [
-        failure(scene, row)
-        for scene, rows in tables.items()
-        for row in rows
-        if row["passed"] is False
-    ]
-    return failures, "".join(f"{summary(scene, rows)}\n" for scene, rows in tables.items())

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from twodiscs.model.checks import InputError, proportion, whole
+from twodiscs.theory import virial
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
@@ -229,16 +230,15 @@ def mean_time_bound(replicas, duration, confidence=0.95):
 
 
 def sum_rule(scene, duration, replicas, counts, products):
-    """Return the estimate of (3π/4)(A/τ_right + B/τ_top) − (3π/(8√2)) σ/τ_coll, which is 1.
+    """Return the estimate of the sum of virials over 2⟨K⟩, which is 1 (see ``theory.virial``).
 
-    The wall times are those of the whole ensemble: all ``replicas``, whether they can reach the
-    wall or not. ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event; the rule follows from
-    4V = 2A·A_right + 2B·A_top − σA_coll/√2.
+    Rates are those of all ``replicas``, whether they can reach a wall or not; of walls everything
+    counts that is equal by symmetry. ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event.
+    Raises ``InputError`` for a scene that has no such sum.
     """
-    scale = 3 * math.pi / (4 * real("duration", duration))
-    weights = {
-        "disc_collision": -scale * scene.contact_distance / math.sqrt(8),
-        "right_wall": scale * scene.range_x,
-        "top_wall": scale * scene.range_y,
-    }
-    return combination(weights, counts, products, replicas)
+    weights = virial.weights(scene)
+    if weights is None:
+        raise InputError(f"scene must have a sum rule, but has {', '.join(scene.effects)}")
+    duration = real("duration", duration)
+    rates = {e: scene.share(e) / scene.copies(e) / duration for e in weights}
+    return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)

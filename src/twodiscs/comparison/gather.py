@@ -13,7 +13,7 @@ STAGES = ("monte_carlo", "dynamics", "intervals")
 FIELDS = {
     "monte_carlo": ("radius", "method", "samples", "quantities"),
     "dynamics": (
-        "radius", "duration", "replicas", "eligible", "counts", "products", "target", "status",
+        "radius", "duration", "replicas", "counts", "products", "target", "status", "strips",
     ),
     "intervals": (
         "radius", "event", "bin_width", "counts", "intervals", "chains", "mean", "stderr",
@@ -93,7 +93,8 @@ def check_rows(tables, points, box, keys, watched=EVENTS):
         scene,
         rows.volume_rows(exact, found["monte_carlo"]),
         rows.area_rows(scene, exact, found["monte_carlo"], watched),
-        rows.mean_time_rows(scene, exact, found["dynamics"]),
+        rows.mean_time_rows(scene, exact, found["dynamics"])
+        + rows.seen_anyway(scene, exact, found["dynamics"]),
         rows.histogram_rows(exact, found["intervals"]),
         found["dynamics"],
     )

@@ -4,7 +4,7 @@ A point is what one job found at one radius, a dict as read from its file. Rows 
 columns that ``scene_tables`` declares, ordered by radius, then as in ``EVENTS``.
 """
 
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from twodiscs.comparison import estimates, scores
 from twodiscs.model.checks import InputError
@@ -139,21 +139,26 @@ def area_rows(scene, exact, points, watched=EVENTS):
 # Molecular dynamics ---------------------------------------------------------------------------
 
 
-def _mean_time_row(scene, event, point, exact):
-    count, replicas = point["counts"][event], point["eligible"][event]
-    squares, duration = point["products"][f"{event}*{event}"], point["duration"]
-    estimate = bound = z = test = None
-    if replicas:
-        z, test = scores.mean_time_z(count, squares, replicas, duration, exact)
+def _mean_time_row(scene, event, point, exact, strip=None):
+    """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
+    if strip is None:
+        count, squares = point["counts"][event], point["products"][f"{event}*{event}"]
+        status = point["status"][event] if event not in point["strips"] else "counted"
+        strip = point | {"share": 1.0}
+    else:
+        count, squares, status = strip["count"], strip["squares"], strip["status"]
+    replicas, duration, copies = strip["replicas"], strip["duration"], scene.copies(event)
+    # So long a time would see as many, were starts anywhere, and each wall its own event.
+    whole = duration * copies / strip["share"]
+    estimate = bound = None
+    z, test = scores.mean_time_z(count, squares, replicas, whole, exact)
     if exact is None:
         status = "impossible"
     elif not count:
-        status = "none-seen"
-        bound = estimates.mean_time_bound(replicas, duration) if replicas else None
+        status, bound = "none-seen", estimates.mean_time_bound(replicas, whole / copies)
     else:
-        estimate = estimates.mean_time(count, squares, replicas, duration)
-        honest = estimates.is_honest(count, squares, replicas)
-        status = point["status"][event] if honest else "too-few"
+        estimate = estimates.mean_time(count, squares, replicas, whole)
+        status = status if estimates.is_honest(count, squares, replicas) else "too-few"
     shown = estimate if status != "too-few" else None
     return {
         "radius": point["radius"],
@@ -171,22 +176,39 @@ def _mean_time_row(scene, event, point, exact):
         "status": status,
         "bound": bound,
         "test": test,
+        "starts": "invariant" if strip["share"] == 1 else "strip",
+        "share": strip["share"],
+        "copies": copies,
     }
 
 
 def mean_time_rows(scene, exact, points):
-    """Return the rows of mean_times.csv from dynamics ``points``, for the events they counted."""
+    """Return the rows of mean_times.csv from dynamics ``points``, for the events they counted.
+
+    A rare hop has the row of its strip; what starts anywhere saw of it is in ``seen_anyway``.
+    """
     return [
-        _mean_time_row(
-            scene.with_radius(point["radius"]),
-            event,
-            point,
-            _exact(exact, point["radius"], f"{event}_time"),
-        )
-        for point in ordered(points)
-        for event in EVENTS
-        if event in point["counts"]
+        _mean_time_row(here, event, point, time, point["strips"].get(event))
+        for here, event, point, time in _counted(scene, exact, points)
     ]
+
+
+def seen_anyway(scene, exact, points):
+    """Return rows as in mean_times.csv of the hops that have one from a strip, without it."""
+    return [
+        _mean_time_row(here, event, point, time)
+        for here, event, point, time in _counted(scene, exact, points)
+        if event in point["strips"]
+    ]
+
+
+def _counted(scene, exact, points):
+    """Yield (scene, event, point, exact mean time) of what ``points`` counted."""
+    for point in ordered(points):
+        here = scene.with_radius(point["radius"])
+        for event in EVENTS:
+            if event in point["counts"]:
+                yield here, event, point, _exact(exact, point["radius"], f"{event}_time")
 
 
 def histogram_rows(exact, points):
@@ -196,7 +218,7 @@ def histogram_rows(exact, points):
     """
     rows = []
     for point in ordered(points):
-        event, width, intervals = point["event"], point["bin_width"], point["intervals"]
+        event, intervals = point["event"], point["intervals"]
         exact_mean = _exact(exact, point["radius"], f"{event}_time")
         z, stderr = None, point["stderr"]
         if point["chains"] < estimates.HONEST or not stderr:
@@ -204,25 +226,37 @@ def histogram_rows(exact, points):
         elif intervals >= scores.NORMAL and exact_mean is not None:
             t = (point["mean"] - exact_mean) / stderr
             z = scores.student_deviate(t, point["chains"] - 1)
-        for i, count in enumerate(point["counts"]):
-            density = estimates.binomial_estimate(count, intervals, 1 / width)
-            rows.append(
-                {
-                    "radius": point["radius"],
-                    "event": event,
-                    "left": i * width,
-                    "right": (i + 1) * width,
-                    "count": count,
-                    "density": density.value if density else 0.0,
-                    "stderr": density and density.stderr,
-                    "intervals": intervals,
-                    "exact_mean": exact_mean,
-                    "mean": point["mean"],
-                    "mean_stderr": stderr,
-                    "z": z,
-                }
-            )
+        common = {
+            "intervals": intervals,
+            "exact_mean": exact_mean,
+            "mean": point["mean"],
+            "mean_stderr": stderr,
+            "z": z,
+        }
+        rows += [
+            {"radius": point["radius"], "event": event, **row, **common} for row in _bin_rows(point)
+        ]
     return rows
+
+
+def _bin_rows(point):
+    """Yield the rows of the bins of a point, equal ones and wide ones."""
+    width, chains = point["bin_width"], point["chains"]
+    equal = {"edges": range(len(point["counts"]) + 1), **point}
+    for bins, one in (("equal", equal), ("wide", point["wide"])):
+        parts = zip(pairwise(one["edges"]), one["counts"], one["squares"], strict=True)
+        for (left, right), count, squares in parts:
+            per_chain = chains / (point["intervals"] * (right - left) * width)
+            sums = {"n": per_chain}, {"n": count}, {"n*n": squares}
+            density = estimates.combination(*sums, chains)
+            yield {
+                "bins": bins,
+                "left": left * width,
+                "right": right * width,
+                "count": count,
+                "density": density.value,
+                "stderr": density.stderr or None,
+            }
 
 
 def cost_rows(points, forecast=None):

@@ -108,7 +108,10 @@ class Areas(Sampled):
 
 
 class MeanTimes(Table):
-    """One row a radius and event: the mean time between events, exact and by dynamics."""
+    """
+    One row a radius and event: the mean time between events, exact and by dynamics. What starts
+    anywhere saw of a hop whose row is from a strip is compared in check.csv.
+    """
 
     radius: LENGTH
     event: TEXT
@@ -116,7 +119,7 @@ class MeanTimes(Table):
     exact: TIME
     """exact mean time; empty where the event is impossible"""
     estimate: TIME
-    """T · replicas/count; empty where none was seen"""
+    """copies · T · replicas/(share · count); empty where none was seen"""
     stderr: TIME
     """standard error from the spread between replicas; empty when too few to be honest"""
     z: NUMBER
@@ -125,10 +128,10 @@ class MeanTimes(Table):
     unbiased for every T
     """
     count: COUNT
-    """events counted in all replicas"""
+    """events counted in all replicas; for walls with all that symmetry makes equal"""
     ergodic_components: COUNT
     replicas: COUNT
-    """independent trajectories that can see the event"""
+    """independent trajectories"""
     duration: TIME
     """length T of a replica"""
     relative_stderr: NUMBER
@@ -146,6 +149,19 @@ class MeanTimes(Table):
     where none was seen: lower bound on the mean time at 95 %, allowing for clusters of four events
     """
     test: TEXT
+    starts: TEXT
+    """
+    invariant: anywhere, so that dynamics alone gives the time; strip: next to the surface of a rare
+    hop, in an exactly known share of configuration space, so that the share is theory's and the
+    flux through the surface is tested
+    """
+    share: NUMBER
+    """share of configuration space that starts come from"""
+    copies: COUNT
+    """
+    events that count as one, on average: of a wall, the pairs of a disc and a wall that are equal
+    by symmetry and within reach
+    """
 
 
 class HopHistogram(Table):
@@ -154,6 +170,8 @@ class HopHistogram(Table):
     radius: LENGTH
     event: TEXT
     """the hop"""
+    bins: TEXT
+    """equal, as wide as τ/16 or so; wide: the same intervals, in bins that widen with time"""
     left: TIME
     """lower edge of the bin"""
     right: TIME
@@ -164,7 +182,8 @@ class HopHistogram(Table):
     """count/(intervals × width of the bin)"""
     stderr: RATE
     """
-    binomial standard error of the density, as if intervals were independent; empty for an empty bin
+    its standard error from the spread between independent chains, each of 256 successive intervals;
+    empty for an empty bin
     """
     intervals: COUNT
     """intervals in all, those beyond the last bin included"""
@@ -187,7 +206,7 @@ class Check(Table):
     radius: LENGTH
     """radius of the discs; empty for a statement on all radii"""
     method: TEXT
-    """monte_carlo, conditioned, dynamics or intervals"""
+    """monte_carlo, conditioned, dynamics, strip (starts next to a rare hop) or intervals"""
     exact: SEE_QUANTITY
     """exact value; for an area, the shell's expectation"""
     estimate: SEE_QUANTITY
@@ -201,6 +220,12 @@ class Check(Table):
     """largest |z| that passes"""
     passed: TRUTH
     """whether |z| ≤ bound; empty where nothing can be compared"""
+    independent: TRUTH
+    """
+    whether the row could fail and follows from no other row: false for what is certain, for what is
+    put together from other rows (any_wall_area of two shells, the sum rule) and for z_mean and
+    z_spread
+    """
     status: TEXT
     """status of the estimate in its own table"""
     test: TEXT

@@ -4,24 +4,27 @@ The mean count in a time T is rate × T exactly, for every T and without burn-in
 independent replicas gives its error.
 """
 
-import math
-
 import numpy as np
 
+from twodiscs.dynamics import strip
 from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
     REPLICAS,
+    in_rounds,
     nearest_power_of_two,
     new_rows,
     put_state,
+    relative_errors,
     state_at,
 )
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
     WALL_X1,
+    WALL_X2,
     WALL_Y1,
+    WALL_Y2,
     after_event,
     crosses,
     law_of,
@@ -31,7 +34,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
-from twodiscs.sampling.jit import compiled, tally
+from twodiscs.sampling.jit import compiled, optional, tally
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -46,11 +49,6 @@ EVENTS_PER_REPLICA = 256
 HOPS_PER_REPLICA = 4
 EVENTS_BETWEEN_RARE_HOPS = 64
 
-#: Blocks of the first round, and how many times the work done so far a round may be: an error seen
-#: in few events predicts badly.
-FIRST_ROUND = 32
-GROWTH = 8.0
-
 # How events are counted --------------------------------------------------------------------------
 
 # How a flight shows an event, as a function of the code of its end and the states before and after.
@@ -61,11 +59,29 @@ def _hop_seen(event):
     return lambda code, a, b: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
 
 
+@optional(lambda code, one, other, alike: code == one)
+def hit(code, one, other, alike):
+    """Say whether disc 1 is on a wall, or any disc if they are ``alike``."""
+    return (code == one) | (code == other)
+
+
+@optional(lambda position, side, gravity: True)
+def facing(position, side, gravity):
+    """Say whether a disc is on the wall of a ``side``, which matters in a field."""
+    return position * side > 0.0
+
+
+# Of a wall everything counts that ``Scene.copies`` does.
+
+
 def _wall_seen(event):
-    k, wall = "xy".index(event.axis), WALL_X1 if event.axis == "x" else WALL_Y1
-    if event.side > 0:
-        return lambda code, a, b: (code == wall) & (b[k] > 0.0)
-    return lambda code, a, b: (code == wall) & (b[k] < 0.0)
+    if event.axis == "x":
+        return lambda code, a, b, alike: hit(code, WALL_X1, WALL_X2, alike)
+    side = float(event.side)
+    return lambda code, a, b, alike, gravity: (
+        hit(code, WALL_Y1, WALL_Y2, alike)
+        & facing(b[1] if code == WALL_Y1 else b[3], side, gravity)
+    )
 
 
 SEEN = by_kind(
@@ -74,16 +90,14 @@ SEEN = by_kind(
         "hop": _hop_seen,
         "collision": lambda event: lambda code: code == DISC,
         "wall": _wall_seen,
-        # Collisions of the discs too; they are subtracted where a replica ends.
+        # Collisions of the discs too; see ``all_walls``.
         "walls": lambda event: lambda code: code > END_OF_TIME,
     },
 )
 
 N = len(EVENTS)
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
-
-#: The row of disc 1's coordinate along the axis of each event, 0 for those without one.
-ALONG = tuple("xy".index(DECLARED[event].axis or "x") for event in EVENTS)
+BESIDE, ABOVE = EVENTS.index("right_wall"), EVENTS.index("top_wall")
 
 #: A lane counts in a double: fields of eight bits, so many of which it holds. A second double takes
 #: the events that the first one has no room for.
@@ -94,15 +108,21 @@ if N > 2 * FIELDS:
 
 def _word(events):
     # What is not watched is not compiled.
-    groups = {"hop": "hops", "wall": "walls"}
+    groups = {"hop": "hops", "wall": "walls", "walls": "rest"}
     counters = (
         (256.0**field, SEEN[event], groups.get(DECLARED[event].kind))
         for field, event in enumerate(events)
     )
-    return tally(counters, "code, before, after, hops, walls")
+    return tally(counters, "code, before, after, alike, gravity, hops, walls, rest")
 
 
 first_word, second_word = _word(EVENTS[:FIELDS]), _word(EVENTS[FIELDS:])
+
+
+@optional(lambda counts, rest: counts[BESIDE] + counts[ABOVE])
+def all_walls(counts, rest):
+    """Return the hits of all walls, which are those of either axis where both count them all."""
+    return counts[ANY_WALLS] - counts[COLLISIONS]
 
 
 @compiled
@@ -116,22 +136,22 @@ def unpack(packed, more, counts, lane):
 
 @compiled
 def count_blocks(
-    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, needed, hops, walls
+    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, alike, hops, walls, rest
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
-    Returns (sums, products, eligible): Σ N_e (n), Σ N_e N_f for e ≤ f (n, n) over all replicas, and
-    how many replicas can see each event (n), all int64, in the order of EVENTS. Starts come from
-    ``draw`` with ``sides`` as in ``draw_configuration``, or from ``prism`` unless it is None.
-    ``needed`` says for each event on which side of disc 2 disc 1 has to start to see it (+1, −1, or
-    0 for any). ``hops`` and ``walls`` are True or None: what is None is not compiled.
+    Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
+    the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
+    from ``prism`` unless it is None. ``alike``, whether the discs are, ``hops``, ``walls``
+    and ``rest``, whether the hits of all walls need a counter, are True or None: what is None is
+    not compiled.
     """
     rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, more = np.zeros(lanes), np.zeros(lanes)
     counts, one = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    eligible, busy = np.zeros(N, np.int64), np.zeros(lanes, np.bool_)
+    busy = np.zeros(lanes, np.bool_)
     block, used, running, looks = first, replicas, 0, 0
 
     while True:
@@ -143,7 +163,7 @@ def count_blocks(
                 for e in range(N):
                     one[e] = counts[e, i]
                     counts[e, i] = 0
-                one[ANY_WALLS] -= one[COLLISIONS]
+                one[ANY_WALLS] = all_walls(one, rest)
                 for e in range(N):
                     sums[e] += one[e]
                     for f in range(e, N):
@@ -158,12 +178,9 @@ def count_blocks(
                 remaining[i] = duration
                 busy[i] = True
                 running += 1
-                for e in range(N):
-                    apart = starts[ALONG[e], used] - starts[ALONG[e] + 2, used]
-                    eligible[e] += 0 if needed[e] * apart < 0.0 else 1
                 used += 1
         if running == 0:
-            return sums, products, eligible
+            return sums, products
 
         for _ in range(PASSES):
             for i in range(lanes):
@@ -175,9 +192,13 @@ def count_blocks(
                 remaining[i] -= times[i]
                 after = after_event(before, times[i], code, law)
                 put_state(rows, i, after, law)
-                packed[i] = first_word(first_count, code, before, after, hops, walls)
+                packed[i] = first_word(
+                    first_count, code, before, after, alike, law.gravity, hops, walls, rest
+                )
                 if N > FIELDS:
-                    more[i] = second_word(second_count, code, before, after, hops, walls)
+                    more[i] = second_word(
+                        second_count, code, before, after, alike, law.gravity, hops, walls, rest
+                    )
         looks += 1
         if looks == LOOKS:
             looks = 0
@@ -194,8 +215,8 @@ def replica_duration(scene):
     """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
     That is long enough for drawing a start to cost little. Where an open hop happens less than
-    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts of wall hits
-    have two states: then more and shorter replicas know the mean better for the same work.
+    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts remember them:
+    then more and shorter replicas know the mean better for the same work.
     """
     rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
@@ -212,29 +233,18 @@ def run_blocks(
 
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
     ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
-    detected: without a hop among them no crossing is looked for. Returns (sums, products,
-    eligible) as ``count_blocks`` does. They are integers: two shards add up to the whole.
+    detected: without a hop among them no crossing is looked for. Returns (sums, products)
+    as ``count_blocks`` does. They are integers: two shards add up to the whole.
     """
     hops = True if any(event in HOPS for event in events) else None
     walls = True if any(event in WALLS for event in events) else None
-    needed = tuple(scene.needed_side(event) for event in EVENTS)
+    # Four pairs of a disc and a wall along each of two axes are all there are.
+    whole = scene.alike and not scene.field and scene.walled == ("x", "y")
+    rest = None if walls and whole else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        sides, needed, hops, walls,
+        sides, scene.alike or None, hops, walls, rest,
     )  # fmt: skip
-
-
-def relative_errors(sums, products, eligible):
-    """Return the relative standard error of each mean count (n), inf where nothing was counted.
-
-    Replicas are independent, so the error is √(var N / R) / ⟨N⟩ over the replicas that can see the
-    event.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = sums / eligible
-        variance = np.maximum(np.diag(products) / eligible - mean**2, 0.0)
-        errors = np.sqrt(variance / eligible) / mean
-    return np.where(sums > 0, errors, np.inf)
 
 
 def count_events(scene, target, budget, seed, report=None):
@@ -246,10 +256,13 @@ def count_events(scene, target, budget, seed, report=None):
     one is small, the next ones as long as the errors seen so far predict. ``report``, if given, is
     called after each round with a text on what is done and the work that is left, over that done.
 
+    Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
+    share the budget evenly with all the rest; what starts anywhere see of them is counted, too.
+
     Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
-    events simulated, and for each watched event how many replicas can see it (eligible), its count
-    ΣN, its target and status (reached, budget or impossible); products hold ΣN_a N_b of each pair.
-    Raises ``InputError`` for an unknown event or a number out of range.
+    events simulated, and for each watched event its count ΣN, its target and status (reached,
+    budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.count_rare``
+    returns for each rare hop. Raises ``InputError`` for an unknown event or a number out of range.
     """
     a_scene(scene)
     if not isinstance(target, dict) or not target:
@@ -261,50 +274,34 @@ def count_events(scene, target, budget, seed, report=None):
     budget = max(1, int(budget / exact.work_per_event(scene)))
     require_room(scene)
 
-    duration = replica_duration(scene)
+    duration, rare = replica_duration(scene), strip.rare_hops(scene)
     events = [event for event in EVENTS if event in target]
-    waited = [event for event in events if scene.is_possible(event)]
+    rare = [hop for hop in rare if hop in target]
+    budget //= 1 + len(rare)
+    waited = [event for event in events if scene.is_possible(event) and event not in rare]
     index = [EVENTS.index(event) for event in waited]
     goals = np.array([target[event] for event in waited])
 
-    n = len(EVENTS)
-    sums, products, eligible = (np.zeros(shape, np.int64) for shape in (n, (n, n), n))
-    rate = exact.event_rate(scene)
-    affordable = int(budget / (REPLICAS * rate * duration))
-    blocks = max(1, min(FIRST_ROUND, affordable))
-    done, rounds = 0, 0
-    while True:
-        for total, part in zip(
-            (sums, products, eligible),
-            run_blocks(scene, events, seed, done, done + blocks, duration),
-            strict=True,
-        ):
-            total += part
-        done, rounds = done + blocks, rounds + 1
-        simulated = simulated_events(sums)
-        if not waited:
-            break
-        excess = relative_errors(sums, products, eligible)[index] / goals
-        worst = float(np.max(excess))
-        # In units of the work done so far: what the error asks for, and what the budget allows.
-        missing, affordable = 1.05 * worst * worst - 1.0, budget / max(simulated, 1) - 1.0
-        if report is not None:
-            done_so_far = f"{simulated:.3g} events, error {worst:.2f} of the target"
-            report(done_so_far, max(0.0, min(missing, affordable)))
-        if worst <= 1.0 or affordable * done < 1.0:
-            break
-        blocks = math.ceil(min(missing, GROWTH) * done)
-        blocks = min(blocks, math.floor(affordable * done))
-
+    (sums, products), done, rounds, excess = in_rounds(
+        lambda first, stop: run_blocks(scene, events, seed, first, stop, duration),
+        lambda total, replicas: relative_errors(*total, replicas)[index] / goals,
+        lambda total: max(1, simulated_events(total[0])),
+        int(budget / (REPLICAS * exact.event_rate(scene) * duration)),
+        budget,
+        report,
+    )
+    strips = {hop: strip.count_rare(scene, hop, target[hop], budget, seed, report) for hop in rare}
     watched = [EVENTS.index(event) for event in events]
-    reached = dict(zip(waited, excess <= 1.0, strict=True)) if waited else {}
+    reached = dict(zip(waited, excess <= 1.0, strict=True))
+    status = {
+        e: ("reached" if reached[e] else "budget") if e in reached else "impossible" for e in events
+    }
     return {
         "radius": scene.radius,
         "duration": duration,
         "replicas": done * REPLICAS,
         "rounds": rounds,
-        "events": simulated,
-        "eligible": {EVENTS[e]: int(eligible[e]) for e in watched},
+        "events": simulated_events(sums) + sum(found["events"] for found in strips.values()),
         "counts": {EVENTS[e]: int(sums[e]) for e in watched},
         "products": {
             f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
@@ -313,10 +310,8 @@ def count_events(scene, target, budget, seed, report=None):
             if e <= f
         },
         "target": {event: target[event] for event in events},
-        "status": {
-            e: ("reached" if reached[e] else "budget") if e in reached else "impossible"
-            for e in events
-        },
+        "status": status | {hop: found["status"] for hop, found in strips.items()},
+        "strips": strips,
     }
 
 
@@ -333,7 +328,10 @@ def compile_kernels(box=None, events=()):
     """Compile the kernel that counts ``events`` in a ``Box``; without one those of plain scenes."""
     if box is not None:
         run_blocks(box.tiny, events, 0, 0, 0, 1.0)  # no blocks: for some boxes they take long
+        for hop in set(events) & set(HOPS):
+            strip.compile_kernels(box.tiny, hop)
         return
     scene = Box(1.5, 1.0).scene(0.2)
     for one in (EVENTS, HOPS[:1], WALLS[:1], ("any_wall",)):
         run_blocks(scene, one, 0, 0, 0, 1.0)
+    strip.compile_kernels(scene, HOPS[0])

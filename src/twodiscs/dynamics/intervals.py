@@ -32,27 +32,44 @@ RETURNS = 256
 CHAINS = 256
 BINS = 512
 
-#: The usual budget.
+#: The usual budget of wall and disc events.
 BUDGET = 10**11
+
+#: Wide bins are at least so much wider than their place.
+GROWTH = 0.08
+
+
+def wide_edges(bins=BINS):
+    """Return where wide bins begin, and the last one ends, in units of the width of a bin.
+
+    They begin at zero, and each is a bin wide or wider than ``GROWTH`` times its place.
+    """
+    edges = [0]
+    for i in range(1, bins + 1):
+        if i >= (1 + GROWTH) * edges[-1]:
+            edges.append(i)
+    return edges
 
 
 @compiled
 def record_returns(
-    seed, first, stop, chains, lanes, returns, law, draw, prism, horizontal, width, histogram
+    seed, first, stop, chains, lanes, returns, law, draw, prism, horizontal, width, wide, sums
 ):
     """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
 
     The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
-    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. Adds the
-    intervals to ``histogram`` (int64, bins of ``width`` from 0; the last entry takes what is
-    longer) and returns the total time of each chain, (stop − first) × ``chains`` doubles in order.
+    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. With c intervals
+    of a chain in a bin, Σ c and Σ c² over the chains are added to ``sums`` (2, bins; int64). Bins
+    are of ``width`` from 0, one for what is longer, and the wide ones, of which ``wide`` has one
+    for each of the others. Returns the total time of each chain, (stop − first) × ``chains``
+    doubles in order.
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    chain, found = np.full(lanes, -1), np.zeros(lanes + 1)
-    totals = np.zeros((stop - first) * chains)
-    per_width, last_bin, wanted = 1.0 / width, histogram.size - 1, np.float64(returns)
+    chain, found, finder = np.full(lanes, -1), np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
+    totals, counts = np.zeros((stop - first) * chains), np.zeros((lanes, sums.shape[1]), np.int64)
+    per_width, last_bin, wanted = 1.0 / width, wide.size - 1, np.float64(returns)
     surface = 1 if horizontal is None else 0
     state = open_stream(seed, first)
     started, running = 0, 0
@@ -63,6 +80,10 @@ def record_returns(
                 continue
             if chain[i] >= 0:
                 totals[chain[i]] = elapsed[i]
+                for k in range(sums.shape[1]):
+                    sums[0, k] += counts[i, k]
+                    sums[1, k] += counts[i, k] * counts[i, k]
+                    counts[i, k] = 0
                 chain[i] = -1
                 running -= 1
             if started == totals.size:
@@ -99,14 +120,16 @@ def record_returns(
                 left[i] = to_come - 1.0 if hop else to_come
             n = 0
             for i in range(lanes):
-                found[n] = intervals[i]
+                found[n], finder[n] = intervals[i], i
                 n += 1 if intervals[i] >= 0.0 else 0
             for k in range(n):
-                histogram[min(np.int64(found[k] * per_width), last_bin)] += 1
+                place = min(np.int64(found[k] * per_width), last_bin)
+                counts[finder[k], place] += 1
+                counts[finder[k], wide[place]] += 1
 
 
 def recorded(scene, event, blocks, chains, returns, seed):
-    """Return (times of the chains, histogram, width of its bins) of ``record_returns``."""
+    """Return (times of the chains, sums, width of bins, edges of wide ones): ``record_returns``."""
     width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
@@ -114,12 +137,17 @@ def recorded(scene, event, blocks, chains, returns, seed):
     elif event == "horizontal_hop":
         # That is a vertical hop of the box on its side.
         upright = Box.of(scene).turned().scene(scene.radius)
-    histogram = np.zeros(BINS + 1, np.int64)
+    edges = wide_edges()
+    # What is longer than all bins, or is in the last ones that fill no wide bin, has no wide bin.
+    beyond = BINS + len(edges)
+    wide = np.full(BINS + 1, beyond)
+    wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
+    sums = np.zeros((2, beyond + 1), np.int64)
     totals = record_returns(
         np.uint64(seed), 0, blocks, chains, LANES, returns, law_of(upright), *origins(upright),
-        horizontal, width, histogram,
+        horizontal, width, wide, sums,
     )  # fmt: skip
-    return totals, histogram, width
+    return totals, sums, width, edges
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -132,8 +160,10 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     within a chain are correlated, chains are independent.
 
     Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
-    number of intervals and of chains, and the mean with its standard error over chains. Raises
-    ``InputError`` for a hop that is unknown or blocked, or a number out of range.
+    number of intervals and of chains, and the mean with its standard error over chains. With c
+    intervals of a chain in a bin, squares are Σ c² over the chains; wide has edges (in bins),
+    counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
+    or blocked, or a number out of range.
     """
     a_scene(scene)
     one_of("event", event, HOPS)
@@ -151,14 +181,21 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
             f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} of "
             f"{events:.2g} events each, not {budget!r}"
         )
-    totals, histogram, width = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
+    totals, sums, width, edges = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
     means = totals / RETURNS
+    counts, squares = sums.tolist()
     return {
         "radius": scene.radius,
         "event": event,
         "bin_width": width,
-        "counts": [int(n) for n in histogram[:-1]],
-        "overflow": int(histogram[-1]),
+        "counts": counts[:BINS],
+        "squares": squares[:BINS],
+        "overflow": counts[BINS],
+        "wide": {
+            "edges": edges,
+            "counts": counts[BINS + 1 : BINS + len(edges)],
+            "squares": squares[BINS + 1 : BINS + len(edges)],
+        },
         "intervals": totals.size * RETURNS,
         "chains": totals.size,
         "mean": math.fsum(means) / means.size,

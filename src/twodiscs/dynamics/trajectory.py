@@ -22,14 +22,23 @@ from twodiscs.dynamics.law import (
     next_event,
 )
 from twodiscs.model.box import Box
-from twodiscs.model.checks import whole
+from twodiscs.model.checks import InputError, length, whole
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import a_scene
-from twodiscs.sampling.starts import states
+from twodiscs.model.scene import ENERGY, a_scene
+from twodiscs.sampling.starts import components, states
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
 LONGEST_TRAJECTORY = 6000
+
+#: Events that one may ask for: all of its rows are kept.
+MOST_EVENTS = 1e7
+
+#: What a row of a trajectory holds.
+COLUMNS = ("time", "x1", "y1", "x2", "y2", "event", "z1", "z2")
+
+#: How far rounding may have moved a state that is handed in, over the sides and the energy.
+ROUNDING = 1e-9
 
 #: Names of what ends a flight, by code; only disc 1 on the right and on top has a name as an event.
 _NAMES = {
@@ -53,7 +62,7 @@ def _row(time, event, state, scene):
 
 
 def follow(scene, state, duration):
-    """Yield (time, x1, y1, x2, y2, event, z1, z2) for all that happens within ``duration``.
+    """Yield the ``COLUMNS`` of all that happens within ``duration``.
 
     ``state`` of the ``Scene`` is as in ``law``; z1 and z2 are None in the plane. Hops are events
     here, reported where they occur in a flight; walls are named by disc and axis, and the places
@@ -79,26 +88,92 @@ def follow(scene, state, duration):
             return
 
 
-def trajectory(scene, seed):
-    """Return one trajectory of a ``Scene`` from the invariant measure, as rows of ``follow``.
+def state_of(scene, start):
+    """Return ``start`` as a state of the ``Scene``: a tuple of floats, as ``law`` has it.
 
-    It lasts some eight mean times of the rarest hop that is open, but no longer than
-    ``LONGEST_TRAJECTORY`` wall and disc events on average. Raises ``InputError`` for anything that
-    is not a ``Scene``, and for a seed that is not an integer ≥ 0.
+    ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
+    of disc 2 serves. Raises ``InputError`` for anything else, for discs that overlap or lie
+    outside, and for another energy than 1/2.
     """
-    start = states(a_scene(scene), 1, whole("seed", seed, 0))
-    components = 8 + 4 * (scene.depth is not None) + 2 * (scene.moment_of_inertia is not None)
-    start = tuple(map(float, start[:components, 0]))
-    rate = exact.event_rate(scene) * exact.work_per_event(scene)
-    hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
-    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
-    return list(follow(scene, start, nearest_power_of_two(duration)))
+    names = components(a_scene(scene))
+    try:
+        state = dict(zip(names, map(float, start), strict=True))
+    except (TypeError, ValueError, OverflowError):
+        state = {}
+    if len(state) != len(names) or not all(map(math.isfinite, state.values())):
+        raise InputError(f"start must be the numbers {', '.join(names)}, not {start!r}")
+    apart = {}
+    for axis in scene.axes:
+        side = scene.side(axis)
+        if axis in scene.walled:
+            for disc, radius in enumerate(scene.radii, 1):
+                reach, place = side / 2 - radius, state[f"{axis}{disc}"]
+                if abs(place) > reach + ROUNDING * side:
+                    raise InputError(
+                        f"start must have disc {disc} inside the box, with {axis}{disc} between "
+                        f"{-reach!r} and {reach!r}, not {place!r}"
+                    )
+        apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
+        if axis in scene.periodic:
+            apart[axis] = math.remainder(apart[axis], side)
+            state[f"{axis}2"] = state[f"{axis}1"] - apart[axis]
+    distance, contact = math.hypot(*apart.values()), scene.contact_distance
+    if distance < contact * (1 - ROUNDING):
+        raise InputError(
+            f"start must have the discs apart, with {contact!r} or more between their centres, not "
+            f"{distance!r}"
+        )
+    energy = _energy(scene, state)
+    if abs(energy - ENERGY) > ROUNDING:
+        raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
+    return tuple(state.values())
+
+
+def _energy(scene, state):
+    """Return the total energy of a state, {name: value}, of a ``Scene``."""
+    found = 0.0
+    for disc, (mass, radius) in enumerate(zip(scene.masses, scene.radii, strict=True), 1):
+        speeds = [state[f"{name}{disc}"] for name in "uvw"[: len(scene.axes)]]
+        found += mass * math.fsum(speed * speed for speed in speeds) / 2
+        if scene.moment_of_inertia is not None:
+            found += mass * scene.moment_of_inertia * state[f"s{disc}"] ** 2 / 2
+        if scene.field:
+            found += mass * scene.field * (state[f"y{disc}"] + scene.height / 2 - radius)
+    return found
+
+
+def trajectory(scene, seed, start=None, duration=None):
+    """Return one trajectory of a ``Scene``, as rows of ``follow``.
+
+    It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
+    given (see ``state_of``). Without a ``duration`` it lasts some eight mean times of the rarest
+    hop that is open, but no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
+    Raises ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer
+    ≥ 0, for a start that is no state, and for a duration that is no length or takes
+    ``MOST_EVENTS``.
+    """
+    seed, rate = whole("seed", seed, 0), exact.event_rate(a_scene(scene))
+    rate *= exact.work_per_event(scene)
+    if duration is None:
+        hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
+        duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
+        duration = nearest_power_of_two(duration)
+    elif length("duration", duration) * rate > MOST_EVENTS:
+        raise InputError(
+            f"duration must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are "
+            f"due, not {duration!r}"
+        )
+    if start is None:
+        start = map(float, states(scene, 1, seed)[: len(components(scene)), 0])
+    else:
+        start = state_of(scene, start)
+    return list(follow(scene, tuple(start), float(duration)))
 
 
 def rows(box, radius, seed):
     """Return the rows of trajectory.csv, as dicts."""
-    names = ("time", "x1", "y1", "x2", "y2", "event", "z1", "z2")
-    return [dict(zip(names, row, strict=True)) for row in trajectory(box.scene(radius), seed)]
+    found = trajectory(box.scene(radius), seed)
+    return [dict(zip(COLUMNS, row, strict=True)) for row in found]
 
 
 def compile_kernels():

@@ -31,7 +31,8 @@ class Entry:
     of no scene reads where they are. ``needs`` are quantities, named as those of theory.csv or
     ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are watched, and is of
     use if any is. A drawing needs nothing: it takes the sides of the box alone, and shows equal
-    discs between walls. ``of_plain`` figures are for such scenes only.
+    discs between walls. ``of_plain`` figures are for such scenes only, and ``without`` are effects
+    in which a figure says nothing.
     """
 
     title: str
@@ -45,6 +46,7 @@ class Entry:
     main_tables: tuple = ()
     needs: frozenset = field(default_factory=frozenset)
     of_plain: bool = False
+    without: frozenset = field(default_factory=frozenset)
     options: dict = field(default_factory=dict)
 
     def is_called(self, watched, effects=()):
@@ -52,7 +54,7 @@ class Entry:
 
         ``effects`` are those of the scene, if it has any.
         """
-        if effects and (self.of_plain or not self.needs):
+        if effects and (self.of_plain or not self.needs or not self.without.isdisjoint(effects)):
             return False
         return not self.needs or not self.needs.isdisjoint(watched)
 
@@ -128,15 +130,16 @@ def _hop_area(hop, order, symbol):
         f"""
         Area of the surface {coordinate}1 = {coordinate}2, which is crossed when the discs exchange
         their {direction} order: exact (line) and from a thin shell around it (symbols). Where the
-        hop is blocked, symbols at zero say that no sample fell into the shell.
+        hop is blocked, symbols at zero say that no sample fell into the shell. The ordinate grows
+        as the square root, so that a quadratic end is straight.
         """,
         "areas",
         {f"{hop}_area": f"{direction} hops"},
         note="shells",
-        label=rf"{direction}-hop area $A_{{\mathrm{{{symbol}}}}}$",
+        label=rf"{direction}-hop area $S_{{\mathrm{{{symbol}}}}}$",
         place="lower left",
         single="Monte Carlo",
-        linear=True,
+        rooted=True,
     )
 
 
@@ -163,10 +166,10 @@ FIGURES = {
         """
         One trajectory: the separation of the discs along the longer side of the box that ends at
         walls (x in a square) against time. Dots mark the hops, at which it changes sign. (b) The
-        shaded stretch of time enlarged: a hop is often undone soon, before collisions have
-        scrambled the motion.
+        shaded stretch of time enlarged, with a bar for each hop: a hop is often undone soon, before
+        collisions have scrambled the motion.
         """,
-        "figures.hopping_trajectory",
+        "figures.motion.hopping_trajectory",
         tables=("trajectory",),
         needs=frozenset({"trajectory"}),
     ),
@@ -209,7 +212,7 @@ FIGURES = {
         "areas",
         {"disc_collision_area": "disc collisions"},
         note="shells",
-        label=r"collision area $A_{\mathrm{coll}}$",
+        label=r"collision area $S_{\mathrm{coll}}$",
         place="lower left",
         single="Monte Carlo",
     ),
@@ -224,7 +227,7 @@ FIGURES = {
         {f"{event}_area": name for event, name in WALLS.items()},
         plain="The whole is four times the sum of the first two.",
         note="shells",
-        label="wall area $A$",
+        label="wall area $S$",
         place="lower left",
     ),
     "mean_hop_time": _over_radius(
@@ -286,6 +289,25 @@ FIGURES = {
         label=r"mean time between wall hits $\tau$",
         place="lower left",
         laws=("small", "last"),
+    ),
+    "pressure": Entry(
+        "Pressures and virials",
+        DYNAMICS,
+        """
+        Force of disc 1 on the right and the top wall, over that of an ideal gas of one particle
+        (dotted): exact (lines) and from the hits that dynamics counted (symbols), each of which
+        hands over the same momentum in the mean.
+        """,
+        "figures.pressure",
+        plain="""
+        Dashed lines in (a) are the leading laws below the largest radius. (b) The virials of the
+        walls and of the collisions of the discs, over twice the mean kinetic energy: those of the
+        walls less that of collisions are one at every radius.
+        """,
+        note="simulated",
+        tables=("mean_times",),
+        needs=frozenset({"right_wall_time", "top_wall_time"}),
+        without=frozenset({"field"}),
     ),
     "hop_histogram": Entry(
         "Times between hops",
@@ -350,7 +372,7 @@ ANIMATION = Entry(
     of the centres, and the picture stops at the moment of the hop. Beneath, the separation of the
     discs against time: the hop changes its sign.
     """,
-    "figures.animation",
+    "figures.motion.animation",
     tables=("trajectory",),
     needs=frozenset({"trajectory"}),
     of_plain=True,

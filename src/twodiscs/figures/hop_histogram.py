@@ -1,11 +1,12 @@
 """How the times between hops are distributed."""
 
-from itertools import groupby
+from itertools import groupby, takewhile
 
 import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
+from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
 
 #: Inches: the panel of all intervals, that of the short ones, the gap between them, the room above.
@@ -14,9 +15,11 @@ ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
 #: The longest of the short intervals, in mean times.
 LONGEST_SHORT = 2.5
 
-#: Bins grow to this fraction of the interval; the curve ends before one that holds fewer than so
-#: many.
-GROWTH, FEWEST = 0.08, 10
+#: The curve ends before a bin that holds fewer than so many.
+FEWEST = 10
+
+#: How many bins it takes to show a density that changes with the room at a hop.
+FINE = 4
 
 #: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis.
 DASH = 0.035
@@ -35,11 +38,11 @@ def draw(box, tables):
     low, last = 0.1, 1.0
     for i, group in enumerate(groups):
         colour, marker = SERIES[i % len(SERIES)]
-        for axes, joining, apart in (
-            (whole, (GROWTH, FEWEST), APART),
-            (short, (0, 1), APART_SHORT),
+        for axes, bins, fewest, apart in (
+            (whole, "wide", FEWEST, APART),
+            (short, "equal", 1, APART_SHORT),
         ):
-            edges, density, errors = _scaled(group, *joining)
+            edges, density, errors = curve([r for r in group if r["bins"] == bins], fewest)
             middles = (edges[1:] + edges[:-1]) / 2
             wanted = apart * np.arange(0.4 + i / len(groups), middles[-1] / apart)
             at = np.unique(np.searchsorted(middles, wanted))
@@ -50,10 +53,7 @@ def draw(box, tables):
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
         if not box.effects:
-            first = group[0]
-            here = box.scene(first["radius"])
-            value = first["exact_mean"] * tails.density_at_zero(here, first["event"])
-            short.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
+            _mark_zero(short, box, group[0], colour)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
@@ -68,29 +68,24 @@ def draw(box, tables):
     return figure
 
 
-def _scaled(rows, growth, fewest):
-    """Return (edges, density, standard error) of one radius, in units of its exact mean."""
-    mean = rows[0]["exact_mean"]
-    edges, density, errors = joined(rows, growth, fewest)
-    return edges / mean, density * mean, errors * mean
+def _mark_zero(axes, box, row, colour):
+    """Mark the exact density at 0 where bins are fine enough to show it."""
+    scene, hop = box.scene(row["radius"]), row["event"]
+    free, across = (scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]
+    sigma = scene.contact_distance
+    if (row["right"] - row["left"]) * FINE <= min(across - sigma, free - 2 * sigma):
+        value = row["exact_mean"] * tails.density_at_zero(scene, hop)
+        axes.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
 
 
-def joined(rows, growth, fewest):
-    """Return (edges, density, standard error) with bins joined until as wide as ``growth`` × time.
+def curve(rows, fewest):
+    """Return (edges, density, standard error) in units of the exact mean interval.
 
-    ``rows`` are those of one radius. The first joined bin with fewer than ``fewest`` intervals is
-    left out, and all that come after it.
+    ``rows`` are successive bins of one radius. The first one with fewer than ``fewest`` intervals
+    is left out, and all that come after it.
     """
-    edges, counts, waiting = [rows[0]["left"]], [], 0
-    for row in rows:
-        waiting += row["count"]
-        if row["right"] >= (1 + growth) * edges[-1]:
-            if waiting < fewest:
-                break
-            edges.append(row["right"])
-            counts.append(waiting)
-            waiting = 0
-    counts = np.array(counts, float)
-    total = rows[0]["intervals"]
-    share = total * np.diff(edges)
-    return np.array(edges), counts / share, np.sqrt(counts * (1 - counts / total)) / share
+    shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
+    mean = rows[0]["exact_mean"]
+    edges = [rows[0]["left"], *(row["right"] for row in shown)]
+    values = ([row[name] * mean for row in shown] for name in ("density", "stderr"))
+    return np.array(edges) / mean, *map(np.array, values)

@@ -22,13 +22,13 @@ APPROACH, ROOM = 1.4, 1.8
 CLOSEST, LAW = 1e-5, 0.3
 
 
-def draw(box, tables, names, label, place, single=None, linear=False, laws=(), approach=False):
+def draw(box, tables, names, label, place, single=None, rooted=False, laws=(), approach=False):
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
     the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
-    ``linear``; ``place`` that of the legend, and ``single`` the method if there is one series only.
-    ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
+    ``rooted``, as the square root; ``place`` that of the legend, and ``single`` the method if there
+    is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
     ``approach`` a panel beneath shows the times over the distance from the radius of their end.
     Raises ``InputError`` if the table has none of the quantities, and for no table or several.
     """
@@ -49,13 +49,20 @@ def draw(box, tables, names, label, place, single=None, linear=False, laws=(), a
     panels.draw_series(main, lower, radii, series, single=bool(single))
     for quantity in found:
         _laws(main, box, quantity.removesuffix("_time"), laws)
-    if not linear:
+    if rooted:
+        main.set_yscale("function", functions=(_root, np.square))
+        main.set_ylim(0, 1.05 * max(np.nanmax(one.exact) for one in series))
+    else:
         panels.logarithmic(main, radii, series)
     panels.legend(main, box, series, place, single=single)
     if approach:
         panels.letter(main, "a")
         _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, found)
     return figure
+
+
+def _root(values):
+    return np.sqrt(np.maximum(values, 0))
 
 
 def _quantity(row):

@@ -18,6 +18,9 @@ class InputError(ValueError):
     program, and keeps its traceback.
     """
 
+    def __init__(self, sentence):
+        super().__init__(" ".join(str(sentence).split()))
+
 
 def shown(value):
     """Return how a sentence shows a ``value``: shortened, whatever it is."""
@@ -70,6 +73,13 @@ def proportion(name, value):
     if not 0 < value < 1:
         raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {shown(value)}")
     return float(value)
+
+
+def count(name, value, most=LARGEST_INTEGER):
+    """Return ``value`` ≥ 1 as an int, also from a float that is one, such as 1e6."""
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    return whole(name, value, 1, most)
 
 
 def one_of(name, value, allowed):

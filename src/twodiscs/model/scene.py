@@ -37,7 +37,8 @@ class Scene:
 
     * ``depth``: the third side of the box; the discs are balls then.
     * ``radius_ratio``, ``mass_ratio``: of disc 2 to disc 1.
-    * ``periodic``: the axes ("x", "y", "z", as text such as "xy") with neither wall nor end.
+    * ``periodic``: the axes ("x", "y", "z", a list of them or text such as "xy") with neither wall
+      nor end.
     * ``field``: the acceleration g along −y, in speed²/length. Heights count from where each disc
       rests on the bottom, so the potential energy is never negative.
     * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
@@ -60,6 +61,8 @@ class Scene:
     def __post_init__(self):
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
+        if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
+            object.__setattr__(self, "periodic", "".join(self.periodic))
         for name, effect in EFFECTS.items():
             object.__setattr__(self, name, effect.checked(getattr(self, name)))
         if self.has_effects:
@@ -119,6 +122,16 @@ class Scene:
                 "they lack it"
             )
 
+    def __repr__(self):
+        sides = f"{self.width!r}, {self.height!r}, {self.radius!r}"
+        return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.effects.items())])})"
+
+    def __str__(self):
+        """Say what the scene is, in a line."""
+        words = [f"{name.replace('_', ' ')} {value}" for name, value in self.effects.items()]
+        discs = f"Two {self._what} of radius {self.radius!r} in a box of {self._box}"
+        return ", ".join([discs, *words])
+
     @property
     def _what(self):
         return "discs" if self.depth is None else "balls"
@@ -126,6 +139,12 @@ class Scene:
     @property
     def _box(self):
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
+
+    def unit(self, quantity):
+        """Return the unit of a "volume", an "area" or anything that is a "time"."""
+        powers = {"volume": "⁴⁶", "area": "³⁵"}
+        kind = quantity.rpartition("_")[2]
+        return f"length{powers[kind][self.depth is not None]}" if kind in powers else "time"
 
     def with_radius(self, radius):
         """Return the same scene with another radius of disc 1."""
@@ -186,12 +205,12 @@ class Scene:
     @cached_property
     def range_x(self):
         """A = w − σ: the largest separation x1 − x2 between walls, and an equal disc's range."""
-        return self.width - self.contact_distance
+        return self.width - sum(self.radii)
 
     @cached_property
     def range_y(self):
         """B = h − σ: the same along y; neither means anything on a periodic axis."""
-        return self.height - self.contact_distance
+        return self.height - sum(self.radii)
 
     @cached_property
     def contact_distance(self):
@@ -202,6 +221,11 @@ class Scene:
     def exact_radii(self):
         """The radii of the discs as fractions; the same doubles as ``radii``."""
         return tuple(map(Fraction, self.radii))
+
+    @cached_property
+    def exact_contact(self):
+        """σ as a fraction."""
+        return sum(self.exact_radii)
 
     def reach(self, axis):
         """Return the largest separation of the centres along ``axis``, as an exact fraction.
@@ -223,7 +247,7 @@ class Scene:
             return False
         if any(self.reach(axis) <= 0 for axis in self.axes):
             return False
-        return self._spread() > sum(self.exact_radii) ** 2
+        return self._spread() > self.exact_contact**2
 
     @cached_property
     def largest_radius(self):
@@ -267,16 +291,23 @@ class Scene:
         """
         if not self.field:
             return 0.0
-        square = sum(self.exact_radii) ** 2 - spread
+        square = self.exact_contact**2 - spread
         apart = math.sqrt(square) if square > 0 else 0.0
         (r1, r2), (m1, m2) = self.radii, self.masses
         return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
 
     def _passable(self, axis):
         """Say whether the discs can exchange sides along ``axis``."""
-        if axis not in self.walled:
-            return False
-        if self._spread(axis) <= sum(self.exact_radii) ** 2:
+        return axis in self._passed
+
+    @cached_property
+    def _passed(self):
+        """The axes along which the discs can exchange sides."""
+        return tuple(axis for axis in self.walled if self._has_gap(axis))
+
+    def _has_gap(self, axis):
+        """Say whether there are room and energy to pass along an axis with walls."""
+        if self._spread(axis) <= self.exact_contact**2:
             return False
         if axis == "y":
             (r1, r2), (m1, m2) = self.radii, self.masses
@@ -284,6 +315,20 @@ class Scene:
         else:
             lowest = self._lowest_potential(self._spread(axis, "y"))
         return lowest < ENERGY
+
+    def room(self, hop):
+        """Return how far apart discs that are level along the axis of ``hop`` can be, less σ.
+
+        For equal discs of the plane that is B − σ for the horizontal hop, A − σ for the vertical
+        one; it is negative where the hop is blocked.
+        """
+        spread, sigma = self._spread(DECLARED[hop].axis), sum(self.exact_radii)
+        return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
+
+    @cached_property
+    def fastest(self):
+        """The largest relative velocity of the centres, √(1/m1 + 1/m2) at total energy 1/2."""
+        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses))
 
     @cached_property
     def vertical_hops(self):
@@ -324,7 +369,7 @@ class Scene:
         if r1 <= r2:
             return True
         behind = (r1 - r2) ** 2
-        if self._spread(axis) + behind <= (r1 + r2) ** 2:
+        if self._spread(axis) + behind <= self.exact_contact**2:
             return True
         return self._lowest_potential(self._spread(axis, "y") + behind) >= ENERGY
 
@@ -333,14 +378,31 @@ class Scene:
         """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2."""
         return self._confined("x"), self._confined("y")
 
-    def needed_side(self, event):
-        """Return on which side of disc 2 disc 1 has to start in order to see ``event``.
+    @cached_property
+    def alike(self):
+        """Whether the discs are equal, so that they may be exchanged."""
+        return self.radius_ratio == self.mass_ratio == 1
 
-        That is +1 or −1 along the axis of a wall that is reached from one side only, else 0.
+    def share(self, event):
+        """Return the share of trajectories that can see ``event``.
+
+        That is 1/2 for a wall that disc 1 reaches from its own side of disc 2 only, else 1.
         """
         found = DECLARED[event]
-        confined = found.kind == "wall" and self.confined["xy".index(found.axis)]
-        return found.side if confined else 0
+        return 0.5 if found.kind == "wall" and self.confined["xy".index(found.axis)] else 1.0
+
+    def copies(self, event):
+        """Return the mean count of ``event`` in one mean time, with all that is equal to it.
+
+        Mirror images and equal discs leave four of the pairs of a disc and a wall that have one
+        rate, two of them within the reach of a trajectory where the discs keep their sides. A field
+        has no mirror image along y. It is 1 for everything but walls.
+        """
+        found = DECLARED[event]
+        if found.kind != "wall":
+            return 1
+        mirrored = found.axis == "x" or not self.field
+        return round((1 + mirrored) * (1 + self.alike) * self.share(event))
 
     @cached_property
     def events(self):

@@ -63,6 +63,17 @@ def number(text):
         raise argparse.ArgumentTypeError(f"must be a number, not {text!r}") from None
 
 
+def whole_number(text):
+    """Return ``text``, such as 12 or 1e7, as an integer, for ``type=`` of an argument."""
+    try:
+        return int(text)
+    except ValueError:
+        found = number(text)
+    if not found.is_integer():
+        raise argparse.ArgumentTypeError(f"must be an integer, not {text!r}")
+    return int(found)
+
+
 def fail(message):
     """Print ``message`` on one line of standard error and exit with status 2."""
     print(f"error: {' '.join(str(message).split())}", file=sys.stderr)

@@ -127,10 +127,12 @@ def pilot_intervals(job):
 
 def pilot_dynamics(job):
     """Return the ``Pilot`` of a job of molecular dynamics, given its parameters."""
-    from twodiscs.dynamics import counting
+    from twodiscs.dynamics import counting, ensemble, strip
 
     scene = _scene(job)
     duration = counting.replica_duration(scene)
+    rare = [hop for hop in strip.rare_hops(scene) if hop in job["accuracy"]]
+    job = job | {"event_budget": job["event_budget"] // (1 + len(rare))}
 
     def count(blocks):
         return counting.run_blocks(scene, tuple(job["accuracy"]), SEED, 0, blocks, duration)
@@ -139,34 +141,56 @@ def pilot_dynamics(job):
         return counting.simulated_events(counted[0])
 
     count(1)
-    counted, cost = _timed(lambda: count(counting.FIRST_ROUND), events)
-    return Pilot(events_of_job(scene, job, counted, events(counted)), cost)
+    counted, cost = _timed(lambda: count(ensemble.FIRST_ROUND), events)
+    pilots = [Pilot(events_of_job(scene, job, counted, events(counted), rare), cost)]
+    pilots += [pilot_strip(scene, hop, job) for hop in rare]
+    total = sum(pilot.events for pilot in pilots)
+    return Pilot(total, sum(math.prod(pilot) for pilot in pilots) / total)
 
 
-def events_of_job(scene, job, counted, done):
+def pilot_strip(scene, hop, job):
+    """Return the ``Pilot`` of a rare ``hop`` of a job."""
+    from twodiscs.dynamics import ensemble, strip
+
+    place = strip.strip_of(scene, hop)
+
+    def count(blocks):
+        return strip.run_blocks(scene, hop, place, SEED, 0, blocks)
+
+    count(1)
+    counted, cost = _timed(lambda: count(ensemble.FIRST_ROUND), lambda sums: sums[2])
+    replicas = ensemble.FIRST_ROUND * ensemble.REPLICAS
+    excess = ensemble.relative_errors(*counted[:2], replicas)[0] / job["accuracy"][hop]
+    needed = min(max(1.0, MARGIN * excess**2) * counted[2], job["event_budget"])
+    return Pilot(round(needed), cost)
+
+
+def events_of_job(scene, job, counted, done, rare=()):
     """Return the wall and disc events that a job of molecular dynamics will simulate.
 
-    ``counted`` are (sums, products, eligible) of a pilot of ``done`` events. A relative error ε
-    takes f/ε² events of its kind, with f measured by the pilot where it saw enough of them.
+    ``counted`` are (sums, products) of a pilot of ``done`` events. A relative error ε takes f/ε²
+    events of its kind, with f measured by the pilot where it saw enough of them. ``rare`` hops are
+    not waited for.
     """
     from twodiscs.dynamics import counting, ensemble
     from twodiscs.model.events import EVENTS
     from twodiscs.theory import exact
 
-    errors = counting.relative_errors(*counted)
+    errors = ensemble.relative_errors(*counted, ensemble.FIRST_ROUND * ensemble.REPLICAS)
     total = exact.event_rate(scene)
     needed = 0.0
     for event, error in job["accuracy"].items():
-        if not scene.is_possible(event):
+        if not scene.is_possible(event) or event in rare:
             continue
         i = EVENTS.index(event)
         if counted[0][i] >= FEWEST:
             alone = done * float(errors[i]) ** 2
         else:
-            alone = CLUSTER * total / exact.rate(scene, event)
+            time = exact.mean_times(scene)[event] / scene.copies(event)
+            alone = CLUSTER * total * time
         needed = max(needed, alone / error**2)
     usual = ensemble.REPLICAS * counting.EVENTS_PER_REPLICA
-    blocks = max(1, min(counting.FIRST_ROUND, job["event_budget"] // usual))
+    blocks = max(1, min(ensemble.FIRST_ROUND, job["event_budget"] // usual))
     first = blocks * ensemble.REPLICAS * counting.replica_duration(scene) * total
     if needed > first:
         needed *= MARGIN

@@ -246,6 +246,8 @@ def kernels(options):
 def verdict(options):
     """Write a line a scene if every comparison passed; otherwise print failures and return 1."""
     judge = function_of(options.module, "verdict")
+    if not options.table:
+        raise InputError("verdict needs --table, the check table of a scene or of several")
     failures, text = judge(read_tables(options.table))
     if failures:
         print("\n".join(failures), file=sys.stderr)

@@ -6,7 +6,11 @@ Standard library only: the Snakefile imports this.
 """
 
 import ast
+import atexit
+import json
+import os
 import re
+from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
@@ -14,6 +18,9 @@ from pathlib import Path
 from twodiscs.model.checks import InputError
 
 PACKAGE = Path(__file__).resolve().parents[1]
+
+#: Where what is known of sources outlives a process, by the text of each; it may go at any time.
+MEMORY = Path(".snakemake", "twodiscs-sources.json")
 
 
 def imported(*modules, without=()):
@@ -51,7 +58,7 @@ def modules():
 
 def imports_of(module):
     """Return the modules that the code of one imports itself, named as by ``modules``."""
-    parents = {module[:depth] for depth in range(len(module) + 1)}
+    parents = {module[:depth] for depth in range(1, len(module) + 1)}
     return [name for name in _imports(module) if name not in parents]
 
 
@@ -67,6 +74,7 @@ def fingerprint(*modules, without=()):
     return digest.hexdigest()
 
 
+@cache
 def _file(name):
     """Return the file of the module ``name``, a tuple of the parts below the package, or None."""
     path = PACKAGE.joinpath(*name)
@@ -77,21 +85,56 @@ def _file(name):
 
 
 @cache
+def _memory():
+    """Return {digest of a file: what ``_parsed`` found in it}, as the last process left it."""
+    try:
+        found = json.loads(MEMORY.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+#: What this process has read, in the form of ``_memory``.
+_used = {}
+
+
+def _remember():
+    """Keep what was read for the next process, where Snakemake keeps what it knows."""
+    if MEMORY.parent.is_dir() and _used.keys() - _memory().keys():
+        part = MEMORY.with_suffix(f".{os.getpid()}")
+        with suppress(OSError):
+            part.write_text(json.dumps(_used), encoding="utf-8")
+            part.replace(MEMORY)
+
+
+@cache
 def _read(path):
-    """Return (hash of a source file without comments, docstrings and blank lines, its imports).
+    """Return what ``_parsed`` finds in a source file, which is parsed once for each text of it."""
+    text = path.read_bytes()
+    key = blake2b(text, digest_size=16).hexdigest()
+    if not _used:
+        atexit.register(_remember)
+    _used[key] = _memory().get(key) or _parsed(text, path)
+    return _used[key]
+
+
+def _parsed(text, path):
+    """Return (hash of a source without comments, docstrings and blank lines, its imports).
 
     The hash is that of the text, not of the syntax tree, whose form depends on the version of
-    Python. Strings that are statements of their own are docstrings, of attributes too.
+    Python. Strings that are statements of their own are docstrings, of attributes too. Imports are
+    triples (dotted module, number of leading dots, names).
     """
-    text = path.read_bytes()
     lines, strings, imports = text.splitlines(), [], []
     for node in ast.walk(ast.parse(text, filename=str(path))):
         if isinstance(node, ast.Expr) and _is_text(node.value):
             _cut(lines, node)
         elif isinstance(node, ast.JoinedStr) or _is_text(node):
             strings.append(node)
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            imports.append(node)
+        elif isinstance(node, ast.Import):
+            imports += [(alias.name, 0, []) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            imports.append((node.module or "", node.level, [alias.name for alias in node.names]))
     _cut_comments(lines, strings)
     code = b"\n".join(line.rstrip() for line in lines if line.strip())
     return blake2b(code, digest_size=8).hexdigest(), imports
@@ -126,21 +169,20 @@ def _cut_comments(lines, strings):
 
 @cache
 def _imports(name):
-    """Return the modules of this package that the module ``name`` imports, its parents included."""
+    """Return the modules of this package that the module ``name`` imports, its parents included.
+
+    But for the package itself: the face is imported with every module, and nothing depends on it.
+    """
     path = _file(name)
     here = name if path.name == "__init__.py" else name[:-1]
-    found = {name[:depth] for depth in range(len(name))}
-    for node in _read(path)[1]:
-        if isinstance(node, ast.Import):
-            targets = [_below_package(alias.name) for alias in node.names]
-        else:
-            base = _below_package(node.module or "")
-            if node.level:
-                base = here[: len(here) + 1 - node.level]
-                base += tuple(node.module.split(".")) if node.module else ()
-            targets = [] if base is None else [base, *((*base, a.name) for a in node.names)]
+    found = {name[:depth] for depth in range(1, len(name))}
+    for module, level, names in _read(path)[1]:
+        base = _below_package(module)
+        if level:
+            base = here[: len(here) + 1 - level] + tuple(module.split(".") if module else ())
+        targets = [] if base is None else [base, *((*base, name) for name in names)]
         for target in filter(None, targets):
-            found.update(target[:depth] for depth in range(len(target) + 1))
+            found.update(target[:depth] for depth in range(1, len(target) + 1))
     return [target for target in found if _file(target) is not None]
 
 

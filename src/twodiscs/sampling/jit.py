@@ -8,17 +8,30 @@ Import this module, not numba, wherever something is compiled: the settings must
 """
 
 import os
+import pickle
+import re
 import shutil
+import sys
 import time
+import uuid
+from contextlib import suppress
+from functools import cache
 from hashlib import blake2b
 from pathlib import Path
 
-#: The folder of the package, all of whose sources compiled code may be made from.
+#: The folder of the package.
 PACKAGE = Path(__file__).resolve().parents[1]
+
+#: The rooms whose sources make the kernels that stand in them: imports point down. A kernel that
+#: stands elsewhere is kept for exactly the package as it is.
+ROOMS = ("model", "theory", "sampling", "dynamics")
 
 #: How many versions of compiled code stay on disk; older ones belong to sources that were edited.
 #: What was used within so many seconds stays as well: another process may be about to read it.
 KEPT_CACHES, IN_USE = 4, 3600
+
+#: A file that says that a folder is a cache of this package, which it may remove.
+MARK = "compiled by twodiscs"
 
 
 def _use_wide_vectors():
@@ -32,57 +45,154 @@ def _use_wide_vectors():
         os.environ["NUMBA_CPU_FEATURES"] = features.flatten() + ",-prefer-256-bit"
 
 
-def sources_hash():
-    """Return 16 hexadecimal digits that change with any edit of the sources of this package."""
-    digest = blake2b(digest_size=8)
-    for path in sorted(PACKAGE.rglob("*.py")):
-        text = path.read_bytes()
-        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(text)}\n".encode() + text)
-    return digest.hexdigest()
-
-
-def _use_keyed_cache():
-    """Keep compiled code in a folder named by the hash of all sources of this package.
-
-    Numba compares the time stamp of the file that holds a function, so it would go on using a
-    kernel whose imported event law has been edited.
-    """
-    home = os.environ.get("NUMBA_CACHE_DIR")
-    caches = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    root = Path(home) if home else caches / "twodiscs"
-    if not root.name.startswith("sources-"):
-        root = root / f"sources-{sources_hash()}"
-    try:
-        root.mkdir(parents=True, exist_ok=True)
-        os.utime(root)
-        stale = sorted(root.parent.glob("sources-*"), key=lambda path: -path.stat().st_mtime)
-        for folder in stale[KEPT_CACHES:]:
-            if folder.stat().st_mtime < time.time() - IN_USE:
-                shutil.rmtree(folder, ignore_errors=True)
-    except OSError:
-        return
-    os.environ["NUMBA_CACHE_DIR"] = str(root)
-
-
 _use_wide_vectors()
-_use_keyed_cache()
 
+import llvmlite  # noqa: E402
 import numba  # noqa: E402
+import numpy as np  # noqa: E402
 from numba.core import types  # noqa: E402
+from numba.core.caching import CompileResultCacheImpl, FunctionCache  # noqa: E402
+from numba.core.serialize import dumps  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
 #: How everything is compiled: division by zero gives infinity, as IEEE 754 has it.
 OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True}
 
 
+@cache
+def sources_hash(room):
+    """Return 16 hexadecimal digits that change with the sources and packages that make a kernel.
+
+    Only the text of the files counts and their places in the package, for the kernels that stand in
+    ``room``, the first part of a module's name: not where the package is, nor any time stamp.
+    """
+    folders = [PACKAGE / name for name in ROOMS] if room in ROOMS else [PACKAGE]
+    versions = sys.version, numba.__version__, llvmlite.__version__, np.__version__
+    digest = blake2b(repr(versions).encode(), digest_size=8)
+    for path in sorted(path for folder in folders for path in folder.rglob("*.py")):
+        text = path.read_bytes()
+        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(text)}\n".encode() + text)
+    return digest.hexdigest()
+
+
+def _homes():
+    """Yield the folders where compiled code may be kept, the best one first."""
+    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
+        yield Path(chosen)
+    elif chosen := os.environ.get("XDG_CACHE_HOME"):
+        yield Path(chosen) / "twodiscs"
+    else:
+        with suppress(RuntimeError):  # who runs this may have no entry in the list of users
+            yield Path.home() / ".cache" / "twodiscs"
+    yield PACKAGE / "__pycache__"
+
+
+@cache
+def cache_folder(room):
+    """Return the folder of the compiled code of a room, None where no such folder can be made.
+
+    Its name has the hash of the sources. Numba alone looks at the file that holds a function, and
+    would go on using a kernel whose imported event law has been edited.
+    """
+    for home in _homes():
+        folder = home / f"kernels-{sources_hash(room)}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / MARK).touch()
+            os.utime(folder)
+            _remove_old(home)
+        except OSError:
+            continue
+        return folder
+    print(
+        "Compiled code is kept nowhere, so every process compiles anew: none of the folders "
+        f"{', '.join(map(str, _homes()))} can be written to; NUMBA_CACHE_DIR names another one",
+        file=sys.stderr,
+    )
+    return None
+
+
+def _remove_old(home):
+    """Remove the caches that were used longest ago, of those that this package made."""
+    made = [
+        path
+        for path in home.glob("kernels-*")
+        if re.fullmatch("kernels-[0-9a-f]{16}", path.name) and (path / MARK).is_file()
+    ]
+    made.sort(key=lambda path: -path.stat().st_mtime)
+    for folder in made[KEPT_CACHES:]:
+        if folder.stat().st_mtime < time.time() - IN_USE:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+class _Reduction(CompileResultCacheImpl):
+    """How numba turns a compiled function into what can be stored, whichever file has it."""
+
+    def __init__(self):
+        """Choose no file."""
+
+
+class KernelCache(FunctionCache):
+    """The compiled versions of one function, a file each, named by all that it was compiled for.
+
+    A file has a digest of its content: one that was cut short is compiled again. There is no index
+    that two processes could write at the same time.
+    """
+
+    def __init__(self, function):
+        self._py_func, self._name, self._impl = function, repr(function), _Reduction()
+        room = function.__module__.partition(".")[2].partition(".")[0]
+        self._cache_path = cache_folder(room)
+        self._enabled = self._cache_path is not None
+
+    def _file(self, signature, codegen):
+        code = self._py_func.__code__
+        key = repr((self._index_key(signature, codegen), code.co_firstlineno)).encode()
+        name = f"{self._py_func.__module__}.{self._py_func.__qualname__}".replace("<", "(")
+        return self._cache_path / (
+            f"{name.replace('>', ')')}-{blake2b(key, digest_size=16).hexdigest()}"
+        )
+
+    def _load_overload(self, sig, target_context):
+        if not self._enabled:
+            return None
+        path = self._file(sig, target_context.codegen())
+        try:
+            content = path.read_bytes()
+        except OSError:
+            return None
+        digest, stored = content[:32], content[32:]
+        if blake2b(stored, digest_size=32).digest() != digest:
+            return None
+        return self._impl.rebuild(target_context, pickle.loads(stored))
+
+    def _save_overload(self, sig, data):
+        if not self._enabled or not self._impl.check_cachable(data):
+            return
+        path = self._file(sig, data.codegen)
+        stored = dumps(self._impl.reduce(data))
+        part = path.with_name(f"{uuid.uuid4().hex}.part")
+        try:
+            part.write_bytes(blake2b(stored, digest_size=32).digest() + stored)
+            os.replace(part, path)
+        except OSError as error:
+            print(f"Compiled code was not kept: {error}", file=sys.stderr)
+            part.unlink(missing_ok=True)
+
+
+def _kept(dispatcher):
+    dispatcher._cache = KernelCache(dispatcher.py_func)
+    return dispatcher
+
+
 def compiled(function):
     """Compile ``function`` with the house settings; what a kernel calls is compiled into it."""
-    return numba.njit(function, cache=True, **OPTIONS)
+    return _kept(numba.njit(function, **OPTIONS))
 
 
 def inlined(function):
     """Compile ``function`` into whatever calls it, however long it is: for the innermost loops."""
-    return numba.njit(function, cache=True, forceinline=True, **OPTIONS)
+    return _kept(numba.njit(function, forceinline=True, **OPTIONS))
 
 
 def optional(absent):

@@ -6,13 +6,28 @@ uniform on a sphere in D dimensions.
 """
 
 import math
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.model.events import AXIS
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
+
+
+class Strip(NamedTuple):
+    """Where |Δ| along one axis is small: there the separation along the others has a least size.
+
+    It is 0 where there is none. Between walls either disc keeps within ``span`` of its own one.
+    """
+
+    axis: int  # 0 for x, 1 for y
+    within: float  # the largest |Δ| along it
+    least: tuple  # of |Δ| along x, y, z
+    span: tuple  # the largest |Δ| less that
+    most: float  # the largest share of the energy that is kinetic
 
 
 class Prism(NamedTuple):
@@ -33,10 +48,27 @@ class Prism(NamedTuple):
     weights: tuple | None  # of the potential: 2 g m1, 2 g m2
     depth: bool | None
     inertia: tuple | None  # 1/√(κ m) of disc 1 and 2
+    strip: Strip | None = None  # where all places are to be
 
 
-def prism_of(scene):
-    """Return the ``Prism`` of a ``Scene``."""
+def strip_of(scene, hop, within):
+    """Return the ``Strip`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
+    axis, within = AXIS[hop], Fraction(within)
+    squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
+    square = sum(scene.exact_radii) ** 2 - within**2
+    least, span = dict.fromkeys("xyz", 0.0), dict.fromkeys("xyz", 0.0)
+    for a, reach in squares.items():
+        least[a] = math.sqrt(max(square - sum(squares.values()) + reach, 0))
+        room = min(sum(squares.values()) - square, reach)
+        span[a] = float(room) / (float(scene.reach(a)) + least[a])
+    # In a field the upper disc is that high at least.
+    rise = least["y"] - abs(scene.radii[0] - scene.radii[1])
+    most = 1 - 2 * scene.field * min(scene.masses) * max(rise, 0.0)
+    return Strip("xy".index(axis), float(within), tuple(least.values()), tuple(span.values()), most)
+
+
+def prism_of(scene, hop=None, within=None):
+    """Return the ``Prism`` of a ``Scene``, with the strip ``within`` a distance of a ``hop``."""
 
     def half(axis, radius):
         if axis not in scene.axes:
@@ -59,6 +91,7 @@ def prism_of(scene):
         inertia=None
         if inertia is None
         else (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
+        strip=None if hop is None else strip_of(scene, hop, within),
     )
 
 
@@ -113,15 +146,59 @@ def propose_in_prism(state, prism):
 
 
 @compiled
+def propose_apart(state, prism, axis, strip):
+    """Return (q1, Δ) along an axis other than that of the ``strip``."""
+    half_1, half_2, span = prism.half_1[axis], prism.half_2[axis], strip.span[axis]
+    if strip.least[axis] == 0.0:
+        q1 = half_1 * signed_uniform(state)
+        return q1, nearest(q1 - half_2 * signed_uniform(state), prism.period[axis])
+    sign = 1.0 if next_bits(state) & np.uint64(1 << 61) else -1.0
+    if prism.period[axis] > 0.0:
+        q1 = half_1 * signed_uniform(state)
+        return q1, sign * (strip.least[axis] + span * uniform(state))
+    q1 = sign * (half_1 - min(span, 2.0 * half_1) * uniform(state))
+    q2 = sign * (min(span, 2.0 * half_2) * uniform(state) - half_2)
+    return q1, q1 - q2
+
+
+@optional(lambda state, prism, strip, depth: (0.0, 0.0))
+def propose_deep_apart(state, prism, strip, depth):
+    """Return (z1, dz), in the plane twice 0."""
+    return propose_apart(state, prism, 2, strip)
+
+
+@optional(lambda state, prism, strip: propose_in_prism(state, prism))
+def propose_anywhere(state, prism, strip):
+    """Return what ``propose_in_prism`` does, within a ``strip`` if there is one."""
+    half_1, half_2 = prism.half_1[strip.axis], prism.half_2[strip.axis]
+    q1, apart = half_1 * signed_uniform(state), strip.within * signed_uniform(state)
+    other, separation = propose_apart(state, prism, 1 - strip.axis, strip)
+    z1, dz = propose_deep_apart(state, prism, strip, prism.depth)
+    if abs(q1 - apart) > half_2:
+        # An overlap: this is never accepted.
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if strip.axis == 0:
+        return q1, other, z1, apart, separation, dz
+    return other, q1, z1, separation, apart, dz
+
+
+@optional(lambda share, strip: share)
+def of_most(share, strip):
+    """Return the kinetic ``share`` over the largest one."""
+    return share / strip.most
+
+
+@compiled
 def share_if_accepted(state, prism, y1, dx, dy, dz, power):
     """Return the kinetic share of the energy if a proposal is accepted, and −1 if it is not.
 
-    Discs that do not overlap are accepted with the probability share^(``power``/2).
+    Discs that do not overlap are accepted with the probability share^(``power``/2), in a strip over
+    the largest one.
     """
     if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
         return -1.0
     share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-    if prism.weights is None or power_chance(state, share, power):
+    if prism.weights is None or power_chance(state, of_most(share, prism.strip), power):
         return share
     return -1.0
 
@@ -130,7 +207,7 @@ def share_if_accepted(state, prism, y1, dx, dy, dz, power):
 def draw_in_prism(state, prism):
     """Return (x1, y1, z1, dx, dy, dz, kinetic share) from the invariant measure."""
     while True:
-        x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
+        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.strip)
         share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
         if share >= 0.0:
             return x1, y1, z1, dx, dy, dz, share

@@ -36,19 +36,21 @@ class Draw(NamedTuple):
     half_y: float  # b
     range_y: float  # B
     sigma: float  # σ
+    arch: float  # no more than σ + k
     start: float  # u₀, where the arc enters the rectangle
-    stop: float  # u₁ = min(σ, A), where it leaves
+    stop: float  # u₁ = min(σ, A), where it leaves, or where the strip ends
     span: float  # u₁ − u₀
-    beyond_x: float  # (A − σ)₊
+    beyond_x: float  # A − u₁
     beyond_y: float  # (B − σ)₊
     least_k: float  # k₁ = √(σ² − u₁²)
     weights: tuple  # cumulative probabilities of the seven parts of the proposal
     mass: float  # integral of the proposal; the accepted share is V/2 over it
 
 
-def draw_constants(scene):
-    """Return the ``Draw`` of a ``Scene``.
+def draw_constants(scene, within=None):
+    """Return the ``Draw`` of a ``Scene``; ``within`` a distance, if given, u < σ is to stay.
 
+    Such a strip needs an open horizontal hop: σ < B.
     The differences of lengths that cancel near a threshold or near the largest radius are rounded
     once, from exact fractions.
     """
@@ -57,7 +59,11 @@ def draw_constants(scene):
     beyond_x, beyond_y = max(float(w - 4 * r), 0.0), max(float(h - 4 * r), 0.0)
     start = math.sqrt(max(float(h * (4 * r - h)), 0.0))
     least_k = math.sqrt(max(float(w * (4 * r - w)), 0.0))
-    stop = min(sigma, range_x)
+    stop, arch, whole = min(sigma, range_x), sigma, 1
+    if within is not None:
+        stop, whole, beyond_x = within, 0, float(w - 2 * r - Fraction(within))
+        least_k = math.sqrt(float((2 * r) ** 2 - Fraction(within) ** 2))
+        arch += least_k
     if beyond_y > 0:
         span = stop
     elif beyond_x > 0:
@@ -69,19 +75,19 @@ def draw_constants(scene):
     # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s). Products, not powers,
     # whose last digit depends on the math library, nor ``sum``, whose depends on Python's version.
     if beyond_y > 0:
-        powers = {0: beyond_y * beyond_y, 2: 2 * beyond_y / sigma, 4: 1 / (sigma * sigma)}
+        powers = {0: beyond_y * beyond_y, 2: 2 * beyond_y / arch, 4: 1 / (arch * arch)}
     else:
         scale = 1 / ((range_y + least_k) * (range_y + least_k))
         powers = {2: 4 * start * start * scale, 3: 4 * start * scale, 4: scale}
-    parts = [beyond_x * beyond_x / 2 * range_y * range_y]
+    parts = [whole * beyond_x * beyond_x / 2 * range_y * range_y]
     for j, c in powers.items():
         parts.append(c * beyond_x * math.prod([span] * (j + 1)) / (j + 1))
         parts.append(c * math.prod([span] * (j + 2)) / ((j + 1) * (j + 2)))
     total = math.fsum(parts)
     cumulative = tuple(math.fsum(parts[: i + 1]) / total for i in range(len(parts)))
     return Draw(
-        range_x / 2, range_y / 2, range_y, sigma, start, stop, span, beyond_x, beyond_y, least_k,
-        cumulative, total,
+        range_x / 2, range_y / 2, range_y, sigma, arch, start, stop, span, beyond_x, beyond_y,
+        least_k, cumulative, total,
     )  # fmt: skip
 
 
@@ -115,7 +121,7 @@ def propose_separation(state, draw):
     k = math.sqrt(draw.least_k * draw.least_k + z * (2.0 * draw.stop - z))
     if draw.beyond_y > 0.0:
         room = draw.beyond_y + u * u / (draw.sigma + k)
-        bound = draw.beyond_y + u * u / draw.sigma
+        bound = draw.beyond_y + u * u / draw.arch
     else:
         room = s * (2.0 * draw.start + s) / (draw.range_y + k)
         bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)

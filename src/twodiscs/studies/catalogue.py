@@ -156,10 +156,11 @@ STUDIES = {
                     radius: from the speed and the errors of a pilot (open symbols), by running to
                     that error (full symbols), and predicted from the exact rates and one speed
                     for the noise of a Poisson process (lines). Below its line an event comes more
-                    evenly than at random, above it in clusters; near h/4 a trajectory long keeps
-                    disc 1 to one side. (b) Error of the mean time between disc collisions where
-                    there is little room left, in double and in single precision: lengths rounded
-                    to 24 bits make another room (dashed).
+                    evenly than at random, above it in clusters. Hops near the radius where they
+                    are blocked are counted from starts next to their surface (grey), at a price
+                    that stays flat, here up to a relative distance of 1e-6. (b) Error of the mean
+                    time between disc collisions where there is little room left, in double and in
+                    single precision: lengths rounded to 24 bits make another room (dashed).
                     """,
                     "studies.accuracy_cost.figure_by_radius",
                     tables=("accuracy_cost",),
@@ -239,16 +240,16 @@ STUDIES = {
                     "Rate of hops since the last one",
                     DYNAMICS,
                     """
-                    (a) How often a hop comes after a time t without one, in units of the exact
-                    mean time τ; an exponential law would be the dashed line. It starts from the
-                    exact density at 0 (thick dashes), of a hop undone after one bounce, and jumps
-                    where both discs may have bounced, from t = √2 (h − 2r) on for vertical hops.
-                    Bars are rates of exponentials fitted from four mean times on, dotted where
-                    intervals are not exponential there (p < 1e-3). Those of small discs fall on,
-                    towards the rate of a cubic tail, 3τ/t (grey). (b) Mean time from a random
-                    moment to the next hop (open symbols) and what intervals make of it, τ(1 +
-                    CV²)/2 (dots), with CV their coefficient of variation. Error bars are one
-                    standard error.
+                    (a) How often a hop comes after a time t without one, in units of the exact mean
+                    time τ; an exponential law would be the dashed line. It starts from the exact
+                    density at 0 (thick dashes), of a hop undone after one bounce, and jumps where
+                    both discs may have bounced, from t = √2 (h − 2r) on for vertical hops. Bars are
+                    constant rates fitted to all that comes after four mean times, dotted where the
+                    rate is not constant there (by χ² or by a trend, at the level of 1e-3). Those of
+                    small discs fall on, towards the rate of a cubic tail, 3τ/t (grey). (b) Mean
+                    time from a random moment to the next hop (open symbols) and what intervals make
+                    of it, τ(1 + CV²)/2 (dots), with CV their coefficient of variation. Error bars
+                    are one standard error.
                     """,
                     "studies.distributions.figure",
                     tables=("distributions",),
@@ -267,14 +268,14 @@ STUDIES = {
                     "Power laws where events die out",
                     DYNAMICS,
                     """
-                    Mean times near the radius at which their event ends, r = r_c − δ with r_c =
-                    w/4 for vertical hops, h/4 for horizontal ones and the largest radius for all
-                    else: event-driven molecular dynamics (symbols) and exact (lines). (a) Times
-                    between hops against their leading laws Cδ⁻² (dashed), and mean first passages
-                    from a random moment (crosses); slopes are those of inertial and of diffusive
-                    motion. (b) Times over their leading laws, with p = −2 for hops that become
-                    blocked and p = 1 for what vanishes: how near the limit these are reached.
-                    Error bars are one standard error.
+                    Mean times near the radius at which their event ends, r = r_c − δ with r_c = w/4
+                    for vertical hops, h/4 for horizontal ones and the largest radius for all else:
+                    event-driven molecular dynamics (symbols) and exact (lines). (a) Times between
+                    hops against their leading laws Cδ⁻² (dashed), and mean first passages from a
+                    random moment (crosses); slopes are those of inertial and of diffusive motion.
+                    (b) Times over their leading laws, of exponent −2 for hops that become blocked
+                    and 1 for what vanishes: how near the limit these are reached. Error bars are
+                    one standard error.
                     """,
                     "studies.thresholds.figure",
                     tables=("distributions", "thresholds"),

@@ -10,9 +10,13 @@ import math
 from functools import lru_cache
 
 from twodiscs.model.checks import InputError, length, one_of
-from twodiscs.model.events import DECLARED, EVENTS, SHELLS
+from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory import plain
+
+#: The least share of the prism, in which both centres keep to their ranges, that must be free of
+#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
+LEAST_SHARE = 1e-4
 
 #: Times that discs may leave their periodic cell between two events before that counts as work.
 PASSES_PER_EVENT = 64
@@ -98,7 +102,7 @@ def mean_times(scene):
     half of configuration space where ``Scene.confined``. Accuracy and errors as for ``volume``.
     """
     return {
-        event: (0.5 if scene.needed_side(event) else 1) / rate(scene, event) if area else None
+        event: scene.share(event) / rate(scene, event) if area else None
         for event, area in areas(scene).items()
     }
 
@@ -117,6 +121,36 @@ def exact(scene):
         "areas": areas(scene),
         "mean_times": mean_times(scene),
     }
+
+
+def free_share(scene):
+    """Return the share of the prism in which the discs are free, weighted in a field."""
+    ranges = (
+        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
+        for axis in scene.axes
+        for radius in scene.radii
+    )
+    return volume(scene) / math.prod(ranges)
+
+
+def share_near(scene, hop, distance):
+    """Return the share of configuration space where the discs are almost level along a hop's axis.
+
+    That is the probability, in the invariant measure, of a separation of at most ``distance`` along
+    the axis of ``hop``, a length up to √2 times the smaller radius. Raises ``InputError`` for
+    anything that is not a ``Scene`` or a hop, and for another distance.
+    """
+    one_of("hop", hop, HOPS)
+    distance = length("distance", distance)
+    limit = math.sqrt(2) * min(a_scene(scene).radii)
+    if distance > limit:
+        raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
+    if scene.has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.share_near(scene, hop, distance)
+    epsilon = distance / math.sqrt(2)
+    return 2 * epsilon * plain.shell_expectation(scene, hop, epsilon) / volume(scene)
 
 
 def shell_expectation(scene, event, epsilon):
@@ -146,3 +180,28 @@ def shell_expectation(scene, event, epsilon):
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
     return plain.shell_expectation(scene, event, epsilon)
+
+
+def grid_rows(box, radii):
+    """Return the rows of grid.csv of a ``Box``, one for each radius."""
+    return [
+        {
+            "radius": scene.radius,
+            "regime": scene.regime,
+            "ergodic_components": scene.ergodic_components,
+            "largest_radius": scene.largest_radius,
+        }
+        for scene in map(box.scene, radii)
+    ]
+
+
+def theory_rows(box, radii):
+    """Return the rows of theory.csv of a ``Box``, radius by radius."""
+    found = []
+    for radius in radii:
+        numbers = exact(box.scene(radius))
+        values = {"volume": numbers["volume"]}
+        values |= {f"{event}_area": area for event, area in numbers["areas"].items()}
+        values |= {f"{event}_time": time for event, time in numbers["mean_times"].items()}
+        found += [{"radius": radius, "quantity": q, "exact": x} for q, x in values.items()]
+    return found

@@ -4,23 +4,10 @@ import math
 from typing import NamedTuple
 
 from twodiscs.model.checks import InputError, one_of
-from twodiscs.model.events import DECLARED, EVENTS
+from twodiscs.model.events import DECLARED, EVENTS, by_kind
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
-
-#: The events of the box turned by a quarter.
-TURNED = {
-    name: next(
-        (
-            other.name
-            for other in DECLARED.values()
-            if (other.kind, other.side) == (event.kind, event.side) and other.axis != event.axis
-        ),
-        name,
-    )
-    for name, event in DECLARED.items()
-}
 
 
 def a_plain_scene(scene):
@@ -62,16 +49,21 @@ def closed_form(scene):
     (v_x, c_x, own_x, other_x), (v_y, c_y, own_y, other_y) = side(a, b), side(b, a)
     right = 8 * a * b * b - 8 * b * r * r * angle + own_x + other_y
     top = 8 * a * a * b - 8 * a * r * r * angle + own_y + other_x
+    sides = {"x": (a, b), "y": (b, a)}
+
+    def hop(event):
+        across, along = sides[event.axis]
+        return 8 * math.sqrt(2) * across * max(along - r, 0.0) ** 2
+
+    areas = {
+        "hop": hop,
+        "collision": lambda event: 16 * math.sqrt(2) * r * (2 * a * b * angle - r * r + c_x + c_y),
+        "wall": lambda event: right if event.axis == "x" else top,
+        "walls": lambda event: 4 * (right + top),
+    }
     return {
         "volume": 16 * (a * b) ** 2 - 32 * a * b * r * r * angle + 8 * r**4 + v_x + v_y,
-        "areas": {
-            "vertical_hop": 8 * math.sqrt(2) * b * max(a - r, 0.0) ** 2,
-            "horizontal_hop": 8 * math.sqrt(2) * a * max(b - r, 0.0) ** 2,
-            "disc_collision": 16 * math.sqrt(2) * r * (2 * a * b * angle - r * r + c_x + c_y),
-            "right_wall": right,
-            "top_wall": top,
-            "any_wall": 4 * (right + top),
-        },
+        "areas": by_kind("theory/laws.py", areas),
     }
 
 
@@ -122,14 +114,14 @@ def threshold_time(scene, event):
             return one_sided / math.sqrt(8) * arc.range_y
         critical = volume(Scene(along, across, along / 4))
         return one_sided / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
-    if h > w:
-        return threshold_time(Scene(h, w, r), TURNED[event])
-
-    arc = Arc.of(scene)
+    # The axes along and across the box, whose names a box higher than wide exchanges.
+    long, short = "xy" if w >= h else "yx"
+    w, h = max(w, h), min(w, h)
+    arc = Arc.of(Scene(w, h, r))
     if w >= 2 * h:
         # The arc is straight on the scale of the room left: V = x² y², x = A − σ, y = B.
         x, y = arc.beyond_x, arc.range_y
-        collision, walls = x / math.sqrt(8), {"x": x / 2, "y": y}
+        collision, walls = x / math.sqrt(8), {long: x / 2, short: y}
         any_wall = x * y / (x + y) / 4
     else:
         # Between the arc and the far corner a triangle is left: V ∝ S⁴/(AB)² and its derivatives,
@@ -139,7 +131,7 @@ def threshold_time(scene, event):
         left = float(range_x**2 + range_y**2 - sigma**2) / (2 * (w + h + root - 2 * r))
         last_x, last_y = root - h, w * (2 * h - w) / (root + w)
         collision = root * left / (math.sqrt(8) * (w + h - root))
-        walls = {"x": root * left / (2 * last_x), "y": root * left / (2 * last_y)}
+        walls = {long: root * left / (2 * last_x), short: root * left / (2 * last_y)}
         any_wall = root * left / (4 * (last_x + last_y))
     times = {"collision": collision, "wall": walls.get(found.axis), "walls": any_wall}
     return one_sided * times[found.kind]

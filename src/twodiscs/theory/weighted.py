@@ -318,7 +318,7 @@ class _Space:
 
     def __init__(self, scene, power):
         self.scene, self.power = scene, power
-        self.sigma = sum(scene.exact_radii)
+        self.sigma = scene.exact_contact
         self.order = sorted(scene.axes, key="yxz".index)
 
     def intervals(self, axis):
@@ -411,26 +411,6 @@ def _areas(scene):
     return {event: _area(space, event) for event in EVENTS}
 
 
-#: The least share of the prism, in which both centres keep to their ranges, that must be free of
-#: overlaps: starts are drawn from the prism by rejection.
-LEAST_SHARE = 1e-4
-
-
-def require_room(scene):
-    """Raise ``InputError`` if starts of a ``Scene`` with effects would be too rare in the prism."""
-    ranges = (
-        scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
-        for axis in scene.axes
-        for radius in scene.radii
-    )
-    share = volume(scene) / math.prod(ranges)
-    if share < LEAST_SHARE:
-        raise InputError(
-            f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
-            f"a scene with effects needs more room, {LEAST_SHARE:g} of it"
-        )
-
-
 # What is exact ------------------------------------------------------------------------------------
 
 
@@ -462,6 +442,13 @@ def rate(scene, event):
     area = areas(scene)[one_of("event", event, EVENTS)]
     sides = DECLARED[event].sides
     return sides / 2 * constant(scene.velocity_components) * area / volume(scene) if area else 0.0
+
+
+def share_near(scene, hop, distance):
+    """Return the probability of a separation up to ``distance`` along the axis of a ``hop``."""
+    space = _Space(scene, scene.velocity_components / 2 - 1)
+    near = space.axis(AXIS[hop], farthest=Fraction(distance))
+    return space.beyond(**{AXIS[hop]: near}) / volume(scene)
 
 
 # Shells -------------------------------------------------------------------------------------------

@@ -103,7 +103,7 @@ BOX = START + "}"
         ("figures.geometry.model", {"--table": "volumes=a.csv"}, "there is no table called 'a'"),
         ("figures.geometry.model", {"--table": "a=volume.csv"}, "volume.csv: No such file"),
         ("figures.kit.style", {}, "figures.kit.style must have a function draw"),
-        ("figures.hopping_trajectory", {}, "the table trajectory must be given"),
+        ("figures.motion.hopping_trajectory", {}, "the table trajectory must be given"),
         ("figures.radius", {}, "missing a required argument: 'names'"),
         (
             "figures.radius",

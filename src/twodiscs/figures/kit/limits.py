@@ -48,7 +48,7 @@ def limits(box):
 
 
 def _fills(scene, axis):
-    return bool(scene.periodic) and scene.reach(axis) <= sum(scene.exact_radii)
+    return bool(scene.periodic) and scene.reach(axis) <= scene.exact_contact
 
 
 def hop_ends(box):

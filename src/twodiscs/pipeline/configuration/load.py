@@ -19,7 +19,7 @@ from twodiscs.pipeline.configuration.reading import ConfigError, shown
 from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
-from twodiscs.theory.exact import events_per_interval
+from twodiscs.theory.exact import LEAST_SHARE, events_per_interval, free_share
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -329,21 +329,18 @@ def _checked(found, box, path):
     seen = set()
     for radius in found:
         try:
-            _check_room(box.scene(radius))
+            scene = box.scene(radius)
         except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
+        if scene.has_effects and (share := free_share(scene)) < LEAST_SHARE:
+            raise ConfigError(
+                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
+                f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
+            )
         if radius in seen:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
         seen.add(radius)
     return tuple(sorted(found))
-
-
-def _check_room(scene):
-    if scene.has_effects:
-        # Numerical packages are imported here, for nothing else needs them.
-        from twodiscs.theory.weighted import require_room
-
-        require_room(scene)
 
 
 def _shared(asked, all_have_effects):

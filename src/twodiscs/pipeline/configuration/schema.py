@@ -30,6 +30,9 @@ def schema():
     once = (*studies, *DOCUMENTS)
     _choice(top["shared"]["items"], once)
     top["shared"]["allowed"] = f"a list of different names among {', '.join(once)}"
+    plain = ", ".join(f"`{name}`" for name in studies if STUDIES[name].about_plain)
+    text = top["shared"]["description"].replace("ABOUT_PLAIN", f"{plain} and `paper`")
+    top["shared"]["description"] = text
     scene = top["scenes"]["items"]["properties"]
     _choice(scene["watch"]["properties"]["hop_histogram"]["properties"]["event"], HOPS)
     for name, effect in EFFECTS.items():

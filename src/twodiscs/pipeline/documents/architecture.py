@@ -56,7 +56,10 @@ def floors(found):
 
 
 def purpose(room):
-    """Return what a room is for, the first sentence of its docstring, and the names in it."""
+    """Return what a room is for, the first sentence of its docstring, and the names in it.
+
+    A room with a catalogue has rooms for its entries, which the catalogue names.
+    """
     folder = PACKAGE / room
     path = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
     text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
@@ -64,6 +67,7 @@ def purpose(room):
         p.stem for p in folder.glob("*") if p.stem != "__init__" and p.suffix in ("", ".py")
     )
     names = [name for name in inside if not name.startswith("__")]
+    names = ["catalogue", "…"] if "catalogue" in names else names
     first = text.split("\n")[0].split(". ")[0].rstrip(".").replace("``", "")
     return first, names
 

@@ -2,17 +2,18 @@
 
     python -m twodiscs.pipeline.documents.pages
 
-renews config/README.md, the end of results/README.md and the rows of studies in README.md, in the
-folder where it is called.
+renews config/README.md, config/schema.json for editors, the end of results/README.md and the rows
+of studies in README.md, in the folder where it is called.
 """
 
+import json
 from pathlib import Path
 
 from twodiscs.comparison import check
 from twodiscs.comparison.scene_tables import SCENE_TABLES, Forecast
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.configuration.schema import document
+from twodiscs.pipeline.configuration.schema import document, schema
 from twodiscs.studies.catalogue import STUDIES, STUDY_TABLES
 from twodiscs.studies.effects.table import Benchmark
 
@@ -25,8 +26,9 @@ exist. Lengths are in the unit of the box, and the time unit is that in which th
 is one.\
 """
 
-#: What stands before and after the rows of studies in README.md.
-MARKS = "<!-- studies -->\n", "<!-- end of studies -->\n"
+#: What stands before and after the rows of studies in README.md; on lines of their own, comments
+#: would end the table.
+MARKS = "<!-- studies --> |\n", "| <!-- end of studies -->"
 
 
 def _plain(text):
@@ -74,6 +76,7 @@ def pages(folder):
     )
     return {
         "config/README.md": document(),
+        "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
         "results/README.md": renewed(results, described_tables(), "# Tables\n"),
         "README.md": renewed(readme, described_studies(), *MARKS),
     }

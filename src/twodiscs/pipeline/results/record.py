@@ -21,7 +21,7 @@ FOLDER = ".record"
 
 #: What is written without a record: by Snakemake itself, or for one moment.
 UNRECORDED = ("logs", "benchmarks", ".compiled", "configuration.json", "provenance.json",
-              "forecast.csv", "report.html", "README.md")  # fmt: skip
+              "forecast.csv", "report.html", "report-workflow.html", "README.md")  # fmt: skip
 
 
 def digest(*paths):

@@ -14,7 +14,7 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs.theory.exact import event_rate, rate
+from twodiscs.theory.exact import event_rate, mean_times
 
 #: Inches: the panel of the times, the gap, the panel of single precision.
 TIMES, GAP, SINGLE = 2.5, 0.42, 1.35
@@ -33,7 +33,10 @@ def draw(box, tables):
 
 
 def _times(axes, rows):
-    """Draw measured times (symbols) and those of a Poisson process (lines) for every event."""
+    """Draw measured times (symbols) and those of a Poisson process (lines) for every event.
+
+    Those of strips are grey inside.
+    """
     rows = [row for row in rows if row["part"] == "radius"]
     box = Box(rows[0]["width"], rows[0]["height"])
     found = limits(box)
@@ -43,7 +46,7 @@ def _times(axes, rows):
     for event, (colour, marker) in LOOKS.items():
         radii, seconds = _prediction(box, event, speed * error**2)
         axes.plot(radii, seconds, color=colour, zorder=2)
-        for method, full in (("lockstep", False), ("paid", True)):
+        for method, inside in (("lockstep", "white"), ("strip", "0.7"), ("paid", colour)):
             points = [
                 (row["radius"], row["seconds"])
                 for row in rows
@@ -52,14 +55,16 @@ def _times(axes, rows):
             if points:
                 axes.plot(
                     *zip(*points, strict=True), ls="", marker=marker, color=colour, zorder=3,
-                    mfc=colour if full else "white", ms=SIZES[marker],
-                    label=None if full else name_of(event),
+                    mfc=inside, ms=SIZES[marker],
+                    label=name_of(event) if method == "lockstep" else None,
                 )  # fmt: skip
+    axes.plot([], [], ls="", marker="o", color=BLACK, ms=SIZES["o"], label="run to this error")
+    axes.plot([], [], color=BLACK, label="Poisson process")
     for radius, _ in found:
         axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
     axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 30), xlabel="radius $r$")
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
-    axes.legend(loc="upper left", ncols=2, columnspacing=1, handlelength=0.8)
+    axes.legend(loc="upper left", ncols=2, columnspacing=1, handlelength=1)
     panels.name_limits(axes, found)
     panels.name_box(axes, box)
     panels.letter(axes, "a")
@@ -72,8 +77,8 @@ def _prediction(box, event, counts):
     radii = np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
     scenes = [box.scene(radius) for radius in radii]
     total = [event_rate(scene) for scene in scenes]
-    rates = [rate(scene, event) for scene in scenes]
-    return radii, np.array(total) / np.array(rates) / counts
+    times = [mean_times(scene)[event] / scene.copies(event) for scene in scenes]
+    return radii, np.array(total) * np.array(times) / counts
 
 
 def _single(axes, rows):

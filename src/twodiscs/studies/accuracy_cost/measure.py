@@ -24,10 +24,11 @@ import numpy as np
 from mpmath import mp
 
 from twodiscs.comparison.estimates import Line
-from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics import counting, strip
+from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.model.box import Box
 from twodiscs.model.checks import length, whole
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import radii
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
@@ -58,11 +59,12 @@ CALLS = 100
 USUAL_SECONDS = 30.0
 
 #: The relative error whose price is asked radius by radius, the number of radii, the blocks of a
-#: pilot, and where the price is paid for comparison.
+#: pilot, relative distances from where a hop is blocked, and where the price is paid.
 TARGET = 1e-3
 RADII = 28
 PILOT_BLOCKS = 32
-PAID = {"vertical_hop": (0.05, 0.2, 0.3), "horizontal_hop": (0.05, 0.15, 0.2)}
+CLOSE = (1e-3, 1e-4, 1e-6)
+PAID = {"vertical_hop": (0.05, 0.2, 0.3), "horizontal_hop": (0.05, 0.15, 0.2, 0.245)}
 
 #: A law of counts needs so many of them for an error bar.
 FEWEST = 1000
@@ -249,11 +251,11 @@ def reference(scene):
 # Mean times ---------------------------------------------------------------------------------
 
 
-def times(events, counts, replicas, duration):
-    """Return {quantity: mean time} from ``counts`` of ``events`` by replicas that can see them."""
+def times(scene, events, counts, replicas, duration):
+    """Return {quantity: mean time} from ``counts`` of ``events`` in ``replicas``."""
     with np.errstate(divide="ignore"):
         return {
-            f"{event}_time": float(duration * replicas / np.float64(n))
+            f"{event}_time": float(scene.copies(event) * duration * replicas / np.float64(n))
             for event, n in zip(events, counts, strict=True)
         }
 
@@ -262,7 +264,8 @@ def by_lockstep(scene, blocks, seed):
     """Measure the mean times with the engine."""
     duration = counting.replica_duration(scene)
     counts = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)[0]
-    return times(EVENTS, counts, blocks * REPLICAS, duration), counting.simulated_events(counts), 1
+    found = times(scene, EVENTS, counts, blocks * REPLICAS, duration)
+    return found, counting.simulated_events(counts), 1
 
 
 def by_scalar(scene, replicas, seed):
@@ -270,16 +273,17 @@ def by_scalar(scene, replicas, seed):
     duration = counting.replica_duration(scene)
     counts = scalar.count_blocks(
         np.uint64(seed), 0, 1, replicas, duration, scene.contact_distance, draw_constants(scene),
-        (0, 0), scene.confined,
+        (0, 0),
     )[0]  # fmt: skip
-    return times(scalar.COUNTED, counts, replicas, duration), scalar.simulated_events(counts), 1
+    found = times(scene, scalar.COUNTED, counts, replicas, duration)
+    return found, scalar.simulated_events(counts), 1
 
 
 def by_single_precision(scene, blocks, seed):
     """Measure the mean times with the engine in single precision."""
     duration = counting.replica_duration(scene)
     counts = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
-    found = times(scalar.COUNTED, counts, blocks * REPLICAS, duration)
+    found = times(scene, scalar.COUNTED, counts, blocks * REPLICAS, duration)
     return found, scalar.simulated_events(counts), 1
 
 
@@ -288,7 +292,7 @@ def by_steps(step, scene, blocks, seed):
     duration = counting.replica_duration(scene)
     counts = timestepping.run_blocks(scene, seed, 0, blocks, duration, step)
     replicas = blocks * REPLICAS
-    found = times(scalar.COUNTED, counts, replicas, duration)
+    found = times(scene, scalar.COUNTED, counts, replicas, duration)
     return found, round(duration / step) * replicas, 1
 
 
@@ -478,14 +482,32 @@ def predicted_events(scene, event, error=TARGET):
 
     If ``event`` came as by a Poisson process, error⁻² of them would be needed; all else is exact.
     """
-    return exact.event_rate(scene) / exact.rate(scene, event) / error**2
+    time = exact.mean_times(scene)[event] / scene.copies(event)
+    return exact.event_rate(scene) * time / error**2
+
+
+def strip_rows(scene, blocks):
+    """Yield the rows of pilots of ``blocks`` from starts next to the hops that are rare."""
+    for hop in strip.rare_hops(scene):
+        place = strip.strip_of(scene, hop)
+        strip.run_blocks(scene, hop, place, 0, 0, 1)
+        start = time.process_time()
+        sums, squares, events = strip.run_blocks(scene, hop, place, 1, 0, blocks)
+        seconds = time.process_time() - start
+        more = (float(relative_errors(sums, squares, blocks * REPLICAS)[0]) / TARGET) ** 2
+        yield row(
+            "radius", f"{hop}_time", scene.radius, "strip",
+            setting=place.time, work=round(events * more), seconds=seconds * more, error=TARGET,
+            repetitions=blocks * REPLICAS,
+        )  # fmt: skip
 
 
 def by_radius(scale=1.0):
-    """Return the rows of the part radius: what a relative error of ``TARGET`` takes, three ways.
+    """Return the rows of the part radius: what a relative error of ``TARGET`` takes, four ways.
 
-    ``lockstep`` measures speed and error of a pilot at the radius; ``poisson`` is predicted from
-    the exact rates and one speed, the median over all radii; ``paid`` is a run to that very error.
+    ``lockstep`` measures speed and error of a pilot at the radius, ``strip`` those of starts next
+    to a rare hop, also close to where it is blocked; ``poisson`` is predicted from the exact rates
+    and one speed, the median over all radii; ``paid`` is a run to that very error.
     """
     rows, speeds, scenes = [], [], []
     for radius in radii(SCENE.width, SCENE.height, 0.01, RADII):
@@ -493,12 +515,13 @@ def by_radius(scale=1.0):
         duration = counting.replica_duration(scene)
         blocks = math.ceil(PILOT_BLOCKS * scale)
         start = time.process_time()
-        sums, products, eligible = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
+        sums, products = counting.run_blocks(scene, EVENTS, 1, 0, blocks, duration)
         seconds = time.process_time() - start
         events = counting.simulated_events(sums)
         speeds.append(events / seconds)
         scenes.append(scene)
-        errors = counting.relative_errors(sums, products, eligible)
+        rows += strip_rows(scene, blocks)
+        errors = relative_errors(sums, products, blocks * REPLICAS)
         for event, count, error in zip(EVENTS, sums, errors, strict=True):
             if count >= FEWEST:
                 more = (float(error) / TARGET) ** 2
@@ -509,6 +532,10 @@ def by_radius(scale=1.0):
                         repetitions=blocks * REPLICAS,
                     )
                 )  # fmt: skip
+    for hop in HOPS:
+        for distance in CLOSE:
+            scene = SCENE.with_radius(Box.of(SCENE).threshold(hop) * (1 - distance))
+            rows += strip_rows(scene, blocks)
     speed = median(speeds)
     for scene in scenes:
         for event in EVENTS:
@@ -527,7 +554,8 @@ def by_radius(scale=1.0):
             start = time.process_time()
             point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
-            mean = point["duration"] * point["replicas"] / point["counts"][event]
+            found = point["strips"].get(event) or point | {"count": point["counts"][event]}
+            mean = found["duration"] * found["replicas"] / found["count"] / found.get("share", 1)
             bias = mean / exact.mean_times(scene)[event] - 1
             rows.append(
                 row(
@@ -558,15 +586,13 @@ def where_single_fails(scale=1.0):
             duration = counting.replica_duration(scene)
             mean = exact.mean_times(scene)["disc_collision"]
             expected = blocks * REPLICAS * duration / mean
-            double, products, eligible = counting.run_blocks(
-                scene, EVENTS, seed, 0, blocks, duration
-            )
+            double, products = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
             single = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
             seen = double[counting.COLLISIONS], single[scalar.COLLISIONS]
             for method, count in zip(errors, seen, strict=True):
                 errors[method].append(float(expected / count - 1))
             events += counting.simulated_events(double)
-            noise = counting.relative_errors(double, products, eligible)[counting.COLLISIONS]
+            noise = relative_errors(double, products, blocks * REPLICAS)[counting.COLLISIONS]
         for method, found in errors.items():
             rows.append(
                 row(

@@ -56,7 +56,7 @@ def kernel(dtype):
     names = law_in(dtype)
     next_event, after_event = names["next_event"], names["after_event"]
     crosses, end_of_time, disc = names["crosses"], names["END_OF_TIME"], names["DISC"]
-    wall_x1, wall_y1 = names["WALL_X1"], names["WALL_Y1"]
+    wall_x1, wall_y1, wall_x2, wall_y2 = (names[f"WALL_{w}"] for w in ("X1", "Y1", "X2", "Y2"))
     # Three counts of eight bits are all that the 24 bits of a single-precision number hold.
     low, middle, high, zero = dtype(1), dtype(256), dtype(65536), dtype(0)
 
@@ -105,8 +105,8 @@ def kernel(dtype):
                         a += low if crosses(before[1] - before[3], after[1] - after[3]) else zero
                         a += middle if crosses(before[0] - before[2], after[0] - after[2]) else zero
                         a += high if code == disc else zero
-                        b += low if (code == wall_x1) & (after[0] > zero) else zero
-                        b += middle if (code == wall_y1) & (after[1] > zero) else zero
+                        b += low if (code == wall_x1) | (code == wall_x2) else zero
+                        b += middle if (code == wall_y1) | (code == wall_y2) else zero
                         b += high if code > end_of_time else zero
                         inner[i], outer[i] = a, b
             looks += 1

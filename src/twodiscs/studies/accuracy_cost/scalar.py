@@ -24,7 +24,6 @@ COUNTED = (
     "any_wall",
 )
 N = len(COUNTED)
-RIGHT, TOP = COUNTED.index("right_wall"), COUNTED.index("top_wall")
 COLLISIONS, ANY_WALLS = COUNTED.index("disc_collision"), COUNTED.index("any_wall")
 
 
@@ -34,13 +33,9 @@ def simulated_events(counts):
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, duration, sigma, draw, sides, blocked):
-    """Return (sums, products, eligible) of ``COUNTED`` as ``counting.count_blocks`` does.
-
-    ``blocked`` says whether only starts with x1 > x2 see the right wall, and with y1 > y2 the top.
-    """
+def count_blocks(seed, first, stop, replicas, duration, sigma, draw, sides):
+    """Return (sums, products) of ``COUNTED`` as ``counting.count_blocks`` does."""
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    eligible = np.zeros(N, np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):
         draw_starts(open_stream(seed, block), draw, sides[0], sides[1], starts)
@@ -52,20 +47,15 @@ def count_blocks(seed, first, stop, replicas, duration, sigma, draw, sides, bloc
             )  # fmt: skip
             for e in range(N):
                 sums[e] += counts[e]
-                eligible[e] += 1
                 for f in range(e, N):
                     products[e, f] += counts[e] * counts[f]
-            if blocked[0] and start[0] < start[2]:
-                eligible[RIGHT] -= 1
-            if blocked[1] and start[1] < start[3]:
-                eligible[TOP] -= 1
-    return sums, products, eligible
+    return sums, products
 
 
 @compiled
 def count_replica(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sigma):
     """Return the counts of one trajectory of length ``remaining``, in the order of ``COUNTED``."""
-    vertical, horizontal, collisions, right, top, walls = 0, 0, 0, 0, 0, 0
+    vertical, horizontal, collisions, beside, above = 0, 0, 0, 0, 0
     while True:
         time, event = remaining, 0
         if u1 != 0.0:
@@ -102,11 +92,9 @@ def count_replica(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sig
         y2 += v2 * time
         if event == 1:
             x1 = half_x if u1 > 0.0 else -half_x
-            right += u1 > 0.0
             u1 = -u1
         elif event == 2:
             y1 = half_y if v1 > 0.0 else -half_y
-            top += v1 > 0.0
             v1 = -v1
         elif event == 3:
             x2 = half_x if u2 > 0.0 else -half_x
@@ -118,7 +106,7 @@ def count_replica(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sig
         vertical += (dy < 0.0) != (after_y < 0.0)
         horizontal += (dx < 0.0) != (after_x < 0.0)
         if event == 0:
-            return vertical, horizontal, collisions, right, top, walls
+            return vertical, horizontal, collisions, beside, above, beside + above
         if event == 5:
             collisions += 1
             exchange = (after_x * du + after_y * dv) / (after_x * after_x + after_y * after_y)
@@ -126,5 +114,7 @@ def count_replica(x1, y1, x2, y2, u1, v1, u2, v2, remaining, half_x, half_y, sig
             v1 -= exchange * after_y
             u2 += exchange * after_x
             v2 += exchange * after_y
+        elif event % 2:
+            beside += 1
         else:
-            walls += 1
+            above += 1

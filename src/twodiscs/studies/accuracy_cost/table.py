@@ -23,13 +23,13 @@ class AccuracyCost(Table):
     """
     rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), surface,
     quadrature, closed_form, exact; lockstep, scalar, single_precision, time_step. radius: lockstep
-    (speed and error of a pilot), poisson (exact rates, one speed, the noise of a Poisson process),
-    paid (run to the end)
+    (speed and error of a pilot), strip (the same from starts next to a rare hop), poisson (exact
+    rates, one speed, the noise of a Poisson process), paid (run to the end)
     """
     setting: Column(float, "see method")
     """
-    ε of a shell, Δt of time steps. precision: 1 − r/r_max, and for the energy the events of a
-    trajectory
+    ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, and for the
+    energy the events of a trajectory
     """
     work: COUNT
     """samples, points, nodes, wall and disc events, or time steps"""

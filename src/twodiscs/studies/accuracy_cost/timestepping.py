@@ -20,8 +20,10 @@ from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 from twodiscs.studies.accuracy_cost.scalar import N
 
-#: A lane counts in one double: a field of eight bits for each of ``COUNTED``.
+#: A lane counts in one double: a field of eight bits for each of ``COUNTED``. Hits of the walls of
+#: one axis are wall hits, too.
 VERTICAL, HORIZONTAL, COLLISION, RIGHT, TOP, ANY = (256.0**i for i in range(N))
+BESIDE, ABOVE = RIGHT + ANY, TOP + ANY
 
 #: Steps between two readings of the packed counts: a step has four walls at most.
 STEPS = 60
@@ -66,12 +68,10 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
                     x2[i], y2[i] = x2[i] + u2[i] * step, y2[i] + v2[i] * step
                     wall_x1, wall_y1 = bounced(x1[i], u1[i], half_x), bounced(y1[i], v1[i], half_y)
                     wall_x2, wall_y2 = bounced(x2[i], u2[i], half_x), bounced(y2[i], v2[i], half_y)
-                    tally += RIGHT if wall_x1 & (u1[i] > 0.0) else 0.0
-                    tally += TOP if wall_y1 & (v1[i] > 0.0) else 0.0
-                    tally += ANY if wall_x1 else 0.0
-                    tally += ANY if wall_y1 else 0.0
-                    tally += ANY if wall_x2 else 0.0
-                    tally += ANY if wall_y2 else 0.0
+                    tally += BESIDE if wall_x1 else 0.0
+                    tally += ABOVE if wall_y1 else 0.0
+                    tally += BESIDE if wall_x2 else 0.0
+                    tally += ABOVE if wall_y2 else 0.0
                     u1[i], v1[i] = -u1[i] if wall_x1 else u1[i], -v1[i] if wall_y1 else v1[i]
                     u2[i], v2[i] = -u2[i] if wall_x2 else u2[i], -v2[i] if wall_y2 else v2[i]
                     dx, dy = x1[i] - x2[i], y1[i] - y2[i]

@@ -21,7 +21,7 @@ FARTHEST = 0.83
 #: Ends of the dashes that mark exact densities at 0, in mean times.
 DASH = 0.0, 0.3
 
-#: Fits with a smaller p than this are no exponentials.
+#: Hazards whose χ² or trend has a smaller p than this are not constant.
 SMALLEST_P = 1e-3
 
 
@@ -65,16 +65,17 @@ def _rates(axes, rows):
         axes.errorbar(
             middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
         )
-        for row in own:
-            if row["quantity"] == "rate":
-                ends = row["first"] / mean, row["last"] / mean
-                fit = {"ls": "-" if row["p"] > SMALLEST_P else (0, (1, 1)), "zorder": 2}
-                axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
+        tests = [row for row in own if row["quantity"] in ("rate", "trend")]
+        constant = all(row["p"] > SMALLEST_P for row in tests)
+        for row in tests[:1]:
+            ends = row["first"] / mean, min(row["last"] / mean, LONGEST)
+            fit = {"ls": "-" if constant else (0, (1, 1)), "zorder": 2}
+            axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
         zero = mean * tails.density_at_zero(box.scene(radius), event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     late = np.linspace(6, LONGEST, 40)
-    axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (1, 1.5)), label=r"$3\tau/t$")
+    axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
     axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
     axes.set_ylabel(r"rate of hops $\times\,\tau$")
     axes.legend(loc="upper right")

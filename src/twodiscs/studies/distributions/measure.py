@@ -12,11 +12,12 @@ infinite, and only the first form can be tested.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.comparison.estimates import Estimate, mean_of
-from twodiscs.comparison.scores import chi2_p, student_deviate
+from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box
@@ -44,11 +45,11 @@ EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**23, 2**22, 2**19
 #: First passages are cut at this many mean times, where they are tested.
 CUT = 20
 
-#: The rate is fitted from so many mean times on, over so many bins of some τ/16 each.
-FIRST, SPAN = 4, 64
+#: The hazard is tested for constancy from so many mean times on, to its last bin.
+FIRST = 4
 
-#: A fit needs so many counts, and a bin of its test of so many on average.
-FEWEST, PER_BIN = 1000, 50
+#: A test of constancy needs so many intervals that end.
+FEWEST = 1000
 
 #: Relative distances below the radius at which a hop becomes blocked.
 DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
@@ -93,47 +94,46 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
     return found
 
 
-# Laws fitted to counts ------------------------------------------------------------------------
+# What counts tell ------------------------------------------------------------------------------
 
 
-def _whole_counts(counts, fewest):
-    values = [whole("count", n, 0) for n in counts]
-    if len(values) < fewest:
-        raise InputError(f"counts must be of at least {fewest} bins, not {len(values)}")
-    return np.array(values, float)
+def constant_hazard(bins):
+    """Fit one hazard rate to ``bins`` and test whether it is one, and whether it has a trend.
 
-
-def exponential_rate(counts, width):
-    """Fit an exponential law to the ``counts`` of successive bins of equal ``width``.
-
-    It is that of a maximum of the likelihood within the bins, whatever lies outside them. Returns
-    (rate, chi2, degrees): the rate as an ``Estimate`` with the error from Fisher's information, and
-    Pearson's χ² of the law with its degrees of freedom, from bins joined to ``PER_BIN`` counts on
-    average. Raises ``InputError`` for fewer than ``FEWEST`` counts, and for counts that are not
-    those of at least three bins.
+    ``bins`` are successive ones as ``hazard`` yields them. With n intervals alive at the beginning
+    of a bin of width w, the number that end in it is binomial, n (1 − e^{−λw}), given what came
+    before: so bins are as good as independent, and what outlasts the last one is censored. Returns
+    (rate, trend, chi2, degrees): λ of the largest likelihood as an ``Estimate`` with the error from
+    Fisher's information, β of a rate ∝ t^β as one step of Newton's from β = 0 finds it, Pearson's
+    χ² of a constant rate and its degrees of freedom. Raises ``InputError`` for fewer than three
+    bins or ``FEWEST`` ends.
     """
-    n = _whole_counts(counts, 3)
-    width = length("width", width)
-    total, bins = n.sum(), np.arange(n.size)
-    if total < FEWEST:
-        raise InputError(f"counts must be at least {FEWEST} in all, not {int(total)}")
-    middle = (n.size - 1) / 2
-    goal, slope = (n @ bins) / total, 0.0
-    for _ in range(60):  # Newton; the law of the bin is ∝ exp(−slope × bin)
-        law = np.exp(-slope * (bins - middle))
-        law /= law.sum()
-        mean = law @ bins
-        variance = law @ (bins - mean) ** 2
-        step = (mean - goal) / variance
-        slope += math.copysign(min(abs(step), 4 / n.size), step)
-    together = 1
-    while 2 * together <= n.size // 4 and total * together < PER_BIN * n.size:
-        together *= 2
-    edges = np.arange(0, n.size, together)
-    seen, due = np.add.reduceat(n, edges), total * np.add.reduceat(law, edges)
-    chi2 = float(np.sum((seen - due) ** 2 / due))
-    error = 1 / math.sqrt(total * variance)
-    return Estimate(slope / width, error / width, int(total)), chi2, edges.size - 2
+    bins = list(bins)
+    ends = sum(one.count for one in bins)
+    if len(bins) < 3 or ends < FEWEST:
+        raise InputError(
+            f"bins must be at least 3 with {FEWEST} ends in all, not {len(bins)} with {ends}"
+        )
+    first, last, _, _, count, alive = np.array(bins, float).T
+    width, time = last - first, np.log((first + last) / 2)
+    rate = ends / float((alive - count / 2) @ width)
+    for _ in range(30):  # Newton, with the information for the slope; the likelihood is concave
+        weight = alive * width**2 / np.expm1(rate * width)
+        score = width * (count / -np.expm1(-rate * width) - alive)
+        rate += float(score.sum() / weight.sum())
+    information = float(weight.sum())
+    # In units of ln λ, the bins have the information λ² weight.
+    spread = rate**2 * weight
+    centred = time - spread @ time / spread.sum()
+    precision = float(spread @ centred**2)
+    trend = float(rate * score @ centred) / precision
+    chi2 = float(np.sum(score**2 / weight))
+    return (
+        Estimate(rate, 1 / math.sqrt(information), ends),
+        Estimate(trend, 1 / math.sqrt(precision), ends),
+        chi2,
+        len(bins) - 1,
+    )
 
 
 def density_at_zero(counts, intervals, width):
@@ -145,7 +145,9 @@ def density_at_zero(counts, intervals, width):
     when they hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
     ``intervals``.
     """
-    n = _whole_counts(counts, 2)[:2]
+    n = np.array([whole("count", n, 0) for n in counts[:2]], float)
+    if n.size < 2:
+        raise InputError(f"counts must be of at least 2 bins, not {n.size}")
     intervals, width = whole("intervals", intervals), length("width", width)
     if n.sum() > intervals:
         raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
@@ -155,8 +157,19 @@ def density_at_zero(counts, intervals, width):
     return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
 
 
+class Bin(NamedTuple):
+    """How often a hop comes between ``first`` and ``last``: ``count`` of those ``alive`` before."""
+
+    first: float
+    last: float
+    rate: float
+    error: float
+    count: int
+    alive: int
+
+
 def hazard(counts, intervals, width):
-    """Yield (first, last, rate, error, count): how often the hop comes after a time without it.
+    """Yield a ``Bin`` each: how often the hop comes after a time without it.
 
     The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with S the share of
     ``intervals`` that last longer, and a binomial error. Bins are joined until as wide as
@@ -172,7 +185,8 @@ def hazard(counts, intervals, width):
             return
         time = (i + 1 - left) * width
         error = math.sqrt(1 / rest - 1 / alive) / time
-        yield left * width, (i + 1) * width, math.log(alive / rest) / time, error, waiting
+        rate = math.log(alive / rest) / time
+        yield Bin(left * width, (i + 1) * width, rate, error, waiting, alive)
         left, alive, waiting = i + 1, rest, 0
 
 
@@ -236,16 +250,24 @@ def measured(scene, hop, seed, events=EVENTS):
         due = tails.density_at_zero(scene, hop)
         row = _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width)
         yield row | {"z": (zero.value - due) / zero.stderr}
-    first = math.ceil(FIRST * mean / width)
-    window = counts[first : first + SPAN]
-    if window.sum() >= FEWEST:
-        fit, chi2, degrees = exponential_rate(window, width)
-        ends = {"first": first * width, "last": (first + SPAN) * width}
-        test = {"chi2": chi2, "degrees": degrees, "p": chi2_p(chi2, degrees)}
-        row = _row("rate", fit.n, fit, 1 / mean, **ends) | test
-        yield row | {"z": (fit.value - 1 / mean) / fit.stderr}
-    for first, last, value, error, count in hazard(counts, intervals, width):
-        yield _row("hazard", count, Estimate(value, error, count), None, first=first, last=last)
+    bins = list(hazard(counts, intervals, width))
+    yield from _constancy([one for one in bins if one.first >= FIRST * mean], mean)
+    for one in bins:
+        estimate = Estimate(one.rate, one.error, one.count)
+        yield _row("hazard", one.count, estimate, None, first=one.first, last=one.last)
+
+
+def _constancy(bins, mean):
+    """Yield the rows on whether the hazard is constant over ``bins``, if they are enough."""
+    if len(bins) < 3 or sum(one.count for one in bins) < FEWEST:
+        return
+    fit, trend, chi2, degrees = constant_hazard(bins)
+    ends = {"first": bins[0].first, "last": bins[-1].last}
+    test = {"chi2": chi2, "degrees": degrees, "p": chi2_p(chi2, degrees)}
+    row = _row("rate", fit.n, fit, 1 / mean, **ends) | test
+    yield row | {"z": (fit.value - 1 / mean) / fit.stderr}
+    z = trend.value / trend.stderr
+    yield _row("trend", trend.n, trend, 0.0, **ends) | {"z": z, "p": two_sided_p(z)}
 
 
 def rows(scenes, seed, events=EVENTS):

@@ -24,14 +24,15 @@ class Distributions(Table):
     quantity: TEXT
     """
     mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ where last is c;
-    density_at_zero: p(0) of p(0) − at² in the first two bins of T; rate: exponential fitted to T by
-    maximum likelihood from four mean times on; hazard: rate of hops when there was none since the
-    last one, ln[P(T > first)/P(T > last)]/(last − first)
+    density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: rate of hops when there
+    was none since the last one, ln[P(T > first)/P(T > last)]/(last − first); rate: one hazard
+    fitted by maximum likelihood to all bins from four mean times on, what is longer censored;
+    trend: β of a hazard ∝ t^β there
     """
     first: TIME
-    """where the bins or the fit begin"""
+    """where the bin or the fit begins"""
     last: TIME
-    """where they end; for first_passage the cut c"""
+    """where it ends; for first_passage the cut c"""
     count: COUNT
     """intervals or first passages; those within the fit or bin"""
     estimate: SEE_QUANTITY
@@ -42,7 +43,7 @@ class Distributions(Table):
     """
     mean: τ; squared_cv: 1, that of an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + CV²)/2, or
     ⟨T² − (T − c)₊²⟩/(2τ) where cut, as measured; density_at_zero: exact; rate: 1/τ, which it would
-    be if intervals were exponential
+    be if intervals were exponential; trend: 0
     """
     reference_stderr: AS_ESTIMATE
     """its standard error where it is measured"""
@@ -52,8 +53,11 @@ class Distributions(Table):
     empty where a cubic tail leaves F and T² without a variance: see the row with the cut
     """
     chi2: NUMBER
-    """Pearson's χ² of the exponential law within its window"""
+    """Pearson's χ² of a constant hazard"""
     degrees: COUNT
     """its degrees of freedom"""
     p: NUMBER
-    """probability of a larger χ² if the law is exponential there"""
+    """
+    rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. There is a
+    plateau for all that is seen where neither is small
+    """

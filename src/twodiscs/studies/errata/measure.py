@@ -210,8 +210,10 @@ def judge(statement, found=None, exact=None):
         verdict = "right" if all(right) else "right-in-range" if any(right) else "wrong"
         return {
             "label": statement.label,
+            "number": statement.number or None,
             "place": statement.place,
             "verdict": verdict,
+            "severity": statement.severity,
             "ratio": None if told.ratio is None else float(told.ratio),
             "radius": told.radius,
             "correction": statement.correction,

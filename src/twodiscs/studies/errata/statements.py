@@ -148,7 +148,9 @@ class Statement:
     ``MpScene``; without a ``truth`` it says whether a claim holds. ``quantity`` is what the tables
     measure of it; the formula enters there ``share`` times, so that ``truth`` is that fraction of
     it unless given. Without ``where`` the radius does not matter. ``correction`` says what is right
-    instead, or what else to know.
+    instead, or what else to know, with formulas between backticks. ``number`` is that of the
+    equation in the PDF of arXiv; ``severity`` is major (numbers come out wrong), minor (a range or
+    a part) or slip (nothing else is wrong for it).
     """
 
     label: str
@@ -159,6 +161,8 @@ class Statement:
     correction: str | None = None
     share: int = 1
     truth: Callable | None = None
+    number: str = ""
+    severity: str | None = None
 
     def true(self, q):
         """Return what is true of a ``MpScene``."""
@@ -197,13 +201,14 @@ def _half_of_before(q):
 
 
 STATEMENTS = (
-    Statement("cambiocoor01", "II", (), published.rotation, truth=lambda q: mpf(1)),
+    Statement("cambiocoor01", "II", (), published.rotation, truth=lambda q: mpf(1), number="1"),
     Statement(
         "axis of the cylinder",
         "II",
         (),
         cylinder_is_round_a_line,
-        correction="the axis is the plane x = y = 0 of all X and Y, not a diagonal in it",
+        correction="the axis is the plane `x = y = 0` of all `X` and `Y`, not a diagonal in it",
+        severity="slip",
     ),
     Statement(
         "meanfreetime",
@@ -211,6 +216,7 @@ STATEMENTS = (
         ANY,
         _time_from(reference.disc_collision_area, 1),
         "disc_collision_time",
+        number="2",
     ),
     Statement(
         "area of the sphere",
@@ -218,6 +224,7 @@ STATEMENTS = (
         (),
         lambda q: published.sphere(4),
         truth=lambda q: reference.sphere(4),
+        number="3",
     ),
     Statement(
         "condchoque",
@@ -226,24 +233,41 @@ STATEMENTS = (
         _time_from(reference.vertical_hop_area, 2),
         "vertical_hop_time",
         "taken with the factor s = 2 of a surface that is crossed from both sides",
+        number="4",
     ),
-    Statement("volindic", "IV A", ANY, published.volume_indicator, "volume"),
-    Statement("integraltotal", "IV A", ANY, published.volume_separations, "volume"),
-    Statement("V_free, X and Y done", "IV A", ANY, published.volume_quadrant, "volume"),
+    Statement("volindic", "IV A", ANY, published.volume_indicator, "volume", number="5"),
+    Statement("integraltotal", "IV A", ANY, published.volume_separations, "volume", number="7"),
+    Statement("V_free, X and Y done", "IV A", ANY, published.volume_quadrant, "volume", number="9"),
     Statement(
-        "I_1", "IV A", ALL, published.volume_i1, "volume", share=16, truth=reference.beside_volume
+        "I_1",
+        "IV A",
+        ALL,
+        published.volume_i1,
+        "volume",
+        share=16,
+        truth=reference.beside_volume,
+        number="11",
     ),
     Statement(
-        "I_2", "IV A", ALL, published.volume_i2, "volume", share=16, truth=reference.beyond_volume
+        "I_2",
+        "IV A",
+        ALL,
+        published.volume_i2,
+        "volume",
+        share=16,
+        truth=reference.beyond_volume,
+        number="13",
     ),
-    Statement("volumeabd", "IV A", ALL, published.volume_abd, "volume"),
+    Statement("volumeabd", "IV A", ALL, published.volume_abd, "volume", number="14"),
     Statement(
         "volumewhd",
         "IV A",
         ALL,
         published.volume_whd,
         "volume",
-        "two terms differ: (32/3)(w + h − 4r)r³ for (32/3)(w + h − 2r)r³, and −8r⁴ for −8⁴",
+        "two terms differ: `(32/3)(w + h − 4r)r³` for `(32/3)(w + h − 2r)r³`, and `−8r⁴` for `−8⁴`",
+        number="16",
+        severity="major",
     ),
     Statement(
         "factor of 2 or 4",
@@ -252,6 +276,7 @@ STATEMENTS = (
         _quarter_time,
         "right_wall_time",
         "only 2: of four components, disc 1 reaches a given wall in two, with half the volume",
+        severity="major",
     ),
     Statement(
         "VolumenCasoFeo",
@@ -259,8 +284,11 @@ STATEMENTS = (
         VERTICAL,
         published.volume_intermediate,
         "volume",
-        "16a²b² + 16b²r² + (64/3)ar³ − (8/3)b⁴ − 32abr² asin(b/r) − (32/3)a(2r² + b²)√(r² − b²); "
-        "the printed form is complex where a > 2r, as in long boxes",
+        "`16a²b² + 16b²r² + (64/3)ar³ − (8/3)b⁴ − 32abr² arcsin(b/r) − (32/3)a(2r² + b²)√(r² − "
+        "b²)`; "
+        "the printed form is complex where `a > 2r`, as in long boxes",
+        number="17",
+        severity="major",
     ),
     Statement(
         "eq:surface-area",
@@ -268,7 +296,10 @@ STATEMENTS = (
         HOPS,
         published.surface_measure,
         "vertical_hop_area",
-        "a factor ‖∇g‖ is missing: √2 for g = y1 − y2, as here, and 4√2 r for disc collisions",
+        "a factor `‖∇g‖` is missing: `√2` for `g = y_1 − y_2`, as here, and `4√2 r` for disc "
+        "collisions",
+        number="18",
+        severity="major",
     ),
     Statement(
         "eq:surface-dirac",
@@ -277,15 +308,20 @@ STATEMENTS = (
         lambda q: reference.disc_collision_area(q) / published.contact_norm(q),
         correction="taken for disc collisions",
         truth=reference.contact_density,
+        number="19",
     ),
-    Statement("A_hop, integral", "IV B 1", HOPS, published.hop_integral, "vertical_hop_area"),
+    Statement(
+        "A_hop, integral", "IV B 1", HOPS, published.hop_integral, "vertical_hop_area", number="20"
+    ),
     Statement(
         "AreaH",
         "IV B 1",
         HOPS,
         published.hop_area,
         "vertical_hop_area",
-        "8√2 b(a − r)², as appendix A has it",
+        "`8√2 b(a − r)²`, as appendix A has it",
+        number="21",
+        severity="major",
     ),
     Statement(
         "caption on the hop area",
@@ -293,7 +329,8 @@ STATEMENTS = (
         VERTICAL,
         lambda q: mpf(0),
         "vertical_hop_area",
-        "the area vanishes from w/4 on, 3/8 in the box of the figure; 1/4 is h/4",
+        "the area vanishes from `w/4` on, 3/8 in the box of the figure; 1/4 is `h/4`",
+        severity="minor",
     ),
     Statement("g_coll", "IV B 2", (), contact_is_zero),
     Statement("gradient of g_coll", "IV B 2", (), gradient_is_right),
@@ -303,19 +340,23 @@ STATEMENTS = (
         HOPS,
         published.collision_area,
         "disc_collision_area",
-        "for r ≤ min(w, h)/4, not w/4; beyond that app:colgeneral",
+        "for `r ≤ min(w, h)/4`, not `w/4`; beyond that app:colgeneral",
+        number="22",
+        severity="minor",
     ),
     Statement("g_wall", "IV B 3", (), wall_is_zero),
-    Statement("areaindic", "IV B 3", ANY, published.wall_integral, "right_wall_area"),
-    Statement("areax1p", "IV B 3", ALL, published.wall_area, "right_wall_area"),
-    Statement("areawalls", "IV B 3", ALL, published.walls_area, "any_wall_area"),
+    Statement("areaindic", "IV B 3", ANY, published.wall_integral, "right_wall_area", number="23"),
+    Statement("areax1p", "IV B 3", ALL, published.wall_area, "right_wall_area", number="24"),
+    Statement("areawalls", "IV B 3", ALL, published.walls_area, "any_wall_area", number="25"),
     Statement(
         "hoptau",
         "V A",
         ALL,
         published.hop_time,
         "vertical_hop_time",
-        f"(3π/(4√2)) N/(b(a − r)²), {NUMERATOR}: √2 once",
+        f"`(3π/(4√2)) N/(b(a − r)²)`, `{NUMERATOR}`: `√2` once",
+        number="26",
+        severity="major",
     ),
     Statement(
         "hoptaulimit",
@@ -323,7 +364,9 @@ STATEMENTS = (
         ("no radius",),
         published.hop_time_small,
         "vertical_hop_time",
-        "3πh/(4√2)",
+        "`3πh/(4√2)`",
+        number="27",
+        severity="major",
     ),
     Statement(
         "hop time near w/4",
@@ -331,8 +374,9 @@ STATEMENTS = (
         ("w/4",),
         published.hop_time_threshold,
         "vertical_hop_time",
-        "the exponent −2 is right; the constant has the volume at w/4, not that of the prism: "
-        "(3π/4) V(w/4)/[16√2 (h − w/2)(w/4 − r)²]",
+        "the exponent −2 is right; the constant has the volume at `w/4`, not that of the prism: "
+        "`(3π/4) V(w/4)/(16√2 (h − w/2)(w/4 − r)²)`",
+        severity="major",
     ),
     Statement(
         "colltau",
@@ -340,24 +384,33 @@ STATEMENTS = (
         HOPS,
         published.collision_time,
         "disc_collision_time",
-        "for r ≤ min(w, h)/4, not w/4",
+        "for `r ≤ min(w, h)/4`, not `w/4`",
+        number="28",
+        severity="minor",
     ),
     Statement(
-        "colltaulim0", "V B", ("no radius",), published.collision_time_small, "disc_collision_time"
+        "colltaulim0",
+        "V B",
+        ("no radius",),
+        published.collision_time_small,
+        "disc_collision_time",
+        number="29",
     ),
     Statement(
         "collision time goes to zero",
         "V B",
         ("largest radius, w < 2h", "largest radius, w > 2h"),
         collision_time_vanishes,
-        correction="for w ≤ 2h; in longer boxes it tends to (3π/(4√2))(w − 2h)",
+        correction="for `w ≤ 2h`; in longer boxes it tends to `(3π/(4√2))(w − 2h)`",
+        severity="minor",
     ),
     Statement(
         "collision time is smooth",
         "V B",
         ("h/4",),
         collision_time_is_smooth,
-        correction="it is differentiable once: beyond h/4 the area gains a term ∝ (4r − h)^(3/2)",
+        correction="it is differentiable once: beyond `h/4` the area gains a term `∝ (4r − h)^(3/2)`",
+        severity="minor",
     ),
     Statement(
         "impactwall",
@@ -365,7 +418,9 @@ STATEMENTS = (
         ALL,
         published.wall_time,
         "right_wall_time",
-        f"(3π/2) N/(ab² − (π/2)br² + (2/3)r³), {NUMERATOR}: no √2, and 2/3 for 16/3",
+        f"`(3π/2) N/(ab² − (π/2)br² + (2/3)r³)`, `{NUMERATOR}`: no `√2`, and 2/3 for 16/3",
+        number="30",
+        severity="major",
     ),
     Statement(
         "wall time for small discs",
@@ -380,8 +435,9 @@ STATEMENTS = (
         "VI",
         HOPS,
         hop_tails_are_exponential,
-        correction="those of vertical hops fall as t⁻³ for r < h/4, where drifts along x avoid "
-        "them; beyond, they look exponential as far as is seen",
+        correction="those of vertical hops fall as `t^(−3)` for `r < h/4`, where drifts along x avoid "
+        "them; beyond, some look exponential as far as is seen",
+        severity="major",
     ),
     Statement(
         "VolumenGeneral",
@@ -391,6 +447,7 @@ STATEMENTS = (
         "volume",
         share=-16,
         truth=_scaled(reference.excluded_volume, mpf(1) / 16),
+        number="A1",
     ),
     Statement("list of regimes", "A 1", (), regimes_are_as_listed),
     Statement(
@@ -408,6 +465,7 @@ STATEMENTS = (
         "volume",
         share=-16,
         truth=_scaled(reference.sector_volume, mpf(1) / 16),
+        number="A2",
     ),
     Statement(
         "V_h, ρ done",
@@ -417,6 +475,7 @@ STATEMENTS = (
         "volume",
         share=-16,
         truth=_scaled(reference.sector_volume, mpf(1) / 16),
+        number="A3",
     ),
     Statement(
         "Volrtheta",
@@ -426,6 +485,7 @@ STATEMENTS = (
         "volume",
         share=-16,
         truth=_scaled(reference.sector_volume, mpf(1) / 16),
+        number="A4",
     ),
     Statement(
         "app:voldot",
@@ -435,6 +495,7 @@ STATEMENTS = (
         "volume",
         share=-1,
         truth=reference.upper_volume,
+        number="A5",
     ),
     Statement(
         "V_l",
@@ -444,28 +505,32 @@ STATEMENTS = (
         "volume",
         share=-1,
         truth=reference.lower_volume,
+        number="A6",
     ),
     Statement(
         "range of two components",
         "A 1",
         VERTICAL,
         two_components_are_there,
-        correction="h/4 < r < w/4: the two ends changed places",
+        correction="`h/4 < r < w/4`: the two ends changed places",
+        severity="slip",
     ),
     Statement(
         "range of four components",
         "A 1",
         NONE,
         four_components_are_there,
-        correction="w/4 ≤ r, for w ≥ h",
+        correction="`w/4 ≤ r`, for `w ≥ h`",
+        severity="slip",
     ),
-    Statement("ahopcart", "A 2 a", HOPS, published.hop_integral, "vertical_hop_area"),
+    Statement("ahopcart", "A 2 a", HOPS, published.hop_integral, "vertical_hop_area", number="A7"),
     Statement(
         "hop surface orthogonal to Y",
         "A 2 a",
         (),
         hop_surface_is_across_y,
-        correction="it is orthogonal to the y axis and contains the direction of Y",
+        correction="it is orthogonal to the `y` axis and contains the direction of `Y`",
+        severity="slip",
     ),
     Statement(
         "pasoraro",
@@ -473,8 +538,10 @@ STATEMENTS = (
         HOPS,
         published.hop_area_fourfold,
         "vertical_hop_area",
-        "y starts at −b√2; as printed, without the sign, its range is empty",
+        "`y` starts at `−b√2`; as printed, without the sign, its range is empty",
         share=8,
+        number="A8",
+        severity="slip",
     ),
     Statement(
         "pasoraro, second line",
@@ -482,8 +549,9 @@ STATEMENTS = (
         HOPS,
         published.hop_area_twofold,
         "vertical_hop_area",
-        "the upper limit of y lost its b, which the delta function does not notice",
+        "the upper limit of `y` lost its `b`, which the delta function does not notice",
         share=8,
+        number="A9",
     ),
     Statement(
         "pasoraro, third and fourth line",
@@ -492,6 +560,7 @@ STATEMENTS = (
         published.hop_area_line,
         "vertical_hop_area",
         share=8,
+        number="A10, A11",
     ),
     Statement(
         "pasoraro, fifth line",
@@ -500,8 +569,11 @@ STATEMENTS = (
         published.hop_area_primitive,
         "vertical_hop_area",
         share=8,
+        number="A12",
     ),
-    Statement("A_hopp", "A 2 a", HOPS, published.hop_area_appendix, "vertical_hop_area"),
+    Statement(
+        "A_hopp", "A 2 a", HOPS, published.hop_area_appendix, "vertical_hop_area", number="A13"
+    ),
     Statement(
         "A_col, fourfold integral",
         "A 2 b",
@@ -509,6 +581,7 @@ STATEMENTS = (
         published.collision_area_fourfold,
         "disc_collision_area",
         share=16,
+        number="A14",
     ),
     Statement(
         "A_col, twofold integral",
@@ -517,6 +590,7 @@ STATEMENTS = (
         published.collision_area_twofold,
         "disc_collision_area",
         share=16,
+        number="A15",
     ),
     Statement(
         "polar coordinates",
@@ -525,6 +599,7 @@ STATEMENTS = (
         published.circle_polar,
         correction="the delta function in polar coordinates, taken for the length of the arc",
         truth=lambda q: reference.on_circle(q, lambda x, y: mpf(1)),
+        number="A16, A17",
     ),
     Statement(
         "app:colgeneral, first line",
@@ -532,8 +607,10 @@ STATEMENTS = (
         ANY,
         published.collision_area_polar,
         "disc_collision_area",
-        "ρ has to pass √2 r, where the delta function stands; as printed it ends at r",
+        "`ρ` has to pass `√2 r`, where the delta function stands; as printed it ends at `r`",
         share=16,
+        number="A18",
+        severity="slip",
     ),
     Statement(
         "app:colgeneral, second line",
@@ -542,9 +619,15 @@ STATEMENTS = (
         published.collision_area_angle,
         "disc_collision_area",
         share=16,
+        number="A19",
     ),
     Statement(
-        "app:colgeneral", "A 2 b", ANY, published.collision_area_appendix, "disc_collision_area"
+        "app:colgeneral",
+        "A 2 b",
+        ANY,
+        published.collision_area_appendix,
+        "disc_collision_area",
+        number="A20",
     ),
     Statement(
         "app:colgeneral with b = 0",
@@ -552,7 +635,9 @@ STATEMENTS = (
         ALL,
         published.collision_area_substituted,
         "disc_collision_area",
-        "β = 0 is meant",
+        "`β = 0` is meant",
+        number="A20",
+        severity="slip",
     ),
     Statement(
         "app:colgeneral as a quarter",
@@ -561,8 +646,17 @@ STATEMENTS = (
         _scaled(published.collision_area_appendix, 4),
         "disc_collision_area",
         "it is the total area, not a quarter of it",
+        number="A20",
+        severity="minor",
     ),
-    Statement("A_(x2=a), integrals", "A 2 c", ANY, published.wall_integral, "right_wall_area"),
+    Statement(
+        "A_(x2=a), integrals",
+        "A 2 c",
+        ANY,
+        published.wall_integral,
+        "right_wall_area",
+        number="A21",
+    ),
     Statement(
         "coordinates at the wall",
         "A 2 c",
@@ -570,6 +664,7 @@ STATEMENTS = (
         published.wall_coordinates,
         correction="with y_2 for y_y; taken for the factor √2 that they bring",
         truth=lambda q: mp.sqrt(2),
+        number="A22",
     ),
     Statement(
         "areachoquexy",
@@ -577,6 +672,7 @@ STATEMENTS = (
         ANY,
         published.wall_rotated,
         "right_wall_area",
+        number="A23",
     ),
     Statement(
         "areachoquexy, second line",
@@ -584,6 +680,7 @@ STATEMENTS = (
         ANY,
         published.wall_rotated_twofold,
         "right_wall_area",
+        number="A24",
     ),
     Statement(
         "vertical hops excluded",
@@ -592,6 +689,7 @@ STATEMENTS = (
         lambda q: mpf(0),
         "vertical_hop_area",
         "horizontal hops are what is excluded there",
+        severity="slip",
     ),
     Statement(
         "A_(x2=a), whole less excluded",
@@ -600,6 +698,7 @@ STATEMENTS = (
         published.wall_whole_less_excluded,
         "right_wall_area",
         "the dY of the last integral is left over from the line before",
+        number="A25, A26",
     ),
     Statement(
         "A_whole",
@@ -607,8 +706,10 @@ STATEMENTS = (
         ANY,
         published.wall_whole,
         "right_wall_area",
-        "A_whole = 8ab², without the 1/4",
+        "`A_w = 8ab²` for the whole, without the 1/4",
         truth=reference.whole_wall,
+        number="A27",
+        severity="minor",
     ),
     Statement(
         "A_sector",
@@ -618,6 +719,7 @@ STATEMENTS = (
         "right_wall_area",
         share=-1,
         truth=reference.sector_wall,
+        number="A28",
     ),
     Statement(
         "A_u",
@@ -627,6 +729,7 @@ STATEMENTS = (
         "right_wall_area",
         share=-1,
         truth=reference.upper_wall,
+        number="A29",
     ),
     Statement(
         "lower triangle of the wall",
@@ -634,9 +737,10 @@ STATEMENTS = (
         NONE,
         published.wall_lower,
         "right_wall_area",
-        "8ab√(r² − a²) − (8/3)a(r² − a²): the weight is not symmetric in x and y",
+        "`8ab√(r² − a²) − (8/3)a(r² − a²)`: the weight is not symmetric in `x` and `y`",
         share=-1,
         truth=reference.lower_wall,
+        severity="major",
     ),
     Statement(
         "limit of thin shells",
@@ -644,7 +748,9 @@ STATEMENTS = (
         HOPS,
         lambda q: published.hop_shell(q, NEAR),
         "vertical_hop_area",
-        "multiply by ‖∇g‖, as the text around it says in other words; a shell of both sides is "
-        "divided by 2ε (here |y1 − y2| ≤ ε); for walls g is a − x1, for x1 − a is never positive",
+        "multiply by `‖∇g‖`, as the text around it says in other words; a shell of both sides is "
+        "divided by `2ε` (here `|y_1 − y_2| ≤ ε`); for walls `g` is `a − x_1`, for `x_1 − a` is "
+        "never positive",
+        severity="major",
     ),
 )

@@ -8,10 +8,17 @@ class Errata(Table):
 
     label: TEXT
     """its label in the source, or a short name"""
+    number: TEXT
+    """of the equation in the PDF of arXiv, as LaTeX counts it; empty where it has none"""
     place: TEXT
     """section or appendix"""
     verdict: TEXT
     """right; wrong; right-in-range: right in some of the regimes that it is stated for"""
+    severity: TEXT
+    """
+    of what is not right: major (numbers come out wrong), minor (a range or a part is), slip
+    (nothing else is wrong for it)
+    """
     ratio: NUMBER
     """
     printed/true, where it fails if it does; empty for claims and where what is printed is no real
@@ -23,7 +30,7 @@ class Errata(Table):
     it does not matter, or where another box decides
     """
     correction: TEXT
-    """what is right instead, or what else to know"""
+    """what is right instead, or what else to know; formulas stand between backticks"""
     decided_by: TEXT
     """
     theory (quadrature to 50 digits), and each method that can tell, with its ratio measured/printed

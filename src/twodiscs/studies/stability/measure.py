@@ -17,7 +17,7 @@ from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.estimates import Line, mean_of
 from twodiscs.comparison.rows import area_rows, volume_rows
 from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import new_rows, put_state, state_at
+from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import (
     after_event,
     contact_quotient,
@@ -638,17 +638,14 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
         for e, event in enumerate(EVENTS):
             if times[event] is None:
                 continue
-            moments = [
-                (int(sums[e]), int(products[e, e]), int(eligible[e]))
-                for sums, products, eligible in blocks
-            ]
+            moments = [(int(sums[e]), int(products[e, e]), REPLICAS) for sums, products in blocks]
             if sum(estimates.is_honest(*m) for m in moments) < repetitions / 2:
                 yield row(
                     "coverage", event, "ordinary", None, radius=radius, count=repetitions,
                     status="too-few",
                 )  # fmt: skip
                 continue
-            intervals = [estimates.mean_time(*m, duration) for m in moments]
+            intervals = [estimates.mean_time(*m, scene.copies(event) * duration) for m in moments]
             covered = sum(i is not None and i.covers(times[event]) for i in intervals)
             yield row(
                 "coverage", event, "ordinary", covered / repetitions, radius=radius,

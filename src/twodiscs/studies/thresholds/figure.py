@@ -42,9 +42,8 @@ def draw(box, tables):
             hops.plot(distances, law(radii), color=colour, lw=0.7, ls=(0, (4, 2)))
             first = tables["distributions"][0]["scene"]
             found = near(box, law, passages(tables["distributions"], first, event))
-            seen = hops.get_legend_handles_labels()[1]
-            name = None if "first passages" in seen else "first passages"
-            _points(hops, law, found, name, {"color": colour, "marker": "x", "markersize": 3})
+            _points(hops, law, found, None, {"color": colour, "marker": "x", "markersize": 3})
+    hops.plot([], [], "x", color=BLACK, markersize=3, label="first passages")
     _slopes(hops)
     ratios.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     for axes in (hops, ratios):
@@ -53,7 +52,9 @@ def draw(box, tables):
     ratios.set_yticks([1, 2, 5], ["1", "2", "5"])
     ratios.yaxis.set_minor_formatter("")
     hops.set_ylabel("time between hops")
-    ratios.set(xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(C\delta^p)$")
+    ratios.set(
+        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(C\delta^\gamma)$"
+    )
     hops.legend(loc="upper right")
     ratios.legend(loc="upper left")
     panels.letter(hops, "a")

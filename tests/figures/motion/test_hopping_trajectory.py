@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from figure_cases import tables_of
 
-from twodiscs.figures import hopping_trajectory
 from twodiscs.figures.kit import style
+from twodiscs.figures.motion import hopping_trajectory
 from twodiscs.model.box import Box
 
 

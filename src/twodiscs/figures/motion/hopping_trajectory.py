@@ -32,11 +32,14 @@ def draw(box, tables, radius=None):
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
     start, end = _crowded(hops, length, times[0], times[-1])
-    for axes, thick, size in ((whole, 0.3, 2.2), (close, 0.7, 3.4)):
+    for axes, thick, mark in (
+        (whole, 0.3, {"marker": "o", "markersize": 2.2, "mew": 0}),
+        (close, 0.7, {"marker": "|", "markersize": 9, "mew": 0.9}),
+    ):
         axes.set_ylabel(f"${axis}_2-{axis}_1$")
         axes.axhline(0, color=GREY, lw=0.5, zorder=1)
         axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
-        axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
+        axes.plot(hops, 0 * hops, ls="", color=VERMILLION, zorder=3, **mark)
     reach = 1.08 * np.abs(apart).max()
     whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
     close.set(xlim=(start, end), ylim=(-reach, reach), xlabel="time $t$")

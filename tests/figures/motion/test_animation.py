@@ -12,9 +12,9 @@ from PIL import Image
 
 from twodiscs.comparison.scene_tables import Trajectory
 from twodiscs.dynamics import trajectory
-from twodiscs.figures import animation
-from twodiscs.figures.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.figures.kit import drawing, style
+from twodiscs.figures.motion import animation
+from twodiscs.figures.motion.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.model.box import Box
 from twodiscs.pipeline import jobs
 
@@ -152,7 +152,7 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
     words = ["--parameters", GIVEN, "--table", f"trajectory={table}", "--output", *outputs]
     run = subprocess.run(
-        [sys.executable, "-m", "twodiscs.pipeline.jobs", "animation", "figures.animation"]
+        [sys.executable, "-m", "twodiscs.pipeline.jobs", "animation", "figures.motion.animation"]
         + [str(word) for word in words],
         env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
         capture_output=True,
@@ -168,7 +168,10 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     ("given", "said"),
     [
         ({"box": {"width": 1}}, "box must have width, height and maybe effects, not {'width': 1}"),
-        ({"box": BOX.parameters()}, "figures.animation: missing a required argument: 'radius'"),
+        (
+            {"box": BOX.parameters()},
+            "figures.motion.animation: missing a required argument: 'radius'",
+        ),
         ({"box": BOX.parameters(), "radius": -1}, "radius must be a positive"),
     ],
 )
@@ -176,7 +179,7 @@ def test_mistakes_are_told_in_one_sentence(given, said, rows, tmp_path, monkeypa
     table, output = tmp_path / "trajectory.csv", tmp_path / "a.gif"
     Trajectory.write(table, rows)
     words = ["--parameters", given, "--table", f"trajectory={table}"]
-    words = ["animation", "figures.animation", *words, "--output", output]
+    words = ["animation", "figures.motion.animation", *words, "--output", output]
     assert command(monkeypatch, jobs, *words) == 2
     error = capsys.readouterr().err
     assert error.startswith("error: ")

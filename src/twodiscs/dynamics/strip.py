@@ -1,0 +1,240 @@
+"""Rare hops, counted from starts next to their surface.
+
+Relative velocities are bounded, |Δ̇| ≤ β = √(1/m1 + 1/m2), in a field by less: some of the energy
+is in the height of the upper disc. So of all starts only those in the strip |Δ| < βT around the
+surface Δ = 0 of a hop can cross it within T, before or after, and its rate is
+
+    P ⟨N⟩ / 2T
+
+with the exact share P of configuration space that is in the strip, and the mean number ⟨N⟩ of
+crossings in [−T, T] over starts of the invariant measure there. No start is left out that counts,
+so that holds for every T. The past of a start is the future of the one with reversed velocities.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    REPLICAS,
+    across,
+    in_rounds,
+    new_rows,
+    put_state,
+    relative_errors,
+    state_at,
+)
+from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
+from twodiscs.model.box import Box
+from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.radii import key, stream_seed
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.prism import strip_of as place_of
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import exact
+
+#: Hops that come more often than once in so many events are counted from starts anywhere.
+RARE = 40
+
+#: Passes between two looks at which lanes have ended: flights are short.
+PASSES = 4
+
+#: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
+#: Where that holds for the widest strip, too, there is no neck, and no gain.
+FILL = 0.75
+NO_NECK = 0.97
+
+#: Wall and disc events that a start may last, about.
+MOST_EVENTS = 32
+
+#: Counts of hops and of events share a double: a hop counts so many events.
+HOP = 2.0**32
+
+
+class Strip(NamedTuple):
+    """Starts around the surface of a hop: T, half the width βT, the exact share P of all starts."""
+
+    time: float
+    within: float
+    share: float
+
+
+def strip(scene, hop, time):
+    """Return the ``Strip`` of a ``time`` T of at most ``widest``."""
+    within = scene.fastest * time
+    if scene.field:
+        # That high up there is less energy left, in the strip that is wide enough in any case.
+        within *= math.sqrt(place_of(scene, hop, within).most)
+    return Strip(time, within, exact.share_near(scene, hop, within))
+
+
+def _fill(scene, hop, place):
+    """Return the density of configurations at Δ = 0, all but, over the mean one in the strip."""
+    narrow = strip(scene, hop, place.time / 1024)
+    return narrow.share / narrow.within * place.within / place.share
+
+
+def widest(scene, hop):
+    """Return the largest power of two T whose strip has a share to speak of.
+
+    Its |Δ| stays below √2 times the smaller radius, and below the largest one there is.
+    """
+    limit = min(math.sqrt(2) * min(scene.radii), float(scene.reach(AXIS[hop])))
+    return math.ldexp(1.0, math.frexp(0.999 * limit / scene.fastest)[1] - 1)
+
+
+def expected_events(scene, hop, place):
+    """Return some number of events of a start: 1.45 T over the room that discs have in the neck."""
+    arch = place.within**2 / (6 * scene.contact_distance)
+    return 2 * place.time * scene.fastest / (scene.room(hop) + arch)
+
+
+def strip_of(scene, hop):
+    """Return the ``Strip`` for an open ``hop``: as wide as its neck, and not for too many events.
+
+    T is a power of two, and so the same on every machine.
+    """
+    time = widest(scene, hop)
+    while True:
+        found = strip(scene, hop, time)
+        few = expected_events(scene, hop, found) <= MOST_EVENTS
+        if few and _fill(scene, hop, found) >= FILL:
+            return found
+        time /= 2
+
+
+def rare_hops(scene):
+    """Return the hops that are counted from strips: those that are rare because of a neck."""
+    return tuple(
+        hop
+        for hop in HOPS
+        if scene.is_possible(hop)
+        and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
+        and _fill(scene, hop, strip(scene, hop, widest(scene, hop))) < NO_NECK
+    )
+
+
+@compiled
+def count_hops(seed, first, stop, replicas, lanes, time, law, draw, prism, horizontal):
+    """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
+
+    Returns (Σ N (1), Σ N² (1, 1), wall and disc events), int64. The hops are vertical ones, or
+    horizontal ones if ``horizontal`` is True instead of None.
+    """
+    rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
+    origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
+    remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    packed = np.zeros(lanes)
+    sums, squares, events = np.zeros(1, np.int64), np.zeros((1, 1), np.int64), 0
+    block, used, running = first, replicas, 0
+
+    while True:
+        for i in range(lanes):
+            if remaining[i] > 0.0:
+                continue
+            if legs[i] == 1:
+                put_state(rows, i, origin[:, i], law)
+                remaining[i] = time
+                legs[i] = 2
+                continue
+            if legs[i] == 2:
+                count = np.int64(packed[i] * (1.0 / HOP))
+                events += np.int64(packed[i] - count * HOP)
+                sums[0] += count
+                squares[0, 0] += count * count
+                legs[i] = 0
+                running -= 1
+            if used == replicas and block < stop:
+                draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
+                block, used = block + 1, 0
+            if used < replicas:
+                put_state(rows, i, starts[:, used], law)
+                for k in range(COMPONENTS):
+                    origin[k, i] = -starts[k, used] if law_reverses(k, law) else starts[k, used]
+                remaining[i], packed[i], legs[i] = time, 0.0, 1
+                used += 1
+                running += 1
+        if running == 0:
+            return sums, squares, events
+
+        for _ in range(PASSES):
+            for i in range(lanes):
+                times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
+            for i in range(lanes):
+                before, code, count = state_at(rows, i, law), codes[i], packed[i]
+                remaining[i] -= times[i]
+                after = after_event(before, times[i], code, law)
+                put_state(rows, i, after, law)
+                hop = crosses(across(before, horizontal)[0], across(after, horizontal)[0])
+                count += HOP if hop else 0.0
+                packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
+
+
+@compiled
+def law_reverses(k, law):
+    """Say whether component ``k`` of a start is a velocity or a spin."""
+    return 4 <= k < 8 or k >= (10 if law.depth is not None else 8)
+
+
+def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
+    """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
+
+    Returns (Σ N, Σ N², events) as ``count_hops`` does. They are integers: two shards add up.
+    """
+    horizontal = True if hop == "horizontal_hop" else None
+    if not scene.has_effects and not horizontal:
+        # That is a horizontal hop of the box on its side.
+        scene, hop, horizontal = Box.of(scene).turned().scene(scene.radius), "horizontal_hop", True
+    return count_hops(
+        np.uint64(seed), first, stop, replicas, lanes, place.time, law_of(scene),
+        *origins(scene, hop, place.within), horizontal,
+    )  # fmt: skip
+
+
+def compile_kernels(scene, hop):
+    """Compile the kernel that counts a ``hop`` in a ``Scene``."""
+    if scene.is_possible(hop):
+        run_blocks(scene, hop, strip(scene, hop, widest(scene, hop)), 0, 0, 1, replicas=1)
+
+
+def starts(scene, hop, within, number, seed, block=0):
+    """Return ``number`` starts ``within`` a distance of a ``hop``, as ``sampling.starts.states``.
+
+    In a plain scene the hop is to be the horizontal one.
+    """
+    found = np.zeros((COMPONENTS, number))
+    draw, prism = origins(scene, hop, within)
+    draw_any_starts(open_stream(np.uint64(seed), block), draw, (0, 0), found, prism)
+    return found
+
+
+def count_rare(scene, hop, target, budget, seed, report=None):
+    """Count a ``hop`` from starts in its strip until its mean time is known to ``target``.
+
+    Arguments are those of ``counting.count_events``; streams are of their own. Returns a dict: the
+    duration 2T and the share P of configuration space, numbers of replicas, rounds, wall and disc
+    events, ΣN, ΣN² and the status.
+    """
+    place = strip_of(scene, hop)
+    seed = stream_seed(seed, hop, "strip", key(scene.radius))
+    (sums, squares, events), done, rounds, excess = in_rounds(
+        lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
+        lambda total, replicas: relative_errors(*total[:2], replicas) / target,
+        lambda total: int(total[2]),
+        int(budget / (REPLICAS * max(1.0, expected_events(scene, hop, place)))),
+        budget,
+        report,
+    )
+    return {
+        "duration": 2 * place.time,
+        "share": place.share,
+        "replicas": done * REPLICAS,
+        "rounds": rounds,
+        "events": int(events),
+        "count": int(sums[0]),
+        "squares": int(squares[0, 0]),
+        "status": "reached" if excess[0] <= 1 else "budget",
+    }

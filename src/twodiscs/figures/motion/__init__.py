@@ -1,0 +1,1 @@
+"""Figures of a trajectory: where the discs went, and the discs as they move."""

@@ -1,0 +1,96 @@
+"""Figures and animations of what the face returns; what is drawn is what the workflow draws."""
+
+from importlib import import_module
+from operator import attrgetter
+
+from twodiscs.comparison.results import Intervals, Measurements, the_scene
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, one_of
+
+#: What can be drawn.
+DRAWN = "a scene, a trajectory, or results of simulate, sample or intervals"
+
+
+def plot(found, path, figure):
+    """Return the figure that shows ``found`` (see the face)."""
+    box, tables, fitting, options = _what(found)
+    if not fitting:
+        raise InputError(f"found must be {DRAWN}, of what a figure shows, not {found!r:.80}")
+    name = one_of("figure", fitting[0] if figure is None else figure, fitting)
+    entry = FIGURES[name]
+    if box.effects and not entry.needs:
+        raise InputError(f"scene must be plain to be drawn, but it has {', '.join(box.effects)}")
+    draw = import_module(f"twodiscs.{entry.module}").draw
+    with style.context():
+        drawn = draw(box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
+        if path is not None:
+            style.save(drawn, path)
+    # A notebook shows it with the same settings.
+    drawn._repr_png_ = lambda: _png(drawn)
+    return drawn
+
+
+def _png(figure):
+    from io import BytesIO
+
+    stream = BytesIO()
+    with style.context():
+        figure.savefig(stream, format="png", dpi=150)
+    return stream.getvalue()
+
+
+def _what(found):
+    """Return (box, rows, names of the figures that show them, what else those take)."""
+    scene = the_scene(found)
+    if isinstance(found, Box) or found is scene is not None:
+        return found if isinstance(found, Box) else Box.of(scene), [], _drawings(), {}
+    results = [*found] if isinstance(found, list | tuple) else [found]
+    for kind in (Measurements, Intervals):
+        if results and all(isinstance(one, kind) for one in results):
+            boxes = {Box.of(one.scene) for one in results}
+            if len(boxes) > 1:
+                raise InputError("found must be of one box, with the same effects")
+            results = sorted(results, key=attrgetter("scene.radius"))
+            rows = [row for one in results for row in one.rows]
+            return boxes.pop(), rows, _figures_of(rows), {}
+    if scene is not None and hasattr(found, "to_dict"):
+        return Box.of(scene), rows_of(found), ["hopping_trajectory"], {"radius": scene.radius}
+    return None, [], [], {}
+
+
+def _drawings():
+    return [name for name, entry in FIGURES.items() if not entry.needs]
+
+
+def _figures_of(rows):
+    """Return the names of the figures that show quantities of these rows."""
+    if "left" in rows[0]:
+        return ["hop_histogram"]
+    shown = {row.get("quantity") or f"{row['event']}_time" for row in rows}
+    return [n for n, e in FIGURES.items() if e.module == "figures.radius" and e.needs & shown]
+
+
+def rows_of(trajectory):
+    """Return the rows of a trajectory that ``the_scene`` knows; two are the least."""
+    missing = [n for n in ("time", "x1", "y1", "x2", "y2", "event") if n not in trajectory]
+    if missing or len(trajectory) < 2:
+        raise InputError(
+            f"trajectory must have two rows at least, and all of its columns, not {len(trajectory)}"
+            f" rows without {', '.join(missing) or 'none'}"
+        )
+    return trajectory.to_dict("records")
+
+
+def animate(trajectory, path):
+    """Write the animation of a trajectory (see the face)."""
+    from twodiscs.figures.motion import animation
+
+    scene = the_scene(trajectory)
+    if scene is None or not hasattr(trajectory, "to_dict"):
+        raise InputError(f"trajectory must be what trajectory() returns, not {trajectory!r:.80}")
+    if scene.has_effects:
+        raise InputError(f"scene must be plain to be animated, not {scene}")
+    with style.context():
+        animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])

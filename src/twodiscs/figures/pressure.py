@@ -1,0 +1,89 @@
+"""Pressures on the walls, and the virials that they and the collisions of the discs add up to."""
+
+import numpy as np
+
+from twodiscs.figures.kit import curves, panels
+from twodiscs.figures.kit.looks import name_of
+from twodiscs.figures.kit.style import BLACK, SERIES
+from twodiscs.theory import virial
+from twodiscs.theory.exact import rate
+from twodiscs.theory.laws import threshold_time
+
+WALLS = ("right_wall", "top_wall")
+
+#: Inches: the height of the lower panel and of the room that it takes.
+VIRIALS, ROOM = 1.4, 1.8
+
+#: The law below the largest radius is drawn this far from it, relatively.
+LAST = 0.12
+
+
+def draw(box, tables):
+    """Draw the pressures that the rows of mean_times.csv come to, and the terms of the virial."""
+    rows = tables["mean_times"]
+    radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
+    summed = virial.weights(box.tiny) is not None
+    figure, main, lower = panels.panels(
+        box, "pressure over that of an ideal gas", ROOM if summed else 0
+    )
+    events = [event for event in WALLS if any(row["event"] == event for row in rows)]
+    series = [
+        _series(f"disc 1, {name_of(event)}", box, event, rows, radii, virial.pressure_factor)
+        for event in events
+    ]
+    panels.draw_series(main, lower, radii, series)
+    main.axhline(1, color=BLACK, lw=0.7, ls=(0, (1, 1.5)))
+    if not box.effects:
+        end = box.largest_radius
+        farthest = min(LAST, 1 - max(box.thresholds, default=0) / end)
+        near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
+        for event in events:
+            laws = [
+                virial.pressure_factor(scene, event) * scene.share(event) / time
+                for scene in near
+                for time in [threshold_time(scene, event)]
+            ]
+            panels.asymptote(main, [scene.radius for scene in near], laws)
+    panels.logarithmic(main, radii, series)
+    panels.legend(main, box, series, "upper left")
+    if summed:
+        panels.letter(main, "a")
+        _virials(panels.add_panel(figure, panels.BOTTOM, VIRIALS), box, rows, radii)
+    return figure
+
+
+def _series(name, box, event, rows, radii, factor):
+    """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
+    scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
+    exact = [np.nan if s is None else factor(s, event) * rate(s, event) for s in scenes]
+    found = []
+    for row in rows:
+        if row["event"] == event and row["stderr"] is not None:
+            scene, time = box.scene(row["radius"]), row["estimate"]
+            value = factor(scene, event) * scene.share(event) / time
+            # What is too long a time is too low a rate.
+            measured = {"estimate": value, "stderr": value * row["stderr"] / time, "z": -row["z"]}
+            found.append(row | measured)
+    return panels.Series(name, found, np.array(exact))
+
+
+def _virials(axes, box, rows, radii):
+    """Draw the sizes of the terms of the virial over 2⟨K⟩, exact and measured."""
+    names = {
+        "right_wall": "right and left walls",
+        "top_wall": "top and bottom walls",
+        "disc_collision": "disc collisions, subtracted",
+    }
+    series = [
+        _series(name, box, event, rows, radii, lambda scene, e: abs(virial.weights(scene)[e]))
+        for event, name in names.items()
+    ]
+    for (colour, marker), one in zip(SERIES, series, strict=False):
+        axes.plot(radii, one.exact, color=colour, zorder=5)
+        panels.estimates(axes, one.rows, colour, marker)
+    axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
+    axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
+    panels.logarithmic(axes, radii, series)
+    axes.set_ylim(0.01, None)
+    panels.legend(axes, box, series, "lower right")
+    panels.letter(axes, "b")

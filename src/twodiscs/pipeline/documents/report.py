@@ -1,0 +1,176 @@
+"""The report that is opened first: verdict, agreement, key figures; Snakemake's own is behind it.
+
+It is one HTML file with its pictures in it; tables, other figures and Snakemake's report are links
+to the files beside it. Standard input is the graph of rules that ``snakemake --rulegraph`` prints.
+"""
+
+import re
+import sys
+from base64 import b64encode
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path, PurePosixPath
+
+from markupsafe import Markup, escape
+
+from twodiscs.comparison.scene_tables import Check, Cost, Grid
+from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
+from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.documents.architecture import direct
+from twodiscs.pipeline.documents.manuscript import commit, versions
+from twodiscs.studies.catalogue import STUDY_FIGURES
+
+#: The figures that the report opens on, and how many; others stand in for those that are not there.
+KEY = ("mean_hop_time", "tails", "distributions", "effects", "accuracy_cost_by_radius")
+
+ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
+
+#: Pixels of a figure for one on the screen.
+DENSITY = 2
+
+#: What is a symbol with a subscript in a caption: r_c.
+SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
+
+#: Pixels of the graph: from column to column, from row to row, width and height of a rule.
+ACROSS, DOWN, WIDE, HIGH = 136, 62, 126, 24
+
+
+def agreement(folder, scene):
+    """Return how the estimates of a scene compare with the exact theory, None if none does."""
+    own = Path(folder, scene["name"])
+    if not (own / "check.csv").exists():
+        return None
+    rows = [row for row in Check.read(own / "check.csv") if row["passed"] is not None]
+    cost = [row for row in Cost.read(own / "cost.csv") if row["stage"] == "dynamics"]
+    return {
+        "box": scene["box"],
+        "comparisons": len(rows),
+        "events": sum(row["events"] for row in cost),
+        "independent": sum(row["independent"] for row in rows),
+        "failed": sum(not row["passed"] for row in rows),
+        "largest": max((abs(row["z"]) for row in rows), default=0.0),
+        "name": scene["name"],
+        "radii": len(Grid.read(own / "grid.csv")),
+    }
+
+
+def figure(folder, path, scenes):
+    """Return title, caption and picture of the figure at ``path``, relative to ``folder``."""
+    entry = ENTRIES[path.stem]
+    scene = scenes.get(path.parts[0])
+    caption = entry.full_caption(scene["effects"] if scene else ())
+    if scene:
+        caption += f" Scene {scene['name']}, {scene['box']}."
+    data = Path(folder, path).read_bytes()
+    return {
+        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(caption)))),
+        "title": entry.title,
+        "uri": f"data:image/png;base64,{b64encode(data).decode()}",
+        "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
+    }
+
+
+def key_figures(paths):
+    """Return the paths of the key figures among ``paths``, of the first scene that has each."""
+    wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
+    first = {path.stem: path for path in reversed(paths)}  # the first scene wins
+    return [first[name] for name in dict.fromkeys(wanted) if name in first][: len(KEY)]
+
+
+def rules(dot):
+    """Return the graph of rules that ``snakemake --rulegraph`` says, a text, placed in rows.
+
+    {"rules": {name: (x, y)}, "arrows": [((x, y), (x, y))], "width": …, "height": …, "size": …} in
+    pixels; None where a rule feeds itself by way of others, so that there are no rows.
+    """
+    names = dict(re.findall(r'(\d+)\[label = "(\w+)"', dot))
+    feeds = {name: [] for name in sorted(names.values())}
+    for source, target in sorted(re.findall(r"(\d+) -> (\d+)", dot)):
+        feeds[names[target]].append(names[source])
+    try:
+        order = tuple(TopologicalSorter(feeds).static_order())
+    except CycleError:
+        return None
+    row = {}
+    for name in order:
+        row[name] = max((row[source] + 1 for source in feeds[name]), default=0)
+    lines = [[n for n in feeds if row[n] == i] for i in range(max(row.values()) + 1)]
+    width = ACROSS * max(map(len, lines))
+    places = {}
+    for i, line in enumerate(lines):
+        # Each rule as near as may be to what it reads.
+        line.sort(key=lambda name: sum(places[s][0] for s in feeds[name]) / (len(feeds[name]) or 1))
+        for j, name in enumerate(line):
+            places[name] = (round((j + 0.5) * width / len(line)), DOWN * i + HIGH)
+    return {
+        "arrows": [(places[s], places[t]) for t, some in direct(feeds).items() for s in some],
+        "height": DOWN * (len(lines) - 1) + 2 * HIGH,
+        "rules": places,
+        "width": width,
+        "size": (WIDE, HIGH),
+    }
+
+
+def contents(folder, files, scenes, dot, workflow):
+    """Return what the template shows of the ``files`` in ``folder``; all paths are relative to it.
+
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}], ``dot`` is the graph of
+    rules as Snakemake says it, ``workflow`` its own report.
+    """
+    by_name = {scene["name"]: scene for scene in scenes}
+    order = [*by_name, "figures"]
+    paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
+    drawn = [path for path in paths if path.suffix == ".png"]
+    drawn.sort(key=lambda path: order.index(path.parts[0]))
+    groups = {"all scenes": [p for p in paths if p.parts[0] not in by_name]}
+    groups |= {name: [p for p in paths if p.parts[0] == name] for name in by_name}
+    movies = [path for path in drawn if path.stem == "animation"]
+    return {
+        "agreements": [found for scene in scenes if (found := agreement(folder, scene))],
+        "animation": figure(folder, movies[0], by_name) if movies else None,
+        "commit": commit(Path(__file__).parent),
+        "figures": [figure(folder, path, by_name) for path in key_figures(drawn)],
+        "groups": {name: some for name, some in groups.items() if some},
+        "paper": "paper.pdf" in files,
+        "graph": rules(dot),
+        "versions": versions(),
+        "workflow": workflow,
+    }
+
+
+def short(number):
+    """Return a number, to two digits if it is large, as HTML: 4.4 × 10¹⁰."""
+    if number < 1000:
+        return str(number)
+    digits, exponent = f"{number:.1e}".split("e")
+    return Markup(f"{digits} × 10<sup>{int(exponent)}</sup>")
+
+
+def page(template, shown):
+    """Return the report: the Jinja ``template``, a text, filled with ``shown``."""
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["short"] = short
+    return environment.from_string(template).render(shown)
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.documents.report", description=__doc__.split("\n")[0])
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="all results")
+    parser.add_argument("--template", required=True, type=Path, help="the page, for Jinja")
+    parser.add_argument("--parameters", required=True, help="scenes; JSON")
+    parser.add_argument("--workflow", required=True, help="Snakemake's report, beside this one")
+    parser.add_argument("--output", required=True, type=Path, metavar="HTML")
+    options = parser.parse_args()
+    folder = options.output.parent
+    files = [path.relative_to(folder).as_posix() for path in options.files]
+    given = parameters(options.parameters)["scenes"]
+    shown = contents(folder, files, given, sys.stdin.read(), options.workflow)
+    text = page(options.template.read_text(encoding="utf-8"), shown)
+    options.output.write_text(text, encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,62 @@
+"""The tables of a folder of results, as pandas reads them."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import pandas as pd
+
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline.jobs import table_of
+from twodiscs.pipeline.results.manifest import digest
+
+#: What the values of a column are to pandas: kinds that know an empty cell.
+KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
+
+
+def load(folder):
+    """Return {name: ``DataFrame``} of the tables in a folder of results (see the face)."""
+    if not isinstance(folder, str | Path):
+        raise InputError(f"folder must be the path of a folder, not {folder!r}")
+    found, folder = {}, Path(folder)
+    for path in sorted(folder.glob("*.csv")):
+        try:
+            table = table_of(path.stem)
+        except InputError:
+            continue  # Another's.
+        found[path.stem] = read(path, table)
+    if not found:
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
+    return found
+
+
+def read(path, table):
+    """Return the file of a ``Table`` as a ``DataFrame``, with what is in it in ``attrs``."""
+    columns = table.columns()
+    kinds = {name: KINDS[column.kind] for name, column in columns.items()}
+    # Floats with all their digits: pandas' own parser may be off in the last one.
+    frame = pd.DataFrame(table.read(path), columns=list(columns)).astype(kinds)
+    frame.attrs = {
+        "table": table.name(),
+        "meaning": table.meaning(),
+        "meanings": table.meanings(),
+        "units": {name: column.unit for name, column in columns.items()},
+        "path": str(path),
+        "sha256": digest(path),
+        "configuration": _configuration(path),
+    }
+    return frame
+
+
+def _configuration(path):
+    """Return what the configuration said, of the scene of a table alone; None if unknown."""
+    for folder in (path.parent, path.parent.parent):
+        try:
+            known = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if folder == path.parent or not isinstance(known, Mapping):
+            return known
+        scenes = [s for s in known.get("scenes", []) if s.get("name") == path.parent.name]
+        return {**known, "scenes": scenes}
+    return None

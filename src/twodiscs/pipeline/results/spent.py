@@ -1,0 +1,48 @@
+"""Where the time of a build goes: what Snakemake measured of every job, by kind of job.
+
+python -m twodiscs.pipeline.results.spent results
+"""
+
+from pathlib import Path
+
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline.arguments import Parser, run
+
+#: The columns that are shown, and what Snakemake calls them; memory is in MiB.
+COLUMNS = {"seconds": "s", "processor": "cpu_time", "memory": "max_rss"}
+
+
+def spent(folder):
+    """Return a DataFrame of the jobs whose files are in ``folder``/benchmarks, a row each kind.
+
+    The kind is the name up to the first hyphen: radii, scenes and names of figures come later.
+    Columns are the number of jobs, their seconds of wall-clock and of processor time in all, and
+    the largest memory of one in MiB; what takes longest comes first. Raises ``InputError`` for a
+    folder in which no job was measured.
+    """
+    import pandas
+
+    paths = sorted(Path(folder, "benchmarks").rglob("*.tsv"))
+    if not paths:
+        raise InputError(f"{folder} must be a folder of results, with benchmarks/*.tsv in it")
+    # A job that is over before anything is measured has "NA" there.
+    found = pandas.concat(
+        [pandas.read_csv(path, sep="\t").assign(kind=path.stem.split("-")[0]) for path in paths]
+    )
+    found = found.rename(columns={theirs: ours for ours, theirs in COLUMNS.items()})
+    kinds = found.groupby("kind")
+    table = kinds[["seconds", "processor"]].sum().assign(memory=kinds["memory"].max())
+    table.insert(0, "jobs", kinds.size())
+    return table.sort_values("seconds", ascending=False)
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.results.spent", description=__doc__.split("\n")[0])
+    parser.add_argument("folder", metavar="RESULTS")
+    table = spent(parser.parse_args().folder)
+    table.loc["all"] = [*table[["jobs", "seconds", "processor"]].sum(), table["memory"].max()]
+    print(table.round(1).astype({"jobs": int}).to_string())
+
+
+if __name__ == "__main__":
+    run(main)

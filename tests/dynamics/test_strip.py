@@ -1,0 +1,191 @@
+"""Rare hops from starts next to their surface: the exact share, the exact rates, honest errors."""
+
+import math
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from twodiscs.comparison import estimates
+from twodiscs.dynamics import counting, strip
+from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import states
+from twodiscs.theory import exact
+
+PAPER = Scene(1.5, 1.0, 0.2)
+
+#: Far from a threshold and close to both of them.
+PLACES = (
+    (0.2, "horizontal_hop"),
+    (0.245, "horizontal_hop"),
+    (0.2494, "horizontal_hop"),
+    (0.25 * (1 - 1e-6), "horizontal_hop"),
+    (0.3747, "vertical_hop"),
+)
+
+#: Necks of scenes with effects: in a field the upper disc hardly gets that high.
+NECKS = {
+    "unequal": (
+        Scene(1.5, 1.0, 0.2, radius_ratio=1.45, mass_ratio=3.0, moment_of_inertia=0.4),
+        "horizontal_hop",
+    ),
+    "field": (Scene(1.5, 1.0, 0.2, field=1.2), "horizontal_hop"),
+    "balls": (Scene(1.0, 1.5, 0.24, depth=0.6), "vertical_hop"),
+}
+
+
+def check_rate(scene, hop, place, blocks=24, seed=1):
+    """Five sigma."""
+    sums, squares, events = strip.run_blocks(scene, hop, place, seed, 0, blocks)
+    (error,) = relative_errors(sums, squares, blocks * REPLICAS)
+    assert error < 0.05
+    rate = sums[0] / (blocks * REPLICAS) * place.share / (2 * place.time)
+    assert abs(rate / exact.rate(scene, hop) - 1) < 5 * error
+    return events / (blocks * REPLICAS)
+
+
+@pytest.mark.parametrize(("radius", "hop"), PLACES)
+@pytest.mark.parametrize("shorter", [1, 8])
+def test_any_strip_has_the_exact_rate(radius, hop, shorter):
+    scene = PAPER.with_radius(radius)
+    place = strip.strip_of(scene, hop)
+    place = strip.strip(scene, hop, place.time / shorter)
+    assert place.within == scene.fastest * place.time
+    events = check_rate(scene, hop, place)
+    # What is expected of a start need not be exact, but no more than that.
+    assert events == pytest.approx(strip.expected_events(scene, hop, place), rel=0.5)
+
+
+@pytest.mark.parametrize("name", NECKS)
+def test_strips_of_effects_have_the_exact_rate(name):
+    scene, hop = NECKS[name]
+    place = strip.strip_of(scene, hop)
+    check_rate(scene, hop, place)
+    check_rate(scene, hop, strip.strip(scene, hop, place.time / 4), seed=2)
+
+
+@pytest.mark.parametrize(("radius", "hop"), PLACES)
+def test_the_share_is_exact(radius, hop):
+    """Against ∫ (A − u)(B − k(u))₊² du by quadrature in fifty digits, k = √(σ² − u²)₊."""
+    scene = PAPER.with_radius(radius)
+    place = strip.strip_of(scene, hop)
+    with mp.workdps(50):
+        sides = mp.mpf(scene.width), mp.mpf(scene.height)
+        a, b = (side - 2 * mp.mpf(radius) for side in (sides if AXIS[hop] == "x" else sides[::-1]))
+        sigma, end = 2 * mp.mpf(radius), mp.mpf(place.within)
+
+        def density(u):
+            k = mp.sqrt(max(sigma**2 - u**2, 0))
+            return 2 * (a - u) * max(b - k, 0) ** 2
+
+        least = mp.sqrt(max(sigma**2 - b**2, 0))
+        cuts = sorted({least, min(sigma, a), a})
+        volume = mp.quad(density, [c for c in cuts if c >= least])
+        share = mp.quad(density, [0, end / 4, end]) / volume
+        assert abs(exact.share_near(scene, hop, place.within) / share - 1) < 1e-13
+
+
+@pytest.mark.parametrize("name", ["plain", *NECKS])
+def test_the_share_is_that_of_draws_from_everywhere(name):
+    """Five sigma of a binomial count."""
+    scene, hop = NECKS.get(name, (PAPER, "vertical_hop"))
+    k, n = "xy".index(AXIS[hop]), 100_000
+    found = states(scene, n, 3)
+    apart = np.abs(found[k] - found[k + 2])
+    for part in (0.3, 0.9):
+        distance = part * math.sqrt(2) * min(scene.radii)
+        share = exact.share_near(scene, hop, distance)
+        inside = np.count_nonzero(apart <= distance)
+        assert abs(inside - n * share) <= 5 * math.sqrt(n * share * (1 - share))
+
+
+@pytest.mark.parametrize("name", ["plain", *NECKS])
+def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(name):
+    """First two moments of every coordinate and its square, five sigma of both."""
+    scene, hop = NECKS.get(name, (PAPER, "horizontal_hop"))
+    k = "xy".index(AXIS[hop])
+    distance = math.sqrt(2) * min(scene.radii)
+    everywhere = states(scene, 10**6, 5)
+    seen = everywhere[:, np.abs(everywhere[k] - everywhere[k + 2]) <= distance]
+    drawn = strip.starts(scene, hop, distance, 20_000, 6)
+    assert np.max(np.abs(drawn[k] - drawn[k + 2])) <= distance
+    both = [
+        np.concatenate((one, one**2, [(one[0] - one[2]) ** 2, (one[1] - one[3]) ** 2]))
+        for one in (seen, drawn)
+    ]
+    means, errors = zip(
+        *((x.mean(axis=1), x.std(axis=1) / math.sqrt(x.shape[1])) for x in both), strict=True
+    )
+    assert np.all(np.abs(means[0] - means[1]) <= 5 * np.hypot(*errors) + 1e-15)
+
+
+def test_lanes_and_shards_do_not_matter():
+    scene = PAPER.with_radius(0.245)
+    place = strip.strip_of(scene, "horizontal_hop")
+    whole = strip.run_blocks(scene, "horizontal_hop", place, 7, 0, 3, replicas=100)
+    other = strip.run_blocks(scene, "horizontal_hop", place, 7, 0, 3, replicas=100, lanes=5)
+    parts = [
+        strip.run_blocks(scene, "horizontal_hop", place, 7, a, b, replicas=100)
+        for a, b in ((0, 1), (1, 3))
+    ]
+    for one, same, *pieces in zip(whole, other, *parts, strict=True):
+        assert np.array_equal(one, same)
+        assert np.array_equal(one, sum(pieces))
+
+
+@pytest.mark.parametrize(("radius", "hop"), PLACES)
+def test_intervals_cover_as_they_say(radius, hop):
+    """95 % intervals of 800 blocks: between 92 and 98 %, which is four standard errors."""
+    scene = PAPER.with_radius(radius)
+    place, true = strip.strip_of(scene, hop), exact.mean_times(scene)[hop]
+    covered = []
+    for block in range(800):
+        sums, squares, _ = strip.run_blocks(scene, hop, place, 9, block, block + 1)
+        time = estimates.mean_time(
+            int(sums[0]), int(squares[0, 0]), REPLICAS, 2 * place.time / place.share
+        )
+        covered.append(time.covers(true))
+    assert 0.92 <= np.mean(covered) <= 0.98
+
+
+def test_only_rare_hops_of_a_neck_have_strips():
+    assert strip.rare_hops(PAPER.with_radius(0.1)) == ()
+    assert strip.rare_hops(PAPER.with_radius(0.24)) == ("horizontal_hop",)
+    assert strip.rare_hops(PAPER.with_radius(0.3)) == ()
+    assert strip.rare_hops(PAPER.with_radius(0.374)) == ("vertical_hop",)
+    # Walls are hit often in a low box, but its discs pass freely.
+    assert strip.rare_hops(Scene(100.0, 1.0, 0.01)) == ()
+    for scene, hop in NECKS.values():
+        assert set(strip.rare_hops(scene)) <= {hop}
+
+
+@pytest.mark.parametrize("distance", [1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("hop", HOPS)
+def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
+    scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
+    point = counting.count_events(scene, {hop: 0.01}, 10**8, 1)
+    found = point["strips"][hop]
+    assert point["status"] == {hop: found["status"]} == {hop: "reached"}
+    assert found["events"] < 100 * found["replicas"]
+    time = found["duration"] / found["share"] * found["replicas"] / found["count"]
+    assert abs(time / exact.mean_times(scene)[hop] - 1) < 5 * 0.01
+    assert point == counting.count_events(scene, {hop: 0.01}, 10**8, 1)
+
+
+def test_a_budget_is_shared_and_spent():
+    scene = PAPER.with_radius(0.24)
+    point = counting.count_events(scene, {"horizontal_hop": 1e-6, "any_wall": 1e-6}, 10**7, 1)
+    assert point["status"] == {"horizontal_hop": "budget", "any_wall": "budget"}
+    assert 4e6 < point["strips"]["horizontal_hop"]["events"] < 5.1e6
+    assert 8e6 < point["events"] < 1.02e7
+
+
+@pytest.mark.parametrize(
+    ("hop", "distance"),
+    [("any_wall", 0.1), ("horizontal_hop", 0.3), ("horizontal_hop", 0.0), ("vertical_hop", None)],
+)
+def test_bad_distances_are_refused(hop, distance):
+    with pytest.raises(ValueError, match="must"):
+        exact.share_near(PAPER, hop, distance)

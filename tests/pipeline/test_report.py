@@ -1,0 +1,48 @@
+"""The parts of the report: the graph of rules, the figures it opens on, its numbers."""
+
+from pathlib import PurePosixPath
+
+import pytest
+
+from twodiscs.pipeline.documents.report import KEY, key_figures, rules, short
+
+DOT = """digraph snakemake_dag {
+    graph[bgcolor=white, margin=0];
+	0[label = "paper", color = "0.4 0.6 0.85", style="rounded"];
+	1[label = "table", color = "0.5 0.6 0.85", style="rounded"];
+	2[label = "two_dynamics", color = "0.1 0.6 0.85", style="rounded"];
+	1 -> 0
+	2 -> 1
+	2 -> 0
+}"""
+
+
+def test_rules_stand_beneath_those_that_they_read():
+    graph = rules(DOT)
+    heights = {name: y for name, (_, y) in graph["rules"].items()}
+    assert heights["two_dynamics"] < heights["table"] < heights["paper"] < graph["height"]
+    places = graph["rules"]
+    # What a chain of others says is left out.
+    chain = [("table", "paper"), ("two_dynamics", "table")]
+    assert sorted(graph["arrows"]) == sorted((places[a], places[b]) for a, b in chain)
+
+
+def test_rules_in_a_circle_are_not_drawn():
+    assert rules(DOT.replace("2 -> 0", "0 -> 2")) is None
+
+
+def test_other_figures_stand_in_for_those_that_are_not_there():
+    here = ["a/figures/model.png", "a/figures/volume.png", "b/figures/mean_hop_time.png"]
+    here += ["a/figures/mean_hop_time.png", "a/figures/animation.png", "figures/tails.png"]
+    found = [path.as_posix() for path in key_figures(sorted(map(PurePosixPath, here)))]
+    assert found == ["a/figures/mean_hop_time.png", "figures/tails.png", "a/figures/volume.png"]
+    many = [f"a/figures/{name}.png" for name in (*KEY, "volume")]
+    assert [path.stem for path in key_figures(list(map(PurePosixPath, many)))] == list(KEY)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(0, "0"), (3, "3"), (999, "999"), (43_870_000_000, "4.4 × 10<sup>10</sup>")],
+)
+def test_large_numbers_are_written_as_powers_of_ten(number, text):
+    assert short(number) == text

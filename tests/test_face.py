@@ -1,0 +1,418 @@
+"""The face: it finds what the pipeline finds, shows it, and refuses junk in a sentence."""
+
+import ast
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from effect_scenes import SCENES
+from fabricated import command
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import twodiscs as td
+from twodiscs import cli
+from twodiscs.comparison import rows, scene_tables
+from twodiscs.comparison.results import Measurement
+from twodiscs.dynamics.trajectory import state_of
+from twodiscs.figures.motion import animation
+from twodiscs.model.box import Box
+from twodiscs.pipeline import jobs
+from twodiscs.pipeline.configuration import load
+from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.sampling.starts import components
+
+SCENE = td.Scene(1.5, 1.0, 0.2)
+WORDS = ["--width", "1.5", "--height", "1", "--radius", "0.2"]
+
+#: A configuration of one scene, small.
+CONFIGURATION = {
+    "seed": 7,
+    "scenes": [
+        {
+            "name": "one",
+            "box": {"width": 1.5, "height": 1.0},
+            "radii": [0.2],
+            "accuracy": 0.05,
+            "event_budget": 10**6,
+            "monte_carlo": {"samples": 10**6},
+            "watch": {
+                "volume": True,
+                "areas": True,
+                "mean_times": True,
+                "hop_histogram": {"radii": [0.2], "intervals": 10**5},
+                "trajectory": 0.2,
+            },
+        }
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return td.simulate(SCENE, 0.05, seed=7, budget=1e6, name="one")
+
+
+@pytest.fixture(scope="module")
+def sampled():
+    return td.sample(SCENE, 1e6, seed=7, name="one")
+
+
+@pytest.fixture(scope="module")
+def intervals():
+    return td.intervals(SCENE, "vertical_hop", 1e5, seed=7, name="one")
+
+
+@pytest.fixture(scope="module")
+def trajectory():
+    return td.trajectory(SCENE, seed=7, name="one")
+
+
+# Names ------------------------------------------------------------------------------------------
+
+
+def test_the_import_reads_nothing_else():
+    code = "import sys; known = {*sys.modules}; import twodiscs; print(*{*sys.modules} - known)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {*run.stdout.split()} <= {"twodiscs", "__future__"}
+
+
+def test_every_name_is_there_and_where_an_editor_looks_for_it():
+    assert {*td.__all__} <= {*dir(td)}
+    assert all(getattr(td, name) is not None for name in td.__all__)
+    with pytest.raises(AttributeError, match="'twodiscs' has no attribute 'colour'"):
+        td.colour  # noqa: B018
+    with open(td.__file__, encoding="utf-8") as file:
+        tree = ast.parse(file.read())
+    (block,) = (n for n in tree.body if isinstance(n, ast.If))
+    typed = {
+        alias.name: node.module.removeprefix("twodiscs.")
+        for node in block.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if node.module.startswith("twodiscs.")
+    }
+    assert typed == td._HOMES
+    defined = {n.name for n in tree.body if isinstance(n, ast.FunctionDef) and n.name[0] != "_"}
+    assert {*typed, *defined} == {*td.__all__}
+
+
+def test_defaults_are_those_of_a_configuration():
+    scene = load.load({"scenes": [{"name": "a", "box": {"width": 1.5, "height": 1.0}}]}).scenes[0]
+    shell, budget = td.sample.__defaults__[3], td.simulate.__defaults__[2]
+    assert (shell, budget) == (scene.monte_carlo["shell"], scene.event_budget)
+
+
+# The numbers of the pipeline ----------------------------------------------------------------------
+
+
+def point(stage):
+    """Return what the job of the configuration finds."""
+    given = load.load(CONFIGURATION).scenes[0].job(stage, "0.2")
+    return jobs.call(jobs.function_of(STAGES[stage], "job"), given)
+
+
+def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
+    box = Box.of(SCENE)
+    exact = rows.exact_values(jobs.function_of("theory.exact", "theory_rows")(box, [0.2]))
+    assert simulated.rows == rows.mean_time_rows(SCENE, exact, [point("dynamics")])
+    found = point("monte_carlo")
+    areas = rows.area_rows(SCENE, exact, [found])
+    assert sampled.rows == rows.volume_rows(exact, [found]) + areas
+    assert intervals.rows == rows.histogram_rows(exact, [point("intervals")])
+    given = load.load(CONFIGURATION).scenes[0].trajectory_job()
+    followed = jobs.call(jobs.function_of("dynamics.trajectory", "rows"), given)
+    assert [{**row, "z1": None, "z2": None} for row in trajectory.to_dict("records")] == followed
+
+
+def test_seeds_tell_methods_boxes_and_radii_apart():
+    """A scan with one seed has independent errors, unless the scene has a name."""
+    from twodiscs.comparison.results import seed_of
+
+    scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
+    found = [seed_of(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
+    assert len({*found}) == len(found)
+    assert seed_of(SCENE, "dynamics", 1, "a") != seed_of(SCENE, "dynamics", 2, "a")
+
+
+def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
+    some = td.simulate(SCENE, {"any_wall": 0.05}, seed=7, budget=1e6, name="one")
+    assert list(some) == ["any_wall"]
+    alone = td.sample(SCENE, 1e6, seed=7, quantities=["volume"], name="one")
+    assert alone.rows == sampled.rows[:1]
+
+
+# What results say ---------------------------------------------------------------------------------
+
+
+def test_measurements_know_their_errors_and_print_themselves(simulated, sampled):
+    found = simulated["vertical_hop"]
+    assert found.exact == td.mean_times(SCENE)["vertical_hop"]
+    assert found.relative_stderr == found.stderr / found.value
+    low, high = found.interval(0.6826894921370859)
+    assert math.isclose(low, found.value - found.stderr, rel_tol=1e-12)
+    assert math.isclose(high, found.value + found.stderr, rel_tol=1e-12)
+    said = str(found)
+    assert said.startswith("vertical_hop_time = 1.3")
+    assert "± 0.0" in said
+    assert " time, exact 1.3" in said
+    lines = str(simulated).splitlines()
+    assert lines[0] == "Two discs of radius 0.2 in a box of 1.5 × 1.0"
+    assert [line.split()[0] for line in lines[3:]] == [f"{event}_time" for event in td.EVENTS]
+    assert len({line.index("time", 24) for line in lines[3:]}) == 1
+    frame = sampled.frame()
+    assert frame.loc["volume", "estimate"] == sampled["volume"].value
+    assert "length⁴" in str(sampled["volume"])
+
+
+def test_a_measurement_without_an_honest_error_has_no_interval():
+    blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events=["horizontal_hop"], budget=1)
+    assert blocked["horizontal_hop"].interval() is None
+    assert blocked["horizontal_hop"].relative_stderr is None
+    assert "impossible" in str(blocked)
+    unseen = Measurement("any_wall_time", None, None, 1.0, None, 0, "none-seen", "time", None, 0.5)
+    assert "> 0.5" in unseen.cells()[1]
+
+
+def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
+    """Five standard errors: one false alarm in two million."""
+    assert abs(intervals.mean.z) < 5
+    zero = intervals.at_zero
+    # The curvature of the density over two bins of τ/16 is below a hundredth of it.
+    assert abs(zero.value - zero.exact) < 5 * zero.stderr + 0.01 * zero.exact
+    assert math.isclose(zero.exact, 3 * math.sqrt(2) / 16 / 0.6)
+    assert sum(intervals.counts) + intervals.overflow == intervals.intervals
+    assert len(intervals.density) == len(intervals.edges) - 1 == len(intervals.frame())
+    assert "density_at_zero" in str(intervals)
+
+
+def test_the_exact_table_holds_the_exact_numbers():
+    table = td.exact_table(1.5, 1.0, np.array([0.3, 0.1]), field=0.2)
+    assert [*table.index] == [0.3, 0.1]
+    for radius, row in table.iterrows():
+        scene = td.Scene(1.5, 1.0, radius, field=0.2)
+        assert row["volume"] == td.volume(scene)
+        for event, time in td.mean_times(scene).items():
+            assert row[f"{event}_area"] == td.areas(scene)[event]
+            assert row[f"{event}_time"] == time or (
+                time is None and math.isnan(row[f"{event}_time"])
+            )
+
+
+def test_a_scene_prints_what_it_is():
+    scene = td.Scene(1.5, 1.0, 0.2, periodic=["y", "x"], mass_ratio=2)
+    assert repr(scene) == "Scene(1.5, 1.0, 0.2, mass_ratio=2.0, periodic='xy')"
+    assert eval(repr(scene), {"Scene": td.Scene}) == scene == td.Box.of(scene).scene(0.2)
+    assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
+    assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
+
+
+# States -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["plain", "unequal", "torus", "field", "rough", "balls"])
+def test_starts_are_states(name):
+    scene = SCENES.get(name, SCENE)
+    found = td.starts(scene, 5, seed=3)
+    assert found.dtype.names == components(scene)
+    for start in found:
+        state_of(scene, start)
+    again = td.trajectory(scene, start=found[0], duration=3)
+    assert again.equals(td.trajectory(scene, seed=3, duration=3))
+
+
+GOOD = dict(zip(components(SCENE), (-0.5, 0.0, 0.5, 0.0, 1.0, 0.0, 0.0, 0.0), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"x1": 0.2}, "must have the discs apart, with 0.4 or more between their centres, not 0.3"),
+        ({"x1": -0.6}, "must have disc 1 inside the box, with x1 between -0.55 and 0.55, not -0.6"),
+        ({"y2": 0.31}, "must have disc 2 inside the box, with y2 between -0.3 and 0.3, not 0.31"),
+        ({"u1": 2.0}, "must have a total energy of 0.5, not 2.0"),
+        ({"v2": math.nan}, "must be the numbers x1, y1, x2, y2, u1, v1, u2, v2, not "),
+    ],
+)
+def test_a_start_that_is_no_state_is_refused(wrong, said):
+    td.trajectory(SCENE, start=[*GOOD.values()], duration=1)
+    with pytest.raises(td.InputError, match=r"^start must") as caught:
+        td.trajectory(SCENE, start=[*(GOOD | wrong).values()], duration=1)
+    assert said in str(caught.value)
+
+
+def test_on_a_periodic_axis_any_image_serves():
+    scene = td.Scene(1.5, 1.0, 0.2, periodic="x")
+    moved = GOOD | {"x2": GOOD["x2"] + 3.0, "y2": 0.1}
+    with pytest.raises(td.InputError, match="must have the discs apart"):
+        td.trajectory(scene, start=[*(moved | {"x2": GOOD["x1"] + 1.5}).values()])
+    found = td.trajectory(scene, start=[*moved.values()], duration=1)
+    assert math.isclose(found["x2"][0], -1.0)
+
+
+# Figures and tables -------------------------------------------------------------------------------
+
+
+def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_path, monkeypatch):
+    for i, found in enumerate((simulated, [sampled], intervals, trajectory, SCENE, Box.of(SCENE))):
+        td.plot(found, tmp_path / f"{i}.png")
+        assert (tmp_path / f"{i}.png").stat().st_size > 5000
+    assert td.plot(sampled, figure="wall_area")._repr_png_().startswith(b"\x89PNG")
+    monkeypatch.setattr(animation, "BEFORE", 2)
+    monkeypatch.setattr(animation, "AFTER", 2)
+    td.animate(trajectory, tmp_path / "two.gif")
+    assert (tmp_path / "two.gif").read_bytes().startswith(b"GIF")
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda some: td.plot(some, figure="volume"), "figure must be one of mean_hop_time, "),
+        (lambda some: td.plot([some, 1]), "found must be a scene, a trajectory, or results"),
+        (lambda some: td.plot(some, "a.txt"), "output must be a .pdf, .png or .svg file"),
+        (lambda some: td.plot(SCENES["field"]), "scene must be plain to be drawn"),
+        (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
+        (lambda some: td.load("src"), "folder must hold tables of results, but 'src' has none"),
+    ],
+)
+def test_what_cannot_be_shown_is_refused(call, said, simulated):
+    with pytest.raises(td.InputError) as caught:
+        call(simulated)
+    assert said in str(caught.value)
+
+
+def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):
+    folder = tmp_path / "one"
+    folder.mkdir()
+    scene_tables.MeanTimes.write(folder / "mean_times.csv", simulated.rows)
+    scene_tables.Volume.write(folder / "volume.csv", sampled.rows[:1])
+    (folder / "mine.csv").write_text("a,b\n1,2\n")
+    (tmp_path / "configuration.json").write_text(
+        json.dumps({"seed": 7, "scenes": [{"name": "one"}]})
+    )
+    found = td.load(folder)
+    assert [*found] == ["mean_times", "volume"]
+    times = found["mean_times"]
+    assert [*times["estimate"]] == [row["estimate"] for row in simulated.rows]
+    assert [*times["count"]] == [row["count"] for row in simulated.rows]
+    assert times["bound"].isna().all()
+    assert times.attrs["units"]["estimate"] == "time"
+    assert times.attrs["configuration"] == {"seed": 7, "scenes": [{"name": "one"}]}
+    (folder / "volume.csv").write_text("radius,quantity\nx,y\n")
+    with pytest.raises(td.InputError, match=r"volume\.csv "):
+        td.load(folder)
+
+
+# Junk ---------------------------------------------------------------------------------------------
+
+JUNK = st.one_of(
+    st.none(), st.booleans(), st.text(max_size=5), st.binary(max_size=3), st.complex_numbers(),
+    st.sampled_from([math.nan, math.inf, -math.inf, -1, -0.5, 0, object(), [], {}, {"a": 1}, td,
+                     np.array([1.0, 2.0]), [[1]], ["hop"], Box, "any wall"]),
+)  # fmt: skip
+
+#: {function: (arguments that are right, those for which None, 0 or text is right as well)}.
+CALLS = {
+    "Scene": ({"width": 1.5, "height": 1.0, "radius": 0.2}, {}),
+    "Box": ({"width": 1.5, "height": 1.0}, {}),
+    "exact": ({"scene": SCENE}, {}),
+    "volume": ({"scene": SCENE}, {}),
+    "areas": ({"scene": SCENE}, {}),
+    "mean_times": ({"scene": SCENE}, {}),
+    "rate": ({"scene": SCENE, "event": "any_wall"}, {}),
+    "exact_table": ({"width": 1.5, "height": 1.0, "radii": [0.2]}, {}),
+    "simulate": (
+        {"scene": SCENE, "error": 0.5, "seed": 1, "budget": 1, "events": ["any_wall"], "name": "a"},
+        {"seed": [0], "events": [None], "name": [None, str]},
+    ),
+    "sample": (
+        {"scene": SCENE, "samples": 1, "seed": 1, "quantities": ["volume"], "shell": 0.1,
+         "name": "a"},
+        {"seed": [0], "quantities": [None], "name": [None, str]},
+    ),
+    "intervals": (
+        {"scene": SCENE, "hop": "vertical_hop", "number": 1, "seed": 1, "name": "a"},
+        {"seed": [0], "name": [None, str]},
+    ),
+    "starts": ({"scene": SCENE, "number": 1, "seed": 1, "name": "a"},
+               {"seed": [0], "name": [None, str]}),
+    "trajectory": (
+        {"scene": SCENE, "seed": 1, "start": [*GOOD.values()], "duration": 1.0, "name": "a"},
+        {"seed": [0], "start": [None], "duration": [None], "name": [None, str]},
+    ),
+    "plot": ({"found": SCENE}, {}),
+    "animate": ({"trajectory": None, "path": "a.gif"}, {}),
+    "load": ({"folder": "absent"}, {}),
+}  # fmt: skip
+
+
+def is_right(value, right):
+    """Say whether a value is one of those that are right, or of their types."""
+    return any(
+        isinstance(value, one)
+        if isinstance(one, type)
+        else type(value) is type(one) and value == one
+        for one in right
+    )
+
+
+@pytest.mark.parametrize("function", CALLS)
+@given(data=st.data())
+@settings(max_examples=40, deadline=None)
+def test_junk_is_refused_in_a_sentence(function, data):
+    good, right = CALLS[function]
+    name = data.draw(st.sampled_from([*good]))
+    value = data.draw(JUNK.filter(lambda value: not is_right(value, right.get(name, []))))
+    with pytest.raises(td.InputError) as caught:
+        getattr(td, function)(**good | {name: value})
+    assert "\n" not in str(caught.value)
+    assert "must" in str(caught.value)
+
+
+@given(st.lists(st.floats(-1, 1), min_size=7, max_size=9))
+@settings(max_examples=50, deadline=None)
+def test_numbers_at_random_are_no_state(start):
+    with pytest.raises(td.InputError, match=r"^start must "):
+        td.trajectory(SCENE, start=start)
+
+
+NO_NUMBERS = st.characters(exclude_categories=["N", "Cs"], exclude_characters="x\0")
+OPTIONS = {
+    "exact": ("--width", "--radius", "--periodic", "--mass-ratio", "--field"),
+    "simulate": ("--error", "--budget", "--events", "--seed"),
+    "sample": ("--samples", "--quantities", "--shell", "--seed"),
+    "trajectory": ("--duration", "--start", "--seed"),
+}
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+@given(data=st.data())
+@settings(max_examples=40, deadline=None)
+def test_junk_on_the_command_line_is_refused_in_a_sentence(name, data):
+    option = data.draw(st.sampled_from(OPTIONS[name]))
+    text = data.draw(
+        st.one_of(
+            st.text(NO_NUMBERS, max_size=4),
+            st.sampled_from(["nan", "inf", "-1", "1e99", "0x1", "hop", "--", "--json=1", "1 2"]),
+        ).filter(lambda text: text not in ("y", "-h"))
+    )  # fmt: skip
+    if option == "--mass-ratio" or (option, text) in (("--periodic", ""), ("--periodic", "--")):
+        text = f"{text}z"
+    said = said_of(name, *WORDS, f"{option}={text}")
+    assert said.startswith("error: ")
+    assert said.count("\n") == 1
+
+
+def said_of(*words):
+    """Return what the command line says of a mistake, run in this process."""
+    from contextlib import redirect_stderr, redirect_stdout
+    from io import StringIO
+
+    with redirect_stderr(StringIO()) as err, redirect_stdout(StringIO()) as out:
+        with pytest.MonkeyPatch.context() as patch:
+            assert command(patch, cli, *words) == 2
+        assert out.getvalue() == ""
+    return err.getvalue()

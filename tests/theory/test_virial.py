@@ -1,0 +1,110 @@
+"""The virial theorem of Clausius, term by term, for exact rates and with effects."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from effect_scenes import SCENES
+
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact, virial
+
+PAPER = Scene(1.5, 1.0, 0.2)
+
+
+def swapped(scene):
+    """Return the same scene with disc 2 as the first: in units of its mass, at the same energy."""
+    return replace(
+        scene,
+        radius=scene.radii[1],
+        radius_ratio=scene.radii[0] / scene.radii[1],
+        mass_ratio=1 / scene.mass_ratio,
+    )
+
+
+def turned(scene, axis):
+    """Return the same scene with the walls of ``axis`` to the right and to the left."""
+    sides = {"x": scene.width, "y": scene.height, "z": scene.depth}
+    first = sides.pop(axis)
+    return replace(
+        scene, width=first, **dict(zip(("height", "depth"), sides.values(), strict=True))
+    )
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        *(PAPER.with_radius(radius) for radius in (1e-3, 0.1, 0.24, 0.3, 0.37, 0.383974)),
+        *(Scene(3.0, 1.0, radius) for radius in (0.1, 0.4, 0.4999)),
+        Scene(1.0, 4.0, 0.2),
+        *(SCENES[name] for name in ("unequal", "rough", "balls")),
+        replace(SCENES["unequal"], moment_of_inertia=0.3),
+        replace(SCENES["balls"], radius_ratio=1.3, mass_ratio=0.4),
+    ],
+)
+def test_virials_of_all_forces_add_up_to_twice_the_kinetic_energy(scene):
+    """Every disc at every wall, by scenes that are turned and with the discs exchanged."""
+    virials = []
+    for axis in scene.axes:
+        here = turned(scene, axis)
+        for one in (here, swapped(here)):
+            # A momentum times a rate is an energy over a length, in any unit of mass.
+            force = virial.momentum_per_hit(one, "right_wall") * exact.rate(one, "right_wall")
+            virials.append((one.width - 2 * one.radius) * force)
+    momentum = virial.momentum_per_hit(scene, "disc_collision")
+    virials.append(-scene.contact_distance * momentum * exact.rate(scene, "disc_collision"))
+    kinetic = 2 * len(scene.axes) / scene.velocity_components
+    assert math.fsum(virials) == pytest.approx(kinetic, rel=1e-13, abs=1e-13 * max(virials))
+
+
+def test_momenta_are_means_over_the_flux():
+    """3π/8 and 3π/(8√2) for plain discs; in general from velocities drawn on the sphere."""
+    assert virial.momentum_per_hit(PAPER, "top_wall") == pytest.approx(3 * math.pi / 8, rel=1e-14)
+    collision = virial.momentum_per_hit(PAPER, "disc_collision")
+    assert collision == pytest.approx(3 * math.pi / (8 * math.sqrt(2)), rel=1e-14)
+    rng = np.random.default_rng(1)
+    for name in ("unequal", "rough", "balls", "channel"):
+        scene = SCENES[name]
+        m1, m2 = scene.masses
+        unit = rng.standard_normal((10**5, scene.velocity_components))
+        unit /= np.linalg.norm(unit, axis=1)[:, None]
+        v1, v2 = unit[:, 0] / math.sqrt(m1), unit[:, 1] / math.sqrt(m2)
+        reduced = m1 * m2 / (m1 + m2)
+        for event, speed, mass in (("top_wall", v1, m1), ("disc_collision", v1 - v2, reduced)):
+            # ⟨2m v²⟩/⟨|v|⟩, with the error of the ratio by linear propagation.
+            mean = np.mean(2 * mass * speed**2) / np.mean(np.abs(speed))
+            spread = np.std((2 * mass * speed**2 - mean * np.abs(speed)) / np.mean(np.abs(speed)))
+            exact_mean = virial.momentum_per_hit(scene, event)
+            assert abs(mean - exact_mean) < 5 * spread / math.sqrt(len(speed)), (name, event)
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("radius", [0.01, 0.24, 0.3, 0.38])
+def test_weights_make_the_rates_add_up_to_one(radius, inertia):
+    scene = Scene(1.5, 1.0, radius, moment_of_inertia=inertia)
+    terms = [w * exact.rate(scene, event) for event, w in virial.weights(scene).items()]
+    assert math.fsum(terms) == pytest.approx(1, rel=1e-13)
+    assert all(virial.weights(SCENES[name]) is None for name in SCENES if name != "rough")
+
+
+@pytest.mark.parametrize("event", ["right_wall", "top_wall"])
+@pytest.mark.parametrize("name", ["plain", "unequal", "rough", "balls"])
+def test_pressure_is_that_of_an_ideal_gas_for_small_discs(event, name):
+    scene = ({"plain": PAPER} | SCENES)[name].with_radius(1e-9)
+    ratio = virial.pressure_factor(scene, event) * exact.rate(scene, event)
+    assert ratio == pytest.approx(1, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: virial.momentum_per_hit(PAPER, "any_wall"), "must be a hit of disc 1"),
+        (lambda: virial.momentum_per_hit(SCENES["field"], "top_wall"), "field must be 0, not 0.4"),
+        (lambda: virial.momentum_per_hit(0.2, "top_wall"), "scene must be"),
+        (lambda: virial.weights(0.2), "scene must be"),
+    ],
+)
+def test_bad_requests_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
