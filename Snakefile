@@ -1,12 +1,14 @@
 # From one configuration file to every table, every figure, the manuscript and the report.
 # The stages stand in workflow/rules, in the order in which data flows.
 import os
-import sys
 from pathlib import Path
 
 from snakemake.utils import min_version
 
-from twodiscs.pipeline.configuration.load import ConfigError, load, read
+from twodiscs.pipeline.configuration.load import check_results, load
+from twodiscs.pipeline.configuration.reading import check, or_exit
+from twodiscs.pipeline.results.locks import release
+from twodiscs.pipeline.results.record import notice
 
 min_version("9.27")
 
@@ -15,7 +17,9 @@ min_version("9.27")
 HERE = Path(str(workflow.current_basedir)).resolve()
 HERE = Path() if HERE == Path.cwd() else HERE
 
+# Read with limits before Snakemake reads it; the profile does so for what --configfile names.
 if os.path.exists("config/config.yaml"):
+    check(os.path.abspath("config/config.yaml"))
 
     configfile: "config/config.yaml"
 
@@ -24,15 +28,19 @@ else:
     configfile: str(HERE / "config/config.yaml")
 
 
-try:
-    for path in workflow.configfiles:
-        read(
-            path
-        )  # finds the keys given twice, of which YAML keeps the last in silence
-    CONFIGURATION = load(config)
-except ConfigError as error:
-    # Any exception would be shown with its place in this file, but the mistake is in another one.
-    sys.exit(f"Configuration: {error}")
+# Any exception would be shown with its place in this file, but the mistake is in another one.
+for path in workflow.configfiles:
+    check(os.path.abspath(path))
+CONFIGURATION = or_exit(load, config)
+or_exit(check_results, CONFIGURATION.results, HERE)
+if workflow.is_main_process:
+    if release():
+        notice(CONFIGURATION.results)
+    if CONFIGURATION.days > 1:
+        logger.warning(
+            f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"
+            " snakemake forecast says it better."
+        )
 
 
 include: "workflow/rules/common.smk"
@@ -48,3 +56,4 @@ rule all:
         rules.report.input.results,
         rules.report.output if "report" in CONFIGURATION.shared else [],
         rules.manifest.output,
+        rules.provenance.output,

@@ -25,6 +25,7 @@ from twodiscs import cli
 from twodiscs.comparison.scene_tables import Check
 from twodiscs.pipeline import jobs
 from twodiscs.pipeline.configuration import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
 
 PAGES = [
@@ -89,7 +90,7 @@ def scenes(name):
 
 def with_examples():
     """Return the default configuration with the scenes of all pages."""
-    mapping = load.read(DEFAULT)
+    mapping = read(DEFAULT)
     mapping["scenes"] += [scene for name in NAMES for scene in scenes(name)]
     return mapping
 
@@ -264,7 +265,7 @@ def agreement(folder, scene):
 def test_table_of_agreement_is_that_of_the_expected_results():
     if not (EXPECTED / "configuration.json").exists():
         pytest.skip("paper/expected holds no results")
-    found = [agreement(EXPECTED, scene) for scene in load.load(load.read(DEFAULT)).scenes]
+    found = [agreement(EXPECTED, scene) for scene in load.load(read(DEFAULT)).scenes]
     (shown,) = re.findall(r"^\| box \|.*\n\|[-|]+\n((?:\|.*\n)+)", page("README.md"), re.MULTILINE)
     assert shown.splitlines() == found
     events = found[0].split("|")[-2].strip()

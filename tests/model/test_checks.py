@@ -7,7 +7,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs.model.checks import ascending, length, number, one_of, proportion, whole
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, ascending, length, number, one_of, proportion, whole
+from twodiscs.model.effects import ABSENT
+from twodiscs.model.radii import stream_seed
+from twodiscs.model.scene import Scene
 
 
 def test_what_is_allowed_is_returned_in_its_plain_type():
@@ -55,3 +59,36 @@ def test_what_is_allowed_is_returned_in_its_plain_type():
 def test_what_is_not_allowed_is_named_in_one_sentence(check, arguments, sentence):
     with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
         check("x", *arguments)
+
+
+class Odd:
+    def __repr__(self):
+        raise RuntimeError
+
+    def __float__(self):
+        raise RuntimeError
+
+
+#: What Python takes for numbers, compares element by element, or cannot write out.
+ODD = [np.True_, np.array(1.0), np.array([1.0, 2.0]), 10**400, -(10**5000), Fraction(10**400, 3),
+       1 + 0j, np.complex128(1), np.ma.masked, Odd(), b"1", "x" * 10_000, range(3)]  # fmt: skip
+
+
+@pytest.mark.parametrize("value", ODD, ids=lambda value: type(value).__name__)
+def test_odd_values_are_named_in_a_short_sentence(value):
+    box = Box(1.5, 1.0)
+    calls = [
+        lambda: box.scene(value),
+        lambda: Box(value, 1.0),
+        lambda: Box(1.5, 1.0, value),
+        *(lambda name=name: Box(1.5, 1.0, {name: value}) for name in ABSENT),
+        *(lambda name=name: Scene(1.5, 1.0, 0.2, **{name: value}) for name in ABSENT),
+        lambda: box.scene(0.2).is_possible(value),
+        lambda: proportion("x", value),
+        lambda: one_of("x", value, ["a"]),
+        lambda: stream_seed(value, "a", "dynamics", "0.1"),
+    ]
+    for call in calls:
+        with pytest.raises(InputError, match=r"must|does not fit") as caught:
+            call()
+        assert len(str(caught.value)) < 300

@@ -20,6 +20,7 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline.configuration import load, schema
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES, Watch
 from twodiscs.studies.catalogue import STUDIES
 
@@ -37,7 +38,7 @@ def one(**keys):
 
 
 def test_the_default_configuration():
-    configuration = load.load(load.read(ROOT / "config/config.yaml"))
+    configuration = load.load(read(ROOT / "config/config.yaml"))
     assert configuration.results == "results"
     assert [request.name for request in configuration.scenes] == ["paper", "long"]
     paper, long = configuration.scenes
@@ -57,10 +58,10 @@ def test_the_default_configuration():
 
 def test_the_draft_is_a_quick_look_at_the_same_scenes():
     # As --configfile does: the draft's lists replace, its blocks are merged.
-    merged = load.read(ROOT / "config/config.yaml")
-    update_config(merged, load.read(ROOT / "config/draft.yaml"))
+    merged = read(ROOT / "config/config.yaml")
+    update_config(merged, read(ROOT / "config/draft.yaml"))
     draft = load.load(merged)
-    full = load.load(load.read(ROOT / "config/config.yaml"))
+    full = load.load(read(ROOT / "config/config.yaml"))
     assert draft.results == "results/draft"
     assert draft.seed == full.seed
     for quick, slow in zip(draft.scenes, full.scenes, strict=True):
@@ -130,8 +131,8 @@ def test_every_effect_is_a_key_with_its_meaning_range_and_default():
 
 def test_reading_a_configuration_needs_no_numerical_package():
     code = (
-        "import sys; from twodiscs.pipeline.configuration import load;"
-        "load.load(load.read('config/config.yaml'));"
+        "import sys; from twodiscs.pipeline.configuration import load, reading;"
+        "load.load(reading.read('config/config.yaml'));"
         "print({'numpy', 'pandas', 'numba', 'scipy', 'matplotlib'} & set(sys.modules))"
     )
     command = [sys.executable, "-c", code]
@@ -199,7 +200,9 @@ def test_hop_histograms_have_three_forms():
     assert one(watch={"hop_histogram": True}).watch.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
     listed = one(watch={"hop_histogram": [0.2, 0.1]})
     assert listed.watch.hop_histogram == (0.1, 0.2)
-    assert listed.histogram == {"event": "vertical_hop", "intervals": 10**6}
+    assert listed.histogram == {
+        "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6
+    }  # fmt: skip
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
     assert block.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     assert block.job("intervals", "0.025")["event"] == "horizontal_hop"
@@ -442,7 +445,8 @@ PLAIN_JOBS = {
         "seed": 7773604374841850693,
     },
     ("intervals", "0.2"): {
-        "box": BOX, "event": "vertical_hop", "intervals": 1000000, "radius": 0.2,
+        "box": BOX, "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6,
+        "radius": 0.2,
         "seed": 8420814236072247529,
     },
 }  # fmt: skip
@@ -486,6 +490,20 @@ FILES = {
     "\tscenes: 1": ", line 1: found character '\\t' that cannot start any token",
     "? [a]\n: 1": ", line 1: found unhashable key",
     "a: \x07": ": unacceptable character …",
+    "a: 1\nb: 2001-13-41": ", line 2: '2001-13-41' cannot be read: month must be in 1..12",
+    "a: !!bool x": ", line 1: 'x' cannot be read: …",
+    'a: "\\Uffffffff"': ": …",
+    "\na: " + "9" * 5000: ", line 2: a value must have at most 1000 letters",
+    "a: &a [1, *a]": ", line 1: an alias must not stand within what it stands for",
+    "a: &a {b: *a}": ", line 1: an alias must not stand within what it stands for",
+    "a: *b": ", line 1: found undefined alias 'b'",
+    "a: " + "[" * 1000: ", line 1: there must be at most 32 blocks within blocks",
+    "a0: &a0 [1]\n"
+    + "".join(
+        f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}'] * 9)}]\n" for i in range(30)
+    ): ", line 6: there must be at most 50000 values, aliases written out",
+    " " * 1_000_001: " must be a file of at most 1000000 bytes",
+    "# caf\xe9\na: \udce9": ", line 2: must be UTF-8, not the byte 0xe9",
 }
 
 LINES = {
@@ -494,7 +512,7 @@ LINES = {
     "scenes:": "scenes must be a non-empty list of scenes, not empty",
     "scenes: {name: a}": "scenes must be a non-empty list of scenes, not {'name': 'a'}",
     "scenes: [a]": "scenes[0] must be a block of keys, at least name and box, not 'a'",
-    "scenes: [{name: a}]": "scenes[0] needs the key 'box'",
+    "scenes: [{name: a}]": "scenes[0] needs the key 'box' (scene 'a')",
     "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
     "zz: 1": (
@@ -510,6 +528,8 @@ LINES = {
     "seed: 1e19": "seed must be an integer …, not 10000000000000000000",
     "results: my results": "results must be a path of letters…, not 'my results'",
     "results: ../elsewhere": "results must be a path …, not '../elsewhere'",
+    "results: " + "a" * 201: "results must be a path of letters…, 200 at most, …, not 'aaa…aaa'",
+    "results: docs": "results must be a path …, not 'docs'",
     "results: src": "results must be a path … outside the folders of the sources, not 'src'",
     "results: config/x": "results must be a path …, not 'config/x'",
     "results: '{scene}'": "results must be a path …, not '{scene}'",
@@ -524,6 +544,7 @@ LINES = {
 }
 
 SCENES = {
+    "name: " + "a" * 101: ".name must be a name of small letters…, 100 at most, …, not 'aaa…aaa'",
     "name: a/b": ".name must be a name of small letters…, not 'a/b'",
     "name: a b": ".name must be a name …, not 'a b'",
     "name: Paper": ".name must be a name …, not 'Paper'",
@@ -696,9 +717,9 @@ TOGETHER = {
 
 
 def refusal(path, text):
-    path.write_text(text, encoding="utf-8")
+    path.write_text(text, encoding="utf-8", errors="surrogateescape")
     with pytest.raises(load.ConfigError) as caught:
-        load.load(load.read(path))
+        load.load(read(path))
     sentence = str(caught.value)
     assert "\n" not in sentence
     return sentence
@@ -730,7 +751,8 @@ def test_a_bad_line_in_a_scene_gets_a_sentence(tmp_path, line, expected):
     lines[line.split(":")[0]] = line
     block = "\n    ".join(lines.values())
     sentence = refusal(tmp_path / "bad.yaml", f"scenes:\n  - {block}\n")
-    assert agrees(sentence, f"scenes[0]{expected}")
+    named = "" if line.startswith("name:") else " (scene 'one')"
+    assert agrees(sentence, f"scenes[0]{expected}{named}")
 
 
 @pytest.mark.parametrize(("lines", "expected"), TOGETHER.items())
@@ -738,7 +760,7 @@ def test_effects_that_make_no_sense_get_a_sentence(tmp_path, lines, expected):
     block = {"name": "name: one", "box": "box: {width: 1.5, height: 1}"}
     block |= {line.split(":")[0]: line for line in lines}
     text = "scenes:\n  - " + "\n    ".join(block.values()) + "\n"
-    assert agrees(refusal(tmp_path / "bad.yaml", text), f"scenes[0]{expected}")
+    assert agrees(refusal(tmp_path / "bad.yaml", text), f"scenes[0]{expected} (scene 'one')")
 
 
 def test_two_scenes_of_one_name_are_refused():
@@ -759,9 +781,21 @@ def test_numbers_beyond_a_float_are_refused():
         one(event_budget=math.inf)
 
 
+def test_results_are_a_folder_that_holds_no_sources(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("docs", "out"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "README.md").write_text("text")
+    for good in ("out", "out/new", "results", f"{tmp_path}/out"):
+        load.check_results(good, tmp_path)
+    for bad in ("README.md", "README.md/new", f"{tmp_path}/docs", f"{tmp_path}/docs/new"):
+        with pytest.raises(load.ConfigError, match=f"results must be .*, not '{bad}'"):
+            load.check_results(bad, tmp_path)
+
+
 def test_a_missing_file_says_so(tmp_path):
-    with pytest.raises(FileNotFoundError):
-        load.read(tmp_path / "none.yaml")
+    with pytest.raises(load.ConfigError, match=r"none\.yaml: No such file or directory"):
+        read(tmp_path / "none.yaml")
 
 
 def test_an_override_of_a_shared_block_is_no_duplicate(tmp_path):
@@ -771,4 +805,41 @@ def test_an_override_of_a_shared_block_is_no_duplicate(tmp_path):
     """
     path = tmp_path / "shared.yaml"
     path.write_text(text, encoding="utf-8")
-    assert load.read(path) == yaml.safe_load(text)
+    assert read(path) == yaml.safe_load(text)
+
+
+def test_a_histogram_that_would_not_end_is_refused():
+    watch = {"hop_histogram": {"radii": [0.24999999], "event": "horizontal_hop"}}
+    with pytest.raises(load.ConfigError, match=r"at 0.24999999 each one takes 3.9e\+14 events"):
+        one(watch=watch)
+    watch["hop_histogram"]["radii"] = [0.249]
+    assert one(watch=watch).watch.hop_histogram == (0.249,)
+
+
+def test_what_takes_longer_than_a_day_is_known_before():
+    assert one().days < 0.1
+    assert 1 < one(accuracy=1e-6, event_budget=1e15).days < 1000
+    assert one(event_budget=1e15).days < 1  # the accuracy is reached long before
+    assert one(watch={"volume": True}, monte_carlo={"samples": 1e15}).days > 100
+
+
+def test_the_fewest_intervals_are_a_block():
+    from twodiscs.dynamics import intervals
+
+    assert load.LEAST_INTERVALS == intervals.CHAINS * intervals.RETURNS
+
+
+def test_radii_too_close_to_the_largest_are_refused_for_dynamics_alone():
+    largest = Box(1.5, 1.0).largest_radius
+    close, far = largest * (1 - 3e-14), largest * (1 - 1.01e-12)
+    with pytest.raises(load.ConfigError, match=rf"{close!r} must not exceed 0\.3839745962\d+ for"):
+        one(radii=[close])
+    assert one(radii=[far]).radii == (far,)
+    assert one(radii=[close], watch={"volume": True}).radii == (close,)
+
+
+def test_stability_needs_sides_that_leave_room_below():
+    scene = {"name": "a", "box": {"width": 1e-50, "height": 1e-50}, "watch": {"volume": True}}
+    with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
+        load.load({"scenes": [scene]})
+    assert load.load({"scenes": [scene], "shared": ["errata"]}).main.name == "a"

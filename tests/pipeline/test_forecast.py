@@ -52,6 +52,7 @@ def test_samples_and_intervals_come_in_blocks():
     assert pilot.events == 1 << 20
     assert pilot.seconds_per_million > 0
     drawn = {"box": BOX, "radius": 0.2, "event": "horizontal_hop", "intervals": 10**5}
+    drawn["event_budget"] = 10**8
     assert forecast.pilot_intervals(drawn).events == 2 * intervals.CHAINS * intervals.RETURNS
 
 

@@ -193,8 +193,23 @@ MISTAKES = {
     "no file": (words("point", "dynamics.counting", "@no.json"), "no.json: No such file"),
     "too few": (words("point", "dynamics.counting", {}), "missing a required argument: 'box'"),
     "too many": (counting(mass=1), "got an unexpected keyword argument 'mass'"),
-    "no box": (counting(box=3), "box must have width, height and maybe effects, not 3"),
-    "half a box": (counting(box={"width": 1}), "box must have width, height and maybe effects"),
+    "no box": (counting(box=3), "box must be a block of width, height and maybe effects, not 3"),
+    "null for a box": (counting(box=None), "box must be a block of width, height and"),
+    "half a box": (counting(box={"width": 1}), "box must be a block of width, height and maybe"),
+    "radii of no list": (
+        words("table", "comparison.exact_rows", OF_BOX | {"radii": None},
+              "--function", "grid_rows"),
+        "radii must be a list of numbers, not None",
+    ),
+    "keys of another kind": (
+        words("table", "comparison.gather", {"keys": {"dynamics": [None]}},
+              "--function", "cost_rows", "--points", "no"),
+        "keys must be a block of lists of texts, not {'dynamics': [None]}",
+    ),
+    "a scene of another kind": (
+        words("table", "studies.distributions.measure", {"scenes": [{}], "seed": 1}),
+        "scenes must be a list or a block of scenes, not [{}]",
+    ),
     "an unknown effect": (
         counting(box=PLACE["box"] | {"effects": {"wind": 1}}),
         "effects must be a dict of some of depth",
@@ -276,4 +291,3 @@ def test_a_box_is_made_of_its_parameters_and_given_only_what_is_taken():
     effects = {"field": 1.0}
     given = {"box": {"width": 2, "height": 1, "effects": effects}, "radius": 0.1}
     assert jobs.call(work, given, report=3, tables={}) == (Box(2, 1, effects), 0.1, 3)
-    assert jobs.call(lambda box: box, {"box": None}) is None

@@ -9,7 +9,8 @@ import yaml
 from fabricated import command
 
 from twodiscs.pipeline.configuration import scene_file
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.studies.effects import measure
 
 FILES = sorted((Path(__file__).resolve().parents[2] / "config" / "scenes").glob("*.yaml"))

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from twodiscs.comparison.scene_tables import Areas
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.results import verify
 from twodiscs.pipeline.results.manifest import is_reproducible, manifest

@@ -10,7 +10,8 @@ import twodiscs.studies
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import Table
 from twodiscs.figures.catalogue import FIGURES, Entry
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.jobs import module_of, table_of
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs.studies.effects.table import Benchmark

@@ -22,7 +22,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline import jobs
 from twodiscs.pipeline.configuration import scene_file
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.studies.effects import figure
@@ -268,7 +269,7 @@ def costs():
 def drawn(rows):
     """The figure of the six scenes."""
     with style.context():
-        return figure.draw(None, {"effects": rows, "effects_cost": costs()})
+        return figure.draw(tables={"effects": rows, "effects_cost": costs()})
 
 
 def test_texts_of_the_figure_stand_clear(drawn):

@@ -13,6 +13,7 @@ TIMED = (
     "forecast.csv",
     "figures/accuracy_cost",
     "report",
+    "provenance.json",
     "benchmarks/",
     "logs/",
     "points/cost/",
@@ -73,3 +74,13 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
 def test_what_is_deleted_comes_back(built, lost):
     (built.path / "results" / lost).unlink()
     assert built.jobs()
+
+
+def test_what_is_damaged_is_made_again(built):
+    point = built.path / "results/six/points/dynamics/0.2.json"
+    point.write_text(point.read_text().replace("1", "2", 1))
+    drawn = built.path / "results/six/figures/volume.pdf"
+    drawn.write_bytes(drawn.read_bytes()[:1000])
+    jobs = built.jobs("check", "results/six/figures/volume.pdf")
+    assert ("dynamics", ("scene=six", "key=0.2")) in jobs
+    assert ("figure", ("scene=six", "figure=volume")) in jobs

@@ -1,6 +1,7 @@
 """Mistakes in the configuration: one sentence, before anything runs, and nothing is changed."""
 
 import pytest
+from checkout import Checkout
 
 MISTAKES = {
     "an unknown key": ("seeed: 1\n", "unknown key 'seeed'"),
@@ -43,6 +44,7 @@ MISTAKES = {
         "shared must leave out 'errata'",
     ),
     "results in the sources": ("results: src\n", "results must be"),
+    "results in a file": ("results: Snakefile\n", "results must be"),
 }
 
 
@@ -64,12 +66,23 @@ def test_a_mistake_is_one_sentence(unbuilt, mistake, tmp_path):
     assert unbuilt.results() == before
 
 
-@pytest.mark.parametrize("text", ["scenes: [\n", "", "- a list\n"])
-def test_a_file_that_is_no_mapping(unbuilt, tmp_path, text):
-    (tmp_path / "bad.yaml").write_text(text)
-    run = unbuilt.snakemake("-n", "--configfile", str(tmp_path / "bad.yaml"), passes=False)
+@pytest.mark.parametrize(
+    ("own", "text", "said"),
+    [
+        (False, "results: a\nscenes: [\n", ", line 3: expected the node content"),
+        (True, "results: a\nseed: caf\udce9\n", ", line 2: must be UTF-8, not the byte 0xe9"),
+    ],
+)
+def test_a_file_that_cannot_be_read(unbuilt, tmp_path, own, text, said):
+    """It is read before Snakemake reads it, the one of ``--configfile`` and that of the folder."""
+    folder = Checkout(tmp_path, unbuilt)
+    (tmp_path / "config").mkdir()
+    path = tmp_path / "config" / ("config.yaml" if own else "other.yaml")
+    path.write_text(text, errors="surrogateescape")
+    words = [] if own else ["--configfile", str(path)]
+    run = folder.snakemake("-n", "-s", str(unbuilt.path / "Snakefile"), *words, passes=False)
     assert run.returncode != 0
-    assert "Config file" in run.stdout + run.stderr
+    assert run.stderr.splitlines()[-1].startswith(f"Configuration: {path}{said}")
     assert "Traceback" not in run.stdout + run.stderr
 
 

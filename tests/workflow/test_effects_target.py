@@ -37,5 +37,5 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     assert FIGURE in jobs
     assert {rule for rule, _ in jobs} == {
         *("effects_point", "effects_table", "effects_cost", "shared_figure"),
-        *("paper", "report", "manifest"),
+        *("paper", "report", "manifest", "provenance"),
     }

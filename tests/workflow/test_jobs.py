@@ -47,13 +47,13 @@ def test_one_more_radius_is_one_more_job_of_each_kind(built):
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "grid", "theory", "table", "check"),
-        *("errata_table", "figure", "paper", "report", "manifest"),
+        *("errata_table", "figure", "paper", "report", "manifest", "provenance"),
         *("thresholds_table", "shared_figure"),
     }
 
 
 CODE = "\n\nREMARK = 1\n"
-DOCUMENTS = [("paper",), ("report",), ("manifest",)]
+DOCUMENTS = [("paper",), ("report",), ("manifest",), ("provenance",)]
 COUNTED = {"monte_carlo", "dynamics", "intervals", "compile", "effects_point", "effects_cost"}
 
 
@@ -85,7 +85,7 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
     built.edit("src/twodiscs/figures/kit/style.py", CODE)
     jobs = built.jobs()
     assert {rule for rule, _ in jobs} == {
-        *("figure", "shared_figure", "animate", "paper", "report", "manifest"),
+        *("figure", "shared_figure", "animate", "paper", "report", "manifest", "provenance"),
     }
     assert len(jobs) == len(drawn) + len(DOCUMENTS)
 
@@ -110,7 +110,13 @@ def test_edit_of_a_caption_counts_nothing_again(built):
     )
     jobs = built.jobs()
     assert ("shared_figure", ("figure=distributions",)) in jobs
-    assert {rule for rule, _ in jobs} == {"shared_figure", "paper", "report", "manifest"}
+    assert {rule for rule, _ in jobs} == {
+        "shared_figure",
+        "paper",
+        "report",
+        "manifest",
+        "provenance",
+    }
 
 
 @pytest.mark.parametrize("module", ["counting", "law"])

@@ -5,7 +5,8 @@ import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.studies.catalogue import STUDIES
 
@@ -13,7 +14,7 @@ FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
 #: Rules for all scenes together, whatever else is built once.
-ALWAYS = {"check", "compile", "manifest"}
+ALWAYS = {"check", "compile", "manifest", "provenance"}
 
 DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
 

@@ -33,7 +33,7 @@ def test_linter_only_misses_a_container(unbuilt):
 
 
 #: They build nothing.
-WITHOUT_OUTPUT = ("verify", "forecast")
+WITHOUT_OUTPUT = ("verify", "forecast", "audit")
 
 
 def test_every_rule_keeps_a_log_and_a_benchmark():
@@ -73,9 +73,20 @@ def test_editors_find_the_schema_of_a_configuration(path):
 
 def test_readme_lists_every_target():
     page = (REPOSITORY / "README.md").read_text()
-    targets = ("all", "check", "paper", "report", "verify", "forecast", *FIGURES, *STUDIES)
+    targets = (
+        "all",
+        "check",
+        "paper",
+        "report",
+        "verify",
+        "forecast",
+        "audit",
+        "provenance",
+        *FIGURES,
+        *STUDIES,
+    )
     (table,) = re.findall(r"^\| target \|.*\n\|[-|]+\n((?:\|.*\n)+)", page, re.MULTILINE)
-    others = ("verify", "forecast", "long_runs")
+    others = ("verify", "forecast", "audit", "long_runs")
     assert [
         name for name in targets if f"`{name}`" not in (page if name in others else table)
     ] == []

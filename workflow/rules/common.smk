@@ -1,5 +1,6 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
+import sys
 from hashlib import blake2b
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
@@ -32,12 +33,20 @@ GATHERED = {
     "cost": [*STAGES],
 }
 
-# The Python that runs Snakemake also runs the jobs.
+# The Python that runs Snakemake also runs the jobs, which end when it does.
 os.environ.update(
+    TWODISCS_WORKFLOW=str(os.getpid()),
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
-    )
+    ),
 )
+
+
+# The end of the command of every job that keeps a record of what it wrote.
+RECORDED = " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+
+# Longer arguments go into a file: Linux takes 131072 letters in all that a shell is told.
+LONG = 30_000
 
 
 wildcard_constraints:
@@ -74,9 +83,35 @@ def table_code(module, table):
     return code(module, table.__module__.partition(".")[2])
 
 
+def kept(text):
+    """Return the path of a file that holds ``text``, which is named by its hash."""
+    name = blake2b(text.encode(), digest_size=16).hexdigest()
+    path = Path(".snakemake", "parameters", name)
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
+    return str(path)
+
+
 def as_json(value):
-    """Return what a job depends on as one JSON object, its keys sorted."""
-    return json.dumps(dict(sorted(value.items())))
+    """Return what a job depends on as one JSON object, its keys sorted.
+
+    For what is too long for a command line it is the @path of a file that holds the object.
+    """
+    text = json.dumps(dict(sorted(value.items())))
+    return text if len(text) < LONG else f"@{kept(text)}"
+
+
+def about(scene, seed=CONFIGURATION.seed):
+    """Return what the record of a job calls the scene and the root seed; None for what is not used."""
+    words = {"scene": scene, "seed": seed}
+    return ", ".join(f"{k} {v}" for k, v in words.items() if v is not None)
+
+
+def contents(*paths):
+    """Return a hash of files, for inputs whose time stamps may not tell that they were edited."""
+    texts = b"".join(Path(path).read_bytes() for path in paths)
+    return blake2b(texts, digest_size=8).hexdigest()
 
 
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):

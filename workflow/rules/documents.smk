@@ -37,6 +37,7 @@ if MAIN:
             contents=lambda w, output: as_json(
                 manuscript_job(os.path.dirname(output.pdf))
             ),
+            texts=contents(*PAPER.values()),
             code=code("pipeline.documents.manuscript"),
         shell:
             "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"
@@ -76,16 +77,20 @@ rule report:
     benchmark:
         benchmark_of("report")
     params:
-        configuration=lambda w, output: json.dumps(
-            config | {"results": os.path.dirname(output.html)},
-            indent=1,
-            sort_keys=True,
+        configuration=lambda w, output: kept(
+            json.dumps(
+                config | {"results": os.path.dirname(output.html)},
+                indent=1,
+                sort_keys=True,
+            )
+            + "\n"
         ),
         snakefile=str(HERE / "Snakefile"),
-        scenes=json.dumps({"scenes": report_scenes()}),
+        scenes=as_json({"scenes": report_scenes()}),
+        texts=lambda w, input: contents(*input.texts, input.style, input.front),
         code=code("pipeline.documents.report"),
     shell:
-        "{{ printf '%s\\n' {params.configuration:q} > {output.configuration:q};"
+        "{{ cp {params.configuration:q} {output.configuration:q};"
         " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
         ' "$@" --configfile {output.configuration:q} -- {input.results:q}; }};'
         " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
@@ -104,10 +109,44 @@ rule manifest:
     benchmark:
         benchmark_of("manifest")
     params:
+        files=lambda w, input: "@" + kept("\n".join(input.files)),
         code=code("pipeline.results.manifest"),
     shell:
-        "python -m twodiscs.pipeline.results.manifest {input.files:q} --output {output.manifest:q}"
+        "python -m twodiscs.pipeline.results.manifest {params.files:q} --output {output.manifest:q}"
         " > {log:q} 2>&1"
+
+
+# Where and when: this alone says what differs between two runs of the same.
+
+
+rule provenance:
+    input:
+        files=rules.report.input.results,
+    output:
+        json=f"{RESULTS}/provenance.json",
+    log:
+        log_of("provenance"),
+    benchmark:
+        benchmark_of("provenance")
+    params:
+        sources=str(HERE),
+    shell:
+        "python -m twodiscs.pipeline.results.provenance --sources {params.sources:q}"
+        " --output {output.json:q} > {log:q} 2>&1"
+
+
+# All results against the record of the jobs that wrote them.
+
+
+rule:
+    name:
+        "audit"
+    log:
+        log_of("audit"),
+    params:
+        results=RESULTS,
+    shell:
+        "python -m twodiscs.pipeline.results.record {params.results:q} 2> {log:q}"
 
 
 # It builds nothing: it has no input that could be out of date, and no output, so that it is done

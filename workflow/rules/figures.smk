@@ -24,6 +24,7 @@ rule figure:
     wildcard_constraints:
         figure="|".join(FIGURES),
     params:
+        about=lambda w: about(w.scene),
         job=lambda w: as_json(figure_job(SCENES[w.scene], FIGURES[w.figure])),
         module=lambda w: FIGURES[w.figure].module,
         tables=lambda w, input: named_tables(FIGURES[w.figure].tables, input.tables),
@@ -31,7 +32,7 @@ rule figure:
         code=lambda w: figure_code(FIGURES[w.figure].module),
     shell:
         "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}" + RECORDED
 
 
 rule shared_figure:
@@ -53,7 +54,8 @@ rule shared_figure:
     wildcard_constraints:
         figure="|".join(STUDY_FIGURES),
     params:
-        job=as_json({"box": MAIN.box.parameters() if MAIN else None}),
+        about=about(MAIN.name if MAIN else None),
+        job=as_json({"box": MAIN.box.parameters()} if MAIN else {}),
         module=lambda w: STUDY_FIGURES[w.figure].module,
         tables=lambda w, input: named_tables(
             study_figure_tables(STUDY_FIGURES[w.figure]), input.tables
@@ -62,7 +64,7 @@ rule shared_figure:
         code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
     shell:
         "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q} > {log:q} 2>&1"
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}" + RECORDED
 
 
 rule animate:
@@ -82,12 +84,14 @@ rule animate:
     benchmark:
         benchmark_of("{scene}/animation")
     params:
+        about=lambda w: about(w.scene),
         job=lambda w: as_json(figure_job(SCENES[w.scene], ANIMATION)),
         caption=ANIMATION.full_caption(),
         code=figure_code("figures.motion.animation"),
     shell:
         "python -m twodiscs.pipeline.jobs animation figures.motion.animation --parameters {params.job:q}"
-        " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q} > {log:q} 2>&1"
+        " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q}"
+        + RECORDED
 
 
 rule animation:

@@ -10,11 +10,12 @@ rule grid:
     benchmark:
         benchmark_of("{scene}/grid")
     params:
+        about=lambda w: about(w.scene, None),
         job=lambda w: as_json(SCENES[w.scene].grid_job()),
         code=table_code("theory.exact", SCENE_TABLES["grid"]),
     shell:
         "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
-        " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
+        " --parameters {params.job:q} --output {output.table:q}" + RECORDED
 
 
 rule theory:
@@ -25,11 +26,12 @@ rule theory:
     benchmark:
         benchmark_of("{scene}/theory")
     params:
+        about=lambda w: about(w.scene, None),
         job=lambda w: as_json(SCENES[w.scene].theory_job()),
         code=table_code("theory.exact", SCENE_TABLES["theory"]),
     shell:
         "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
-        " --parameters {params.job:q} --output {output.table:q} > {log:q} 2>&1"
+        " --parameters {params.job:q} --output {output.table:q}" + RECORDED
 
 
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
@@ -86,12 +88,13 @@ for stage, module in STAGES.items():
         benchmark:
             benchmark_of(f"{{scene}}/{stage}-{{key}}")
         params:
+            about=lambda w: about(w.scene),
             job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),
             module=module,
             code=code(module),
         shell:
             "python -m twodiscs.pipeline.jobs point {params.module} --parameters {params.job:q}"
-            " --output {output.point:q} --cost {output.cost:q} > {log:q} 2>&1"
+            " --output {output.point:q} --cost {output.cost:q}" + RECORDED
 
 
 rule trajectory:
@@ -102,8 +105,9 @@ rule trajectory:
     benchmark:
         benchmark_of("{scene}/trajectory")
     params:
+        about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
         code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
     shell:
         "python -m twodiscs.pipeline.jobs table dynamics.trajectory --parameters {params.job:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        " --output {output.table:q}" + RECORDED

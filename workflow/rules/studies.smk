@@ -38,6 +38,7 @@ for name in GENERIC:
         benchmark:
             benchmark_of(f"{name}_table")
         params:
+            about=about(None),
             job=as_json(STUDIES[name].parameters(CONFIGURATION)),
             module=STUDIES[name].code,
             function=STUDIES[name].function,
@@ -48,7 +49,7 @@ for name in GENERIC:
         shell:
             "python -m twodiscs.pipeline.jobs table {params.module} --function {params.function}"
             " --parameters {params.job:q} --table {params.tables:q} --output {output.table:q}"
-            " > {log:q} 2>&1"
+            + RECORDED
 
 
 rule effects_point:
@@ -64,7 +65,9 @@ rule effects_point:
     wildcard_constraints:
         file="|".join(EFFECTS),
     params:
+        about=about(None),
         seed=CONFIGURATION.seed,
+        texts=lambda w, input: contents(input.scene, input.schema),
         code=code(
             "studies.effects.measure",
             "pipeline.configuration.scene_file",
@@ -74,8 +77,9 @@ rule effects_point:
         "python -m twodiscs.pipeline.configuration.scene_file {input.scene:q} --seed {params.seed}"
         " > {output.point:q}.parameters 2> {log:q}"
         " && python -m twodiscs.pipeline.jobs point studies.effects.measure"
-        " --parameters @{output.point:q}.parameters --output {output.point:q} > {log:q} 2>&1"
-        " && rm {output.point:q}.parameters"
+        " --parameters @{output.point:q}.parameters --output {output.point:q}"
+        + RECORDED
+        + " && rm {output.point:q}.parameters"
 
 
 rule effects_table:
@@ -97,10 +101,11 @@ rule effects_table:
     benchmark:
         benchmark_of("effects_table")
     params:
+        about=about(None),
         code=table_code("studies.effects.measure", STUDIES["effects"].tables[0]),
     shell:
         "python -m twodiscs.pipeline.jobs table studies.effects.measure --parameters '{{}}'"
-        " --points {input.points:q} --output {output.table:q} > {log:q} 2>&1"
+        " --points {input.points:q} --output {output.table:q}" + RECORDED
 
 
 rule effects_cost:
@@ -124,6 +129,7 @@ rule effects_cost:
     benchmark:
         benchmark_of("effects_cost")
     params:
+        texts=contents(*EFFECTS.values()),
         code=code("benchmark", without=NAMES_ALONE),
     shell:
         "python -m twodiscs.benchmark --table effects_cost --scenes {input.scenes:q}"

@@ -24,6 +24,7 @@ rule table:
     wildcard_constraints:
         table="|".join(GATHERED),
     params:
+        about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
         tables=lambda w, input: named_tables(
             tables_beside(w.scene, w.table), input.tables
@@ -33,7 +34,7 @@ rule table:
     shell:
         "python -m twodiscs.pipeline.jobs table comparison.gather --function {wildcards.table}_rows"
         " --parameters {params.job:q} --table {params.tables:q} --points {params.points:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        " --output {output.table:q}" + RECORDED
 
 
 CHECKED = [scene for scene in SCENES.values() if "check" in scene.tables]
@@ -49,10 +50,11 @@ rule check:
     benchmark:
         benchmark_of("check")
     params:
+        about=about(None),
         tables=lambda w, input: named_tables(
             [scene.name for scene in CHECKED], input.tables
         ),
         code=table_code("pipeline.results.verdict", SCENE_TABLES["check"]),
     shell:
         "python -m twodiscs.pipeline.jobs verdict pipeline.results.verdict --table {params.tables:q}"
-        " --output {output.passed:q} > {log:q} 2>&1"
+        " --output {output.passed:q}" + RECORDED

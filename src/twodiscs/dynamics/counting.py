@@ -35,7 +35,7 @@ from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, optional, tally
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -218,7 +218,7 @@ def replica_duration(scene):
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts remember them:
     then more and shorter replicas know the mean better for the same work.
     """
-    rate = exact.event_rate(scene)
+    rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
     times = exact.mean_times(scene)
     if any(scene.is_possible(hop) and HOPS_PER_REPLICA * times[hop] > duration for hop in HOPS):
@@ -271,6 +271,8 @@ def count_events(scene, target, budget, seed, report=None):
         one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
     }
     budget, seed = whole("budget", budget), whole("seed", seed, 0)
+    budget = max(1, int(budget / exact.work_per_event(scene)))
+    require_room(scene)
 
     duration, rare = replica_duration(scene), strip.rare_hops(scene)
     events = [event for event in EVENTS if event in target]
@@ -283,7 +285,7 @@ def count_events(scene, target, budget, seed, report=None):
     (sums, products), done, rounds, excess = in_rounds(
         lambda first, stop: run_blocks(scene, events, seed, first, stop, duration),
         lambda total, replicas: relative_errors(*total, replicas)[index] / goals,
-        lambda total: simulated_events(total[0]),
+        lambda total: max(1, simulated_events(total[0])),
         int(budget / (REPLICAS * exact.event_rate(scene) * duration)),
         budget,
         report,
@@ -325,11 +327,11 @@ def job(box, radius, accuracy, event_budget, seed, report=None):
 def compile_kernels(box=None, events=()):
     """Compile the kernel that counts ``events`` in a ``Box``; without one those of plain scenes."""
     if box is not None:
-        run_blocks(box.tiny, events, 0, 0, 1, 1.0, replicas=1)
+        run_blocks(box.tiny, events, 0, 0, 0, 1.0)  # no blocks: for some boxes they take long
         for hop in set(events) & set(HOPS):
             strip.compile_kernels(box.tiny, hop)
         return
     scene = Box(1.5, 1.0).scene(0.2)
     for one in (EVENTS, HOPS[:1], WALLS[:1], ("any_wall",)):
-        run_blocks(scene, one, 0, 0, 1, 1.0, replicas=1)
+        run_blocks(scene, one, 0, 0, 0, 1.0)
     strip.compile_kernels(scene, HOPS[0])

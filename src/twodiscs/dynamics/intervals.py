@@ -23,7 +23,7 @@ from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
+from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -31,6 +31,9 @@ from twodiscs.theory import exact
 RETURNS = 256
 CHAINS = 256
 BINS = 512
+
+#: The usual budget of wall and disc events.
+BUDGET = 10**11
 
 #: Wide bins are at least so much wider than their place.
 GROWTH = 0.08
@@ -125,28 +128,8 @@ def record_returns(
                 counts[finder[k], wide[place]] += 1
 
 
-def hop_intervals(scene, event, intervals, seed):
-    """Draw intervals between hops of one kind, each one exact, and count them in bins.
-
-    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least.
-    Chains of ``RETURNS`` successive intervals start on the hop's surface with the flux-weighted
-    measure, which the map from hop to hop preserves: so every interval of a chain has the law of
-    the interval between hops. Intervals within a chain are correlated, chains are independent.
-
-    Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
-    number of intervals and of chains, and the mean with its standard error over chains. With c
-    intervals of a chain in a bin, squares are Σ c² over the chains; wide has edges (in bins),
-    counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
-    or blocked, or a number out of range.
-    """
-    a_scene(scene)
-    one_of("event", event, HOPS)
-    if not scene.is_possible(event):
-        raise InputError(
-            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
-        )
-    blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
-    seed = whole("seed", seed, 0)
+def recorded(scene, event, blocks, chains, returns, seed):
+    """Return (times of the chains, sums, width of bins, edges of wide ones): ``record_returns``."""
     width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
@@ -161,9 +144,44 @@ def hop_intervals(scene, event, intervals, seed):
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
     sums = np.zeros((2, beyond + 1), np.int64)
     totals = record_returns(
-        np.uint64(seed), 0, blocks, CHAINS, LANES, RETURNS, law_of(upright), *origins(upright),
+        np.uint64(seed), 0, blocks, chains, LANES, returns, law_of(upright), *origins(upright),
         horizontal, width, wide, sums,
     )  # fmt: skip
+    return totals, sums, width, edges
+
+
+def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
+    """Draw intervals between hops of one kind, each one exact, and count them in bins.
+
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least, as
+    far as the ``budget`` of wall and disc events allows. Chains of ``RETURNS`` successive intervals
+    start on the hop's surface with the flux-weighted measure, which the map from hop to hop
+    preserves: so every interval of a chain has the law of the interval between hops. Intervals
+    within a chain are correlated, chains are independent.
+
+    Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
+    number of intervals and of chains, and the mean with its standard error over chains. With c
+    intervals of a chain in a bin, squares are Σ c² over the chains; wide has edges (in bins),
+    counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
+    or blocked, or a number out of range.
+    """
+    a_scene(scene)
+    one_of("event", event, HOPS)
+    if not scene.is_possible(event):
+        raise InputError(
+            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
+        )
+    seed, budget = whole("seed", seed, 0), whole("budget", budget)
+    blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
+    require_room(scene)
+    events = exact.events_per_interval(scene, event)
+    blocks = min(blocks, int(budget / (CHAINS * RETURNS * events)))
+    if blocks == 0:
+        raise InputError(
+            f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} of "
+            f"{events:.2g} events each, not {budget!r}"
+        )
+    totals, sums, width, edges = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
     means = totals / RETURNS
     counts, squares = sums.tolist()
     return {
@@ -175,8 +193,8 @@ def hop_intervals(scene, event, intervals, seed):
         "overflow": counts[BINS],
         "wide": {
             "edges": edges,
-            "counts": counts[BINS + 1 : beyond],
-            "squares": squares[BINS + 1 : beyond],
+            "counts": counts[BINS + 1 : BINS + len(edges)],
+            "squares": squares[BINS + 1 : BINS + len(edges)],
         },
         "intervals": totals.size * RETURNS,
         "chains": totals.size,
@@ -189,11 +207,14 @@ def hop_intervals(scene, event, intervals, seed):
 WORK = "intervals"
 
 
-def job(box, radius, event, intervals, seed):
+def job(box, radius, event, intervals, seed, event_budget=BUDGET):
     """Return ``hop_intervals`` for plain values: the job of one radius."""
-    return hop_intervals(box.scene(radius), event, intervals, seed)
+    return hop_intervals(box.scene(radius), event, intervals, seed, event_budget)
 
 
 def compile_kernels(box=None, event="vertical_hop"):
-    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes."""
-    hop_intervals(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 1, 0)
+    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes.
+
+    It records none, for in some boxes one takes long.
+    """
+    recorded(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 0, CHAINS, RETURNS, 0)

@@ -153,6 +153,7 @@ def trajectory(scene, seed, start=None, duration=None):
     ``MOST_EVENTS``.
     """
     seed, rate = whole("seed", seed, 0), exact.event_rate(a_scene(scene))
+    rate *= exact.work_per_event(scene)
     if duration is None:
         hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
         duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)

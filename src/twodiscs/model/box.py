@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from twodiscs.model.checks import SHORTEST, InputError, length, one_of
+from twodiscs.model.checks import SHORTEST, InputError, length, one_of, shown
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import Scene
@@ -30,11 +30,8 @@ class Box:
         effects = self.effects
         if not isinstance(effects, dict) or not effects.keys() <= EFFECTS.keys():
             known = ", ".join(EFFECTS)
-            raise InputError(f"effects must be a dict of some of {known}, not {effects!r}")
-        checked = {
-            name: EFFECTS[name].checked(value) if EFFECTS[name].is_number else value
-            for name, value in effects.items()
-        }
+            raise InputError(f"effects must be a dict of some of {known}, not {shown(effects)}")
+        checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
         if named:

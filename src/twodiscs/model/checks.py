@@ -2,6 +2,7 @@
 
 import math
 import numbers
+import reprlib
 
 #: Lengths outside this range would overflow or underflow when multiplied four at a time.
 SHORTEST, LONGEST = 1e-60, 1e60
@@ -21,17 +22,25 @@ class InputError(ValueError):
         super().__init__(" ".join(str(sentence).split()))
 
 
+def shown(value):
+    """Return how a sentence shows a ``value``: shortened, whatever it is."""
+    try:
+        return " ".join(reprlib.repr(value).split())
+    except Exception:  # an integer of more than 4300 digits, or an odd class
+        return f"a {type(value).__name__}"
+
+
 def number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
     ``low`` is positive: anything that is not a real number, finite and positive is refused.
     """
-    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
-        raise InputError(f"{name} must be a positive {kind}, not {value!r}")
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}")
     try:
         found = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} must be a positive {kind}, not {value!r}") from None
+    except (ValueError, OverflowError):
+        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}") from None
     if not math.isfinite(found) or found <= 0:
         raise InputError(f"{name} must be a positive, finite {kind}, not {found!r}")
     if not low <= found <= high:
@@ -50,19 +59,19 @@ def length(name, value):
 def whole(name, value, least=1, most=LARGEST_INTEGER):
     """Return ``value`` as an int; raise ``InputError`` unless it is an integer in that range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise InputError(f"{name} must be an integer of at least {least}, not {value!r}")
+        raise InputError(f"{name} must be an integer of at least {least}, not {shown(value)}")
     if not least <= value <= most:
         end = "2^63 - 1" if most == LARGEST_INTEGER else most
-        raise InputError(f"{name} must be an integer from {least} to {end}, not {value!r}")
+        raise InputError(f"{name} must be an integer from {least} to {end}, not {shown(value)}")
     return int(value)
 
 
 def proportion(name, value):
     """Return ``value`` as a float; raise ``InputError`` unless it is strictly between 0 and 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} must be a number between 0 and 1, not {value!r}")
-    if not (math.isfinite(value) and 0 < value < 1):
-        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {value!r}")
+        raise InputError(f"{name} must be a number between 0 and 1, not {shown(value)}")
+    if not 0 < value < 1:
+        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {shown(value)}")
     return float(value)
 
 
@@ -74,17 +83,17 @@ def count(name, value, most=LARGEST_INTEGER):
 
 
 def one_of(name, value, allowed):
-    """Return ``value``; raise ``InputError`` unless it is one of the texts ``allowed``."""
+    """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
     if not isinstance(value, str) or value not in allowed:
-        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {value!r}")
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {shown(value)}")
     return value
 
 
 def ascending(name, values):
     """Return ``values`` as floats; raise ``InputError`` unless they are ascending lengths."""
-    if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
-        raise InputError(f"{name} must be a sequence of numbers, not {values!r}")
+    if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
+        raise InputError(f"{name} must be a sequence of numbers, not {shown(values)}")
     found = [length(name, value) for value in values]
     if not found or sorted(set(found)) != found:
-        raise InputError(f"{name} must ascend, and there must be some, not {found!r}")
+        raise InputError(f"{name} must ascend, and there must be some, not {shown(found)}")
     return found

@@ -7,7 +7,7 @@ of the figures follow from these declarations.
 from dataclasses import dataclass
 from numbers import Real
 
-from twodiscs.model.checks import LONGEST, SHORTEST, number
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, number, shown
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,14 @@ class Effect:
         return self.low is not None
 
     def checked(self, value):
-        """Return ``value`` as a float; raise ``InputError`` unless it is absent or in range."""
+        """Return ``value``, a number as a float; raise ``InputError`` unless absent or in range.
+
+        Of text only the kind is checked.
+        """
+        if not self.is_number:
+            if not isinstance(value, str):
+                raise InputError(f"{self.name} must be some of the axes, not {shown(value)}")
+            return value
         real = isinstance(value, Real) and not isinstance(value, bool)
         if value is None or (real and value == self.default):
             return self.default

@@ -8,7 +8,7 @@ from hashlib import blake2b
 from itertools import pairwise
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, length, one_of, whole
+from twodiscs.model.checks import InputError, length, one_of, shown, whole
 
 #: The stochastic stages, each with random streams of its own.
 METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip")
@@ -100,5 +100,7 @@ def stream_seed(root, scene, method, key):
     and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
     """
     root = whole("root", root, 0)
+    if not isinstance(scene, str):
+        raise InputError(f"scene must be the name of a scene, not {shown(scene)}")
     text = "\n".join((str(root), scene, one_of("method", method, METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1

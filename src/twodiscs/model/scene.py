@@ -14,12 +14,16 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number, one_of, shown
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import DECLARED, EVENTS
 
 #: What is open to the discs, named by the hops that remain.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
+
+#: How close to the largest radius dynamics in doubles holds, relatively: at a tenth of that mean
+#: times begin to be off by more than 1e-4.
+FOLLOWED = 1e-12
 
 #: The total energy, kinetic and potential.
 ENERGY = 0.5
@@ -59,9 +63,8 @@ class Scene:
             object.__setattr__(self, name, length(name, getattr(self, name)))
         if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
             object.__setattr__(self, "periodic", "".join(self.periodic))
-        for name in EFFECTS:
-            if isinstance(getattr(self, name), bool):
-                raise InputError(f"{name} must not be a truth value, {getattr(self, name)!r}")
+        for name, effect in EFFECTS.items():
+            object.__setattr__(self, name, effect.checked(getattr(self, name)))
         if self.has_effects:
             self._check_effects()
         if not self._fits():
@@ -80,18 +83,11 @@ class Scene:
             # Six lengths are multiplied.
             for name in ("depth", "width", "height", "radius"):
                 settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
-        for name, effect in EFFECTS.items():
-            if effect.is_number:
-                settle(name, effect.checked(getattr(self, name)))
-
         allowed = "".join(self.axes)
-        if not isinstance(self.periodic, str) or len(set(self.periodic)) != len(self.periodic):
-            raise InputError(f"periodic must be some of the axes {allowed}, not {self.periodic!r}")
-        for axis in self.periodic:
-            if axis not in allowed:
-                raise InputError(
-                    f"periodic must be some of the axes {allowed}, not {self.periodic!r}"
-                )
+        if len(set(self.periodic)) != len(self.periodic) or not set(self.periodic) <= {*allowed}:
+            raise InputError(
+                f"periodic must be some of the axes {allowed}, not {shown(self.periodic)}"
+            )
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:
             raise InputError(
@@ -275,6 +271,18 @@ class Scene:
             limits.append(squares / (total + root) / (1 + self.radius_ratio))
         return min(limits)
 
+    def require_followable(self):
+        """Raise ``InputError`` where dynamics in doubles is off: too close to the largest radius.
+
+        Where discs jam along a diagonal, the room left to them is lost in the roundings of places.
+        """
+        jams = not self.has_effects and self.largest_radius < min(self.width, self.height) / 2
+        if jams and self.radius > (closest := self.largest_radius * (1 - FOLLOWED)):
+            raise InputError(
+                f"radius {self.radius!r} must not exceed {closest!r} for molecular dynamics: "
+                f"beyond it, roundings count in the room that is left below {self.largest_radius!r}"
+            )
+
     def _lowest_potential(self, spread):
         """Return the least potential energy of discs whose separation but for y has this square.
 
@@ -408,9 +416,7 @@ class Scene:
 
     def is_possible(self, event):
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
-        if event not in EVENTS:
-            raise InputError(f"event must be one of {', '.join(EVENTS)}, not {event!r}")
-        if event not in self.events:
+        if one_of("event", event, EVENTS) not in self.events:
             return False
         found = DECLARED[event]
         if found.kind == "hop":
@@ -435,7 +441,7 @@ def _largest_radius(width, height):
 def a_scene(value):
     """Return ``value``; raise ``InputError`` unless it is a ``Scene``."""
     if not isinstance(value, Scene):
-        raise InputError(f"scene must be a Scene, not {value!r}")
+        raise InputError(f"scene must be a Scene, not {shown(value)}")
     return value
 
 

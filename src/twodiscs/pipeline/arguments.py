@@ -2,7 +2,13 @@
 
 import argparse
 import json
+import os
+import select
+import signal
 import sys
+import threading
+import time
+from contextlib import suppress
 from pathlib import Path
 
 from twodiscs.model.checks import InputError
@@ -74,12 +80,38 @@ def fail(message):
     raise SystemExit(2)
 
 
+def end_with_workflow():
+    """End this process as soon as the workflow that started it is gone, however that ended.
+
+    The workflow's process is the one in the variable TWODISCS_WORKFLOW; without it nothing happens.
+    """
+    pid = os.environ.get("TWODISCS_WORKFLOW", "")
+    if pid.isdecimal():
+        threading.Thread(target=_end_after, args=(int(pid),), daemon=True).start()
+
+
+def _end_after(pid):
+    try:
+        ended = os.pidfd_open(pid)
+    except ProcessLookupError:
+        pass
+    except (AttributeError, OSError):  # not on Linux, or not allowed
+        with suppress(ProcessLookupError):
+            while True:
+                os.kill(pid, 0)
+                time.sleep(0.5)
+    else:
+        select.select([ended], [], [])
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
 def run(main):
     """Call ``main()`` and exit with the status that it returns (None means 0).
 
     What a user got wrong, an ``InputError`` or a file that cannot be read, becomes one sentence on
     standard error and exit status 2. Any other exception keeps its traceback.
     """
+    end_with_workflow()
     try:
         status = main()
     except OSError as error:

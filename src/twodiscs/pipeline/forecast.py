@@ -23,7 +23,7 @@ from twodiscs.comparison.scene_tables import Forecast
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import whole
-from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.studies.catalogue import STUDIES
 
@@ -32,6 +32,10 @@ SEED = 5
 
 #: Blocks of a pilot: of replicas as in the first round of a job, of samples.
 SAMPLE_BLOCKS = 8
+
+#: Pilots of a stage of a scene, evenly spread over its radii where there are more of them; wall and
+#: disc events of one that records intervals.
+MOST_PILOTS, FEW_EVENTS = 64, 4e6
 
 #: Fewer counts than this say nothing about clusters; then as many events count as one. Hops are
 #: that rare just below their thresholds only, where runs found between 1.1 and 1.3.
@@ -105,16 +109,20 @@ def pilot_monte_carlo(job):
 def pilot_intervals(job):
     """Return the ``Pilot`` of a job of hop intervals, given its parameters."""
     from twodiscs.dynamics import intervals
+    from twodiscs.theory import exact
 
-    scene = _scene(job)
-    block = intervals.CHAINS * intervals.RETURNS
+    scene, block = _scene(job), intervals.CHAINS * intervals.RETURNS
+    events = exact.events_per_interval(scene, job["event"])
+    chains = max(1, min(intervals.CHAINS, int(FEW_EVENTS / events / intervals.RETURNS)))
+    returns = max(1, min(intervals.RETURNS, int(FEW_EVENTS / events)))
 
     def record():
-        return intervals.hop_intervals(scene, job["event"], 1, SEED)
+        return intervals.recorded(scene, job["event"], 1, chains, returns, SEED)
 
     record()
-    _, cost = _timed(record, lambda point: point["intervals"])
-    return Pilot(-(-job["intervals"] // block) * block, cost)
+    _, cost = _timed(record, lambda _: chains * returns)
+    wanted = min(job["intervals"], job["event_budget"] / events)
+    return Pilot(math.ceil(wanted / block) * block, cost)
 
 
 def pilot_dynamics(job):
@@ -203,7 +211,7 @@ def _run_pilot(stage_and_job):
 
 def run_pilots(jobs, cores):
     """Return the ``Pilot`` of each of ``jobs``, pairs (stage, parameters), ``cores`` at a time."""
-    with ProcessPoolExecutor(cores, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(cores, get_context("spawn"), end_with_workflow) as pool:
         return list(pool.map(_run_pilot, jobs))
 
 
@@ -251,6 +259,21 @@ def run_samples(kinds, cores):
 def jobs_of(request):
     """Return the jobs of a ``SceneRequest``: pairs (stage, parameters)."""
     return [(stage, request.job(stage, key)) for stage in STAGES for key in request.keys[stage]]
+
+
+def stand_ins(jobs):
+    """Return for each of ``jobs`` the index of the one whose pilot tells of it.
+
+    That is itself unless a stage has more than ``MOST_PILOTS``, then one near by.
+    """
+    found = []
+    for stage in STAGES:
+        places = [i for i, (name, _) in enumerate(jobs) if name == stage]
+        step = -(-len(places) // MOST_PILOTS) or 1
+        found += [
+            places[min(n - n % step + step // 2, len(places) - 1)] for n in range(len(places))
+        ]
+    return found
 
 
 def row(scene, stage, cores, jobs, events=None, seconds=0.0, startup=0.0, radius=None):
@@ -307,10 +330,12 @@ def rows(configuration, cores):
     jobs = [jobs_of(request) for request in requests]
     kinds = [stage for stage in STAGES if any(stage == s for one in jobs for s, _ in one)]
     starts = run_samples([*kinds, "tables", "figures"], cores)
-    pilots = iter(run_pilots([job for one in jobs for job in one], cores))
+    places = [(n, i) for n, one in enumerate(jobs) for i in stand_ins(one)]
+    flown = list(dict.fromkeys(places))
+    pilots = dict(zip(flown, run_pilots([jobs[n][i] for n, i in flown], cores), strict=True))
     found, sums = [], []
-    for request, one in zip(requests, jobs, strict=True):
-        found += scene_rows(request, [next(pilots) for _ in one], starts, cores)
+    for n, request in enumerate(requests):
+        found += scene_rows(request, [pilots[p] for p in places if p[0] == n], starts, cores)
         sums.append(found[-1])
     shared = [row("all", "compile", cores, 1, startup=COMPILATION)]
     for name in configuration.shared:

@@ -22,8 +22,25 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, shown
 from twodiscs.pipeline.arguments import Parser, named, parameters, run
+
+#: What parameters must be, in words and as a shape, for the functions that take them check values
+#: alone. A shape is a type, a list of one shape, a dict of the keys that are needed or, by ``str``,
+#: of any keys, or a choice of shapes.
+BOX, RADIUS = {"width": object, "height": object}, int | float | str
+CASE = {"box": BOX, "name": str, "event": str, "radii": [RADIUS]}
+TEXTS = "a list of texts", [str]
+SHAPES = {
+    "areas": TEXTS,
+    "box": ("a block of width, height and maybe effects", BOX),
+    "events": ("a list of texts, or an integer", ([str], int)),
+    "keys": ("a block of lists of texts", {str: [str]}),
+    "radii": ("a list of numbers", [RADIUS]),
+    "scenes": ("a list or a block of scenes", ([CASE], {str: BOX})),
+    "volume": ("true or false", bool),
+    "watched": TEXTS,
+}
 
 
 def module_of(name):
@@ -73,19 +90,32 @@ def read_tables(texts):
     return Tables({name: table_of(Path(path).stem).read(path) for name, path in paths.items()})
 
 
+def _has_shape(value, shape):
+    if isinstance(shape, tuple):
+        return any(_has_shape(value, one) for one in shape)
+    if isinstance(shape, list):
+        return isinstance(value, list) and all(_has_shape(one, shape[0]) for one in value)
+    if not isinstance(shape, dict):
+        return isinstance(value, shape)
+    if not isinstance(value, dict):
+        return False
+    needed = dict.fromkeys(value, shape[str]) if str in shape else shape
+    known = shape is not BOX or value.keys() <= {*BOX, "effects"}
+    return known and all(key in value and _has_shape(value[key], needed[key]) for key in needed)
+
+
 def call(function, given, **more):
     """Call ``function`` with the parameters ``given``, a ``box`` made of those of that name.
 
     Arguments in ``more`` are passed if the function takes them. Raises ``InputError`` for
     parameters that it does not take, and for missing ones.
     """
-    if given.get("box") is not None:
-        try:
-            given = given | {"box": Box(**given["box"])}
-        except TypeError:
-            raise InputError(
-                f"box must have width, height and maybe effects, not {given['box']!r}"
-            ) from None
+    for name in SHAPES.keys() & given.keys():
+        what, shape = SHAPES[name]
+        if not _has_shape(given[name], shape):
+            raise InputError(f"{name} must be {what}, not {shown(given[name])}")
+    if "box" in given:
+        given = given | {"box": Box(**given["box"])}
     signature = inspect.signature(function)
     given = given | {name: v for name, v in more.items() if name in signature.parameters}
     try:
@@ -144,6 +174,47 @@ def table(options):
     table_of(Path(path).stem, options.module).write(path, rows)
 
 
+def inputs_of(options):
+    """Return {name: paths} of the files that a job reads; raise ``InputError`` for a damaged one.
+
+    Those are the files that are no longer what their own jobs wrote.
+    """
+    found = {name: [path] for name, path in named(options.table, "--table").items()}
+    for path in map(Path, options.points):
+        if path.is_file():
+            found.setdefault("points", []).append(path)
+            continue
+        for stage, keys in parameters(options.parameters).get("keys", {}).items():
+            cost = options.function == "cost_rows"
+            names = [f"cost/{stage}-{key}" if cost else f"{stage}/{key}" for key in keys]
+            found[stage] = [path / f"{name}.json" for name in names]
+    for path in (path for paths in found.values() for path in paths):
+        module_of("pipeline.results.record").require(path)
+    return found
+
+
+def keep_record(options, inputs):
+    """Record what made the files of a job."""
+    made = {"about": options.about, "code": options.code, "job": options.job}
+    made |= {"function": options.function, "module": options.module}
+    made["parameters"] = parameters(options.parameters) if options.parameters else {}
+    paths = [*options.output, *([options.cost] if options.cost else [])]
+    module_of("pipeline.results.record").write(paths, inputs, **made)
+
+
+def origin(options):
+    """Return a line that says what made a figure: the scene, the seed, and hashes of the rest."""
+    record = module_of("pipeline.results.record")
+    tables = [path for _, path in sorted(named(options.table, "--table").items())]
+    words = [
+        options.about,
+        f"code {options.code}",
+        f"parameters {record.short(options.parameters)}",
+    ]
+    words += [f"tables {record.digest(*tables)[:16]}"] if tables else []
+    return "twodiscs: " + ", ".join(filter(None, words))
+
+
 def figure(options):
     """Draw the figure of a module."""
     draw = function_of(options.module, "draw")
@@ -152,7 +223,7 @@ def figure(options):
     with style.context():
         drawn = call(draw, given, tables=tables)
         for path in options.output:
-            style.save(drawn, path)
+            style.save(drawn, path, origin(options))
 
 
 def animation(options):
@@ -208,10 +279,16 @@ def main():
     )
     parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
     parser.add_argument("--cost", metavar="JSON", help="where to write the work and the seconds")
+    parser.add_argument("--about", help="the scene and the root seed, for the record")
+    parser.add_argument("--code", help="the fingerprint of the sources, for the record")
     options = parser.parse_args()
     if options.parameters is None and options.job not in ("kernels", "verdict"):
         raise InputError(f"{options.job} needs --parameters")
-    return JOBS[options.job](options)
+    inputs = inputs_of(options)
+    status = JOBS[options.job](options)
+    if not status and options.job != "kernels":
+        keep_record(options, inputs)
+    return status
 
 
 if __name__ == "__main__":

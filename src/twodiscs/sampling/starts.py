@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from twodiscs.model.checks import InputError
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import draw_in_prism, draw_on_surface, draw_velocities, prism_of
 from twodiscs.sampling.separations import (
@@ -18,6 +19,7 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import exact
 
 #: Rows of an array of starts.
 COMPONENTS = 12
@@ -30,6 +32,16 @@ PLANE, BALLS, ROUGH = (
 )
 
 
+def require_room(scene):
+    """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
+    scene.require_followable()
+    if scene.has_effects and (share := exact.free_share(scene)) < exact.LEAST_SHARE:
+        raise InputError(
+            f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
+            f"a scene with effects needs more room, {exact.LEAST_SHARE:g} of it"
+        )
+
+
 def components(scene):
     """Return the names of the components of a state of a ``Scene``."""
     balls, rough = scene.depth is not None, scene.moment_of_inertia is not None
@@ -40,7 +52,8 @@ def origins(scene, hop=None, within=None):
     """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None.
 
     With a ``hop`` they keep ``within`` a distance of its surface, one that is no more than √2 times
-    the smaller radius. In a plain scene that is for the horizontal hop.
+    the smaller radius. In a plain scene that is for the horizontal hop. A scene with effects needs
+    room (``require_room``), or draws from its prism hardly end.
     """
     if scene.has_effects:
         return None, prism_of(scene, hop, within)
@@ -134,6 +147,7 @@ def states(scene, number, seed, block=0, sides=(0, 0)):
     ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
     ``draw_configuration``).
     """
+    require_room(scene)
     found = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, found, prism)

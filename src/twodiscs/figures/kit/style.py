@@ -92,16 +92,18 @@ def new_figure(height, width=COLUMN):
     return figure
 
 
-def save(figure, path):
+def save(figure, path, origin=None):
     """Write ``figure`` to ``path`` (.pdf, .png or .svg) without dates or names of programs in it.
+
+    ``origin``, a line on what made it, goes into its metadata.
 
     Raises ``InputError`` for a file name with another ending.
     """
     kind = str(path).rpartition(".")[2]
     metadata = {
-        "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
-        "png": {"Software": None},
-        "svg": {"Creator": None, "Date": None},
+        "pdf": {"Creator": None, "Producer": None, "CreationDate": None, "Subject": origin},
+        "png": {"Software": None, "Description": origin},
+        "svg": {"Creator": None, "Date": None, "Description": origin},
     }
     if kind not in metadata:
         raise InputError(f"output must be a .pdf, .png or .svg file, not {str(path)!r}")

@@ -5,22 +5,21 @@ Quick to import, for the Snakefile reads it: no numerical package but for effect
 
 import math
 import re
-import reprlib
 from collections.abc import Mapping
 from copy import deepcopy
 from difflib import get_close_matches
-
-import yaml
+from pathlib import Path
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
+from twodiscs.pipeline.configuration.reading import ConfigError, shown
 from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
-from twodiscs.theory.exact import LEAST_SHARE, free_share
+from twodiscs.theory.exact import LEAST_SHARE, events_per_interval, free_share
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -38,21 +37,43 @@ BELOW_THRESHOLD = 0.5
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
 LAST_FRACTION = 0.9
 
+#: The range of sides that the study of stability can take: lengths end at 1e-60 and 1e60.
+LOW, HIGH = 1e-40, 1e40
+
+#: The fewest intervals of a hop that are recorded.
+LEAST_INTERVALS = 2**16
+
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-
-
-class ConfigError(InputError):
-    """A mistake in a configuration, told in one sentence."""
 
 
 def load(mapping):
     """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
 
     Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
-    with one sentence that names the key, what it may hold and what it holds.
+    with one sentence that names the key, what it may hold and what it holds, and the scene.
     """
+    try:
+        return _load(mapping)
+    except ConfigError as error:
+        place = re.match(r"scenes\[(\d+)\](?!\.name)", str(error))
+        block = mapping["scenes"][int(place[1])] if place else None
+        name = block.get("name") if isinstance(block, Mapping) else None
+        raise ConfigError(f"{error} (scene {name!r})" if name else str(error)) from None
+
+
+def check_results(results, home):
+    """Raise ``ConfigError`` unless ``results`` may be a folder beside the sources at ``home``."""
+    node, path = schema()["properties"]["results"], Path(results).resolve()
+    home = Path(home).resolve()
+    inside = path.is_relative_to(home)
+    a_file = any(place.exists() and not place.is_dir() for place in (path, *path.parents))
+    if a_file or (inside and not re.match(node["pattern"], path.relative_to(home).as_posix())):
+        raise ConfigError(f"results must be {node['allowed']}, not {results!r}")
+
+
+def _load(mapping):
     if not isinstance(mapping, Mapping):
-        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {_shown(mapping)}")
+        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {shown(mapping)}")
     settled = _settled(mapping, schema(), "")
     _validate(settled)
     _fill_defaults(settled, schema())
@@ -66,43 +87,15 @@ def load(mapping):
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
     shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
-    return Configuration(
+    found = Configuration(
         settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
     )
-
-
-def read(path):
-    """Return the mapping in the YAML file ``path``.
-
-    Raises ``ConfigError`` where YAML itself would keep silent about a key given twice (the last one
-    would win), and for a file that holds no mapping; ``OSError`` for one that cannot be read.
-    """
-    with open(path, encoding="utf-8") as file:
-        try:
-            mapping = yaml.load(file, _StrictLoader)
-        except yaml.MarkedYAMLError as error:
-            line = error.problem_mark.line + 1
-            raise ConfigError(f"{path}, line {line}: {error.problem}") from None
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
-    if not isinstance(mapping, dict):
-        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {_shown(mapping)}")
-    return mapping
-
-
-class _StrictLoader(yaml.SafeLoader):
-    """YAML as usual, but a key given twice is a mistake."""
-
-    def compose_mapping_node(self, anchor):
-        node = super().compose_mapping_node(anchor)
-        seen = set()
-        for key, _ in node.value:
-            if isinstance(key, yaml.ScalarNode):
-                if key.value in seen:
-                    problem = f"the key {key.value!r} is given a second time"
-                    raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
-                seen.add(key.value)
-        return node
+    if "stability" in shared and not all(LOW <= side <= HIGH for side in found.main.box.sides):
+        raise ConfigError(
+            f"shared must leave out 'stability' unless the sides of the scene {found.main.name!r} "
+            f"lie between {LOW:g} and {HIGH:g}, for it goes far below them"
+        )
+    return found
 
 
 def _types(node):
@@ -157,16 +150,12 @@ def _sentence(error):
         hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
         return f"{path} has an unknown key {unknown!r}{hint}"
     hint = _nearest(value, node.get("enum", ()))
-    return f"{path} must be {node['allowed']}, not {_shown(value)}{hint}"
+    return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
 
 
 def _nearest(word, known):
     near = get_close_matches(str(word), known, n=1)
     return f"; did you mean {near[0]!r}?" if near else ""
-
-
-def _shown(value):
-    return "empty" if value is None else reprlib.repr(value)
 
 
 def _fill_defaults(value, node):
@@ -201,6 +190,19 @@ def _scene(block, path, seed):
     if not watch.quantities:
         known = ", ".join(Watch.__dataclass_fields__)
         raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    if watch.mean_times:
+        try:
+            box.scene(found[-1]).require_followable()
+        except InputError as error:
+            raise ConfigError(f"{path}.radii: {error}") from None
+    for radius in watch.hop_histogram:
+        events = events_per_interval(box.scene(radius), histogram["event"])
+        if events * LEAST_INTERVALS > histogram["event_budget"]:
+            raise ConfigError(
+                f"{path}.watch.hop_histogram must keep to radii at which {LEAST_INTERVALS} "
+                f"intervals fit into its event_budget, {histogram['event_budget']:g}; at "
+                f"{radius!r} each one takes {events:.2g} events"
+            )
     accuracy = block["accuracy"]
     if not isinstance(accuracy, dict):
         accuracy = {"default": accuracy}

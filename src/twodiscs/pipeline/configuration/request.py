@@ -6,6 +6,7 @@ from functools import cached_property
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.theory import exact
 
 #: The stages whose jobs run once for each radius, and the module that does the work of each.
 STAGES = {
@@ -13,6 +14,9 @@ STAGES = {
     "dynamics": "dynamics.counting",
     "intervals": "dynamics.intervals",
 }
+
+#: What a core does in a second, roughly, and the seconds of a day.
+EVENTS_PER_SECOND, SAMPLES_PER_SECOND, DAY = 1e8, 3e7, 86400
 
 #: The thickness of shells in jobs that sample no area: any will do, and so an edit of the
 #: configured one does not concern them.
@@ -84,6 +88,32 @@ class SceneRequest:
             "intervals": watch.hop_histogram,
         }
         return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
+
+    @property
+    def days(self):
+        """The processor time that the scene takes, roughly: in days of a usual core.
+
+        Theory says how many events an error takes; that is looked at only where the budgets alone
+        would allow for a day.
+        """
+        samples = self.monte_carlo["samples"] * len(self.keys["monte_carlo"])
+        events = self.event_budget * len(self.keys["dynamics"])
+        if events > DAY * EVENTS_PER_SECOND:
+            events = sum(map(self._events, self.radii))
+        for radius in self.watch.hop_histogram:
+            each = exact.events_per_interval(self.box.scene(radius), self.histogram["event"])
+            events += min(self.histogram["event_budget"], each * self.histogram["intervals"])
+        return (samples / SAMPLES_PER_SECOND + events / EVENTS_PER_SECOND) / DAY
+
+    def _events(self, radius):
+        scene = self.box.scene(radius)
+        total = exact.event_rate(scene)
+        needed = (
+            total / exact.rate(scene, event) / error**2
+            for event, error in self.dynamics["accuracy"].items()
+            if scene.is_possible(event)
+        )
+        return min(self.event_budget, max(needed, default=0.0))
 
     @cached_property
     def tables(self):
@@ -167,6 +197,11 @@ class Configuration:
     shared: tuple
     scenes: tuple
     accuracy_cost: dict = field(default_factory=dict)
+
+    @property
+    def days(self):
+        """The processor time that the scenes take, roughly, in days of a usual core."""
+        return sum(scene.days for scene in self.scenes)
 
     @property
     def plain(self):

@@ -9,7 +9,8 @@ import json
 
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.configuration.load import load, read
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
 
 
 def effects_job(path, seed):

@@ -9,6 +9,7 @@ from importlib.metadata import version
 from twodiscs.figures.catalogue import FIGURES, NOTES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.results.record import write
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: What the manuscript names the versions of, beside Python.
@@ -88,7 +89,9 @@ def main():
     )
     parser.add_argument("--output", required=True, help="the PDF file")
     options = parser.parse_args()
-    typeset(options.template, options.output, parameters(options.parameters))
+    given = parameters(options.parameters)
+    typeset(options.template, options.output, given)
+    write([options.output], {"template": [options.template]}, job="manuscript", parameters=given)
 
 
 if __name__ == "__main__":

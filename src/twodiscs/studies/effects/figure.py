@@ -38,7 +38,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 SHOWN = (0.22, 22)
 
 
-def draw(box, tables):
+def draw(box=None, *, tables):
     """Draw the rows of effects.csv and effects_cost.csv, which name their boxes; not ``box``."""
     rows = [row for row in tables["effects"] if row["quantity"] != "never_met_share"]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}

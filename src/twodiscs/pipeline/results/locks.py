@@ -1,0 +1,46 @@
+"""The locks of Snakemake: those of a run that was killed are removed by the next one."""
+
+import fcntl
+import os
+import socket
+import sys
+from pathlib import Path
+
+#: The open file by which this process says, for as long as it lives, that it uses a folder.
+_held = []
+
+
+def release(folder=".snakemake"):
+    """Remove the locks that no living run on this machine holds, with a word, and say that one is.
+
+    A run shares a lock of the operating system on the file ``held``, which ends with the process
+    however that ends. Where the file system knows no such locks, or another machine was the last to
+    use the folder, Snakemake's own locks stay, and with them its advice. Returns whether no other
+    run lives.
+    """
+    place, host = Path(folder), socket.gethostname()
+    try:
+        place.mkdir(exist_ok=True)
+        held = open(place / "held", "a+")  # noqa: SIM115
+        _held.append(held)
+        held.seek(0)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:  # another run lives
+            alone = False
+        else:
+            alone = True
+            stale = sorted(place.glob("locks/*.lock"))
+            if stale and held.read() == host:
+                for path in stale:
+                    os.remove(path)
+                stale = []
+                print("The lock of a run that was killed is removed.", file=sys.stderr)
+            if not stale:
+                held.truncate(0)
+                held.write(host)
+                held.flush()
+        fcntl.flock(held, fcntl.LOCK_SH)
+    except OSError:
+        return False
+    return alone

@@ -1,0 +1,157 @@
+"""What jobs say of the files they wrote: their hashes, and what made them.
+
+    python -m twodiscs.pipeline.results.record results
+
+holds all results against that record. It is a file ``.record/NAME.json`` beside each file, of bytes
+that are the same on every run if those of the file are. Its time stamp is that of the file: so what
+was touched since is found without reading anything.
+"""
+
+import json
+import os
+import sys
+from base64 import urlsafe_b64encode
+from hashlib import sha256
+from pathlib import Path
+
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline.arguments import Parser, run
+
+FOLDER = ".record"
+
+#: What is written without a record: by Snakemake itself, or for one moment.
+UNRECORDED = ("logs", "benchmarks", ".compiled", "configuration.json", "provenance.json",
+              "forecast.csv", "report.html", "report-workflow.html", "README.md")  # fmt: skip
+
+
+def digest(*paths):
+    """Return the SHA-256 of files, one after the other, in hexadecimal digits."""
+    found = sha256()
+    for path in paths:
+        found.update(Path(path).read_bytes())
+    return found.hexdigest()
+
+
+def short(text):
+    """Return 16 hexadecimal digits of the SHA-256 of a text."""
+    return sha256(text.encode()).hexdigest()[:16]
+
+
+def _record_of(path):
+    return path.parent / FOLDER / f"{path.name}.json"
+
+
+def write(paths, inputs, **made):
+    """Record that files at ``paths`` come from ``inputs``, {name: paths}, and how they were made.
+
+    Inputs are kept as hashes, with their paths from the folder of each file.
+    """
+    hashes = {name: (found, digest(*found)) for name, found in inputs.items()}
+    for path in map(Path, paths):
+        read = {
+            name: {"files": [os.path.relpath(one, path.parent) for one in found], "sha256": digits}
+            for name, (found, digits) in hashes.items()
+        }
+        record = _record_of(path)
+        record.parent.mkdir(exist_ok=True)
+        content = {"inputs": read, "made_by": made, "sha256": digest(path)}
+        record.write_text(json.dumps(content, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        _stamp(path, record)
+
+
+def _stamp(path, record):
+    times = path.stat()
+    os.utime(record, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+
+def read(path):
+    """Return the record of a file, None if there is none or it is damaged."""
+    try:
+        return json.loads(_record_of(Path(path)).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def require(path):
+    """Raise ``InputError`` for a file that is not what its job wrote."""
+    record = read(path)
+    if record is not None and digest(path) != record["sha256"]:
+        raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
+
+
+def _recorded(folder):
+    """Yield (path, its record) of all files below ``folder`` that have one."""
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(set(folders) - {"logs", "benchmarks"})
+        if os.path.basename(place) == FOLDER:
+            for name in sorted(names):
+                yield Path(place).parent / name.removesuffix(".json"), Path(place, name)
+
+
+def touched(folder):
+    """Return the files below ``folder`` that are not what their jobs wrote.
+
+    Files whose time stamps are those of their records are not read.
+    """
+    found = []
+    for path, record in _recorded(folder):
+        if not path.exists() or path.stat().st_mtime_ns == record.stat().st_mtime_ns:
+            continue
+        known = read(path)
+        if known is None or digest(path) != known["sha256"]:
+            found.append(path)
+        else:
+            _stamp(path, record)
+    return found
+
+
+def notice(folder, snakemake=".snakemake"):
+    """Have Snakemake make again what its jobs did not write like this, with a word for each file.
+
+    To Snakemake these files are incomplete, as those that a killed job has left.
+    """
+    for path in touched(folder):
+        print(f"{path} is not what its job wrote; it is made again when needed.", file=sys.stderr)
+        name = urlsafe_b64encode(str(path).encode()).decode()
+        if len(name) < 255:
+            Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
+            Path(snakemake, "incomplete", name).write_text('{"external_jobid": null}')
+
+
+def audit(folder):
+    """Yield a sentence for every file below ``folder`` that differs from the record of its job."""
+    known = set()
+    for path, record in _recorded(folder):
+        known.add(path)
+        content = read(path)
+        if content is None:
+            yield f"{record} is damaged"
+        elif not path.exists():
+            yield f"{path} is missing"
+        elif digest(path) != content["sha256"]:
+            yield f"{path} is not what its job wrote"
+        else:
+            for one in content["inputs"].values():
+                inputs = [path.parent / name for name in one["files"]]
+                gone = [name for name in inputs if not name.exists()]
+                if gone or digest(*inputs) != one["sha256"]:
+                    what = os.path.commonpath([os.path.normpath(name) for name in inputs])
+                    yield f"{path} was made of another {what}"
+    for path in sorted({one for one in Path(folder).rglob("*") if one.is_file()} - known):
+        if not {*path.relative_to(folder).parts} & {FOLDER, *UNRECORDED}:
+            yield f"{path} was written by no job"
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.results.record", description=__doc__.split("\n")[0])
+    parser.add_argument("folder", type=Path, help="the folder of results")
+    folder = parser.parse_args().folder
+    if not folder.is_dir():
+        raise InputError(f"{folder} holds no results: they are built by make")
+    differences = list(audit(folder))
+    print(*differences, f"differences from the record of the jobs: {len(differences)}", sep="\n")
+    return bool(differences)
+
+
+if __name__ == "__main__":
+    run(main)

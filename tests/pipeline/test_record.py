@@ -1,0 +1,105 @@
+"""The record of the jobs: what changed since is found, named, made again and never certified."""
+
+import json
+import os
+from base64 import urlsafe_b64encode
+
+import pytest
+from fabricated import BOX, command
+
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline import jobs
+from twodiscs.pipeline.results import manifest, record
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder with theory.csv, a figure that shows it, and a point, by their jobs."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "results").mkdir()
+    given = {"box": BOX.parameters()}
+    about = ("--about", "scene paper, seed 3", "--code", "0123")
+    theory = ("table", "comparison.exact_rows", "--function", "theory_rows")
+    words = [*theory, "--parameters", given | {"radii": [0.1]}, *about]
+    assert command(monkeypatch, jobs, *words, "--output", "results/theory.csv") == 0
+    words = ["figure", "figures.geometry.model", "--parameters", given, *about]
+    words += ["--table", "theory=results/theory.csv"]
+    assert command(monkeypatch, jobs, *words, "--output", "results/m.pdf", "results/m.png") == 0
+    return tmp_path / "results"
+
+
+def rewrite(path, content):
+    path.write_bytes(content)
+    os.utime(path, ns=(1, 1))  # an older time stamp tells as much as a newer one
+
+
+def test_a_record_says_what_made_a_file_and_a_figure_carries_it(results):
+    found = record.read(results / "m.png")
+    assert found["sha256"] == record.digest(results / "m.png")
+    assert found["made_by"]["about"] == "scene paper, seed 3"
+    assert found["made_by"]["parameters"] == {"box": BOX.parameters()}
+    assert found["inputs"]["theory"]["files"] == ["theory.csv"]
+    hashes = record.digest(results / "theory.csv")[:16]
+    given = record.short(json.dumps({"box": BOX.parameters()}))
+    line = f"twodiscs: scene paper, seed 3, code 0123, parameters {given}"
+    for name in ("m.png", "m.pdf"):
+        assert f"{line}, tables {hashes}".encode() in (results / name).read_bytes()
+
+
+def test_nothing_changed_nothing_said(results):
+    assert list(record.audit(results)) == []
+    for path in results.glob("*.*"):
+        path.touch()
+    assert record.touched(results) == []
+    assert list(record.audit(results)) == []
+
+
+def test_what_changed_is_made_again_and_named(results, capsys):
+    table, drawn = results / "theory.csv", results / "m.pdf"
+    rewrite(table, table.read_bytes().replace(b"1", b"2"))
+    rewrite(drawn, drawn.read_bytes()[:1000])
+    record.notice("results")
+    said = capsys.readouterr().err.splitlines()
+    assert sorted(said) == [
+        f"results/{name} is not what its job wrote; it is made again when needed."
+        for name in ("m.pdf", "theory.csv")
+    ]
+    marks = {
+        urlsafe_b64encode(f"results/{name}".encode()).decode() for name in ("m.pdf", "theory.csv")
+    }
+    assert {path.name for path in (results.parent / ".snakemake/incomplete").iterdir()} == marks
+    assert sorted(record.audit(results)) == [
+        f"{results}/m.pdf is not what its job wrote",
+        f"{results}/m.png was made of another {results}/theory.csv",
+        f"{results}/theory.csv is not what its job wrote",
+    ]
+
+
+def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):
+    table = results / "theory.csv"
+    stamp = table.stat().st_mtime_ns
+    table.write_bytes(table.read_bytes() + b"\n")
+    os.utime(table, ns=(stamp, stamp))
+    assert f"{table} is not what its job wrote" in list(record.audit(results))
+    with pytest.raises(InputError, match=r"theory\.csv is not what its job wrote; delete it"):
+        manifest.manifest(results, [table])
+
+
+def test_a_damaged_input_stops_a_job_with_its_name(results, monkeypatch, capsys):
+    rewrite(results / "theory.csv", b"radius\n")
+    words = ["figure", "figures.geometry.model", "--parameters", {"box": BOX.parameters()}]
+    words += ["--table", "theory=results/theory.csv", "--output", "results/n.pdf"]
+    assert command(monkeypatch, jobs, *words) == 2
+    assert "results/theory.csv is not what its job wrote" in capsys.readouterr().err
+    assert not (results / "n.pdf").exists()
+
+
+def test_what_no_job_wrote_and_what_is_gone_is_named(results):
+    (results / "own.csv").write_text("a\n")
+    (results / "m.pdf").unlink()
+    (results / ".record" / "m.png.json").write_text("{")
+    assert sorted(record.audit(results)) == [
+        f"{results}/.record/m.png.json is damaged",
+        f"{results}/m.pdf is missing",
+        f"{results}/own.csv was written by no job",
+    ]

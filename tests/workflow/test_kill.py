@@ -1,0 +1,62 @@
+"""After a kill jobs end, the next run goes on by itself, and what was half written is made anew."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import yaml
+from checkout import fresh
+
+JOB = "results/one/points/monte_carlo/0.2.json"
+ENDLESS = {
+    "name": "one",
+    "box": {"width": 1.5, "height": 1},
+    "radii": [0.2],
+    "watch": {"volume": True},
+    "monte_carlo": {"samples": 1e15},
+}
+
+
+def processes(folder):
+    """Return {pid: command line} of the jobs that work in a folder."""
+    found = {}
+    for entry in os.scandir("/proc"):
+        try:
+            if entry.name.isdecimal() and os.readlink(f"{entry.path}/cwd") == str(folder):
+                with open(f"{entry.path}/cmdline", encoding="utf-8") as file:
+                    found[int(entry.name)] = file.read().replace("\0", " ")
+        except OSError:
+            continue
+    return {pid: line for pid, line in found.items() if "-m twodiscs.pipeline.jobs" in line}
+
+
+def wait_until(condition, seconds=300):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.1)
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
+def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path):
+    checkout = fresh(tmp_path / "checkout")
+    checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
+    environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
+    command = [sys.executable, "-m", "snakemake", "--cores", "1", JOB]
+    run = subprocess.Popen(command, cwd=checkout.path, env=environment, stderr=subprocess.DEVNULL)
+    wait_until(lambda: any("point" in line for line in processes(checkout.path).values()))
+    # A second run while the first one lives is refused as ever.
+    assert "LockException" in checkout.snakemake("--cores", "1", JOB, passes=False).stderr
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    wait_until(lambda: not processes(checkout.path))
+
+    (checkout.path / JOB).write_text("{")
+    again = checkout.snakemake("--cores", "1", "results/.compiled/montecarlo")
+    assert "The lock of a run that was killed is removed." in again.stderr
+    assert ("monte_carlo", ("key=0.2", "scene=one")) in [
+        (rule, tuple(sorted(wildcards))) for rule, wildcards in checkout.jobs(JOB)
+    ]
