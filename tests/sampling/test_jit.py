@@ -261,8 +261,8 @@ def instructions(environment, **effects):
 def test_absent_effects_leave_no_instruction(package):
     """The kernel of the plain scene is the same where the package knows no effect at all.
 
-    In the copy every optional function is what stands in for it, but for those that put discs on walls
-    and count equal discs; the compiler never sees the code of the effects.
+    In the copy every optional function is what stands in for it, but for those that put discs on
+    walls and see either disc there; the compiler never sees the code of the effects.
     """
     sources, environment = package
     # The copy has the sources of this package, and so its kernels, if they are compiled.
