@@ -265,10 +265,8 @@ def test_absent_effects_leave_no_instruction(package):
     walls and see either disc there; the compiler never sees the code of the effects.
     """
     sources, environment = package
-    # The copy has the sources of this package, and so its kernels, if they are compiled.
-    environment |= {"NUMBA_CACHE_DIR": str(jit.cache_folder("dynamics").parent)}
-    present = instructions(environment)
-    assert instructions(environment, moment_of_inertia=0.5) != present
+    present = instructions(environment)  # in an empty cache: what is kept has no assembly
+    assert present["vsqrtpd" if "vsqrtpd" in present else "sqrtpd"] > 0
 
     module = sources / "sampling" / "jit.py"
     text = module.read_text(encoding="utf-8")
