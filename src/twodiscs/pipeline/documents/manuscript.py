@@ -50,17 +50,17 @@ def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
-    ``captions`` of all figures, the ``commit`` of the template and the
-    ``versions``; its entry ``results``, their folder, becomes a path from the root that template
-    and results have in common. The same inputs at the same commit give the same bytes on every
-    machine: fonts are those that come with Typst. Raises ``InputError`` if the template does not
-    compile.
+    ``captions`` of all figures, the ``commit`` of the template and the ``versions``; its entry
+    ``results``, their folder, becomes a path from the root that results and the project have in
+    common. The same inputs at the same commit give the same bytes on every machine: fonts are those
+    that come with Typst.
+    Raises ``InputError`` if the template does not compile.
     """
     import typst
 
     results = os.path.abspath(contents["results"])
     folder = os.path.dirname(os.path.abspath(template))
-    root = os.path.commonpath([results, folder])
+    root = os.path.commonpath([results, os.path.dirname(folder)])  # CITATION.cff is there
     contents = contents | {
         "captions": captions(),
         "commit": commit(folder),

@@ -34,7 +34,7 @@ RELATIVE = 1e-12
 SCORE = RELATIVE / 1e-4
 
 #: The columns whose text names a row; every other one holds a result.
-NAMING = ("comparison", "part", "quantity", "event", "method", "case", "label", "place")
+NAMING = ("comparison", "part", "quantity", "event", "bins", "method", "case", "label", "place")
 
 #: The rows on all radii that are made of scores.
 OF_SCORES = ("z_mean", "z_spread")
