@@ -197,7 +197,7 @@ MISTAKES = {
     "null for a box": (counting(box=None), "box must be a block of width, height and"),
     "half a box": (counting(box={"width": 1}), "box must be a block of width, height and maybe"),
     "radii of no list": (
-        words("table", "comparison.exact_rows", OF_BOX | {"radii": None},
+        words("table", "theory.exact", OF_BOX | {"radii": None},
               "--function", "grid_rows"),
         "radii must be a list of numbers, not None",
     ),

@@ -19,7 +19,7 @@ def results(tmp_path, monkeypatch):
     (tmp_path / "results").mkdir()
     given = {"box": BOX.parameters()}
     about = ("--about", "scene paper, seed 3", "--code", "0123")
-    theory = ("table", "comparison.exact_rows", "--function", "theory_rows")
+    theory = ("table", "theory.exact", "--function", "theory_rows")
     words = [*theory, "--parameters", given | {"radii": [0.1]}, *about]
     assert command(monkeypatch, jobs, *words, "--output", "results/theory.csv") == 0
     words = ["figure", "figures.geometry.model", "--parameters", given, *about]
