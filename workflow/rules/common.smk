@@ -110,7 +110,7 @@ def about(scene, seed=CONFIGURATION.seed):
 
 def contents(*paths):
     """Return a hash of files, for inputs whose time stamps may not tell that they were edited."""
-    texts = b"".join(Path(path).read_bytes() for path in paths)
+    texts = b"".join(Path(p).read_bytes() for p in paths if os.path.exists(p))
     return blake2b(texts, digest_size=8).hexdigest()
 
 
