@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from twodiscs.dynamics import counting, trajectory
+from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -25,6 +26,7 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import states
+from twodiscs.theory import exact
 
 EPS = 2.0**-52
 SCENES = {
@@ -170,6 +172,19 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
         event: seen[event] for event in scene.events
     }
     assert seen["any_wall"] > 10
+
+
+@counted_scene
+def test_counts_have_the_exact_rates(name):
+    """Walls with all that symmetry makes equal; five sigma."""
+    scene, blocks = SCENES[name], 8
+    duration, times = counting.replica_duration(scene), exact.mean_times(scene)
+    sums, products = counting.run_blocks(scene, EVENTS, 6, 0, blocks, duration)
+    errors = relative_errors(sums, products, blocks * REPLICAS)
+    for event in scene.events:
+        total, error = (found[EVENTS.index(event)] for found in (sums, errors))
+        expected = scene.copies(event) * duration / times[event] * blocks * REPLICAS
+        assert abs(total - expected) <= 5 * error * total, event
 
 
 @every_scene

@@ -76,7 +76,7 @@ def parts(source):
 
 
 #: Digits of a name, and of what is so by definition.
-DEFINED = r"\bdisc 1\b|\bnominal 95 per cent\b"
+DEFINED = r"\b[Dd]isc [12]\b|\bnominal 95 per cent\b|`manifest\.sha256`"
 
 
 def typed_numbers(source):
@@ -146,8 +146,8 @@ OF_SCENE = {
     "grid": rows("grid", {"radius": 0.1}, {"radius": 0.2}),
     "check": rows(
         "check",
-        {"method": "monte_carlo", "z": -1.25, "passed": True},
-        {"method": "dynamics", "z": 2.5, "passed": True},
+        {"method": "monte_carlo", "z": -1.25, "passed": True, "independent": True},
+        {"method": "dynamics", "z": 2.5, "passed": True, "independent": True},
     ),
     "cost": rows(
         "cost",
@@ -161,7 +161,7 @@ OF_STUDIES = {
         "errata",
         {"label": "volindic", "place": "II", "verdict": "right"},
         {"label": "hoptau", "place": "V", "verdict": "wrong", "ratio": 0.5, "radius": 0.2}
-        | {"correction": "√2 once"},
+        | {"number": "26", "severity": "major", "correction": "`8√2 b√(a² − r²)`, with `√2` once"},
     ),
     "accuracy_cost": rows(
         "accuracy_cost",
@@ -196,12 +196,14 @@ OF_STUDIES = {
         *(
             {"scene": "scene0", "radius": 0.24, "event": "vertical_hop", "exact_mean": 1.1}
             | {"quantity": quantity, "estimate": 0.8, "stderr": 0.004, "z": z, "p": p}
+            | ({"first": 4.4, "last": 12.0} if p else {})
             for quantity, z, p in (
                 ("mean", 0.5, None),
                 ("squared_cv", None, None),
                 ("first_passage", 1.5, None),
                 ("density_at_zero", -0.75, None),
                 ("rate", -30.0, 0.5),
+                ("trend", -0.7, 0.5),
             )
         ),
     ),
@@ -292,6 +294,7 @@ def paper(tmp_path_factory, page):
         for source in PAPER.iterdir():
             if source.is_file():
                 shutil.copy(source, template.parent)
+        shutil.copy(PAPER.parent / "CITATION.cff", tmp_path)
         if text:
             template.write_text(text)
         box = {"width": 1.5, "height": 1.0}
@@ -299,6 +302,7 @@ def paper(tmp_path_factory, page):
             "configuration": "0123456789abcdef",
             "figures": list(common),
             "results": str(folder),
+            "seed": 1,
             "scenes": [
                 box | {"name": name, "figures": list(figures), "tables": list(OF_SCENE)}
                 for name in names
@@ -345,6 +349,8 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
     [
         (("check", 1, "z"), 4.5),
         (("check", 0, "passed"), False),
+        (("check", 0, "independent"), False),
+        (("errata", 1, "severity"), "slip"),
         (("cost", 0, "events"), 9_000_000),
         (("cost", 1, "events"), 90_000_000),
         (("errata", 1, "ratio"), 0.25),
@@ -356,6 +362,7 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
         (("distributions", 2, "z"), 2.5),
         (("distributions", 3, "estimate"), 0.7),
         (("distributions", 4, "p"), 1e-5),
+        (("distributions", 5, "p"), 1e-5),
         (("thresholds", 0, "estimate"), -1.5),
         (("thresholds", 7, "z"), 3.5),
         (("effects", 0, "z"), 4.5),
@@ -453,10 +460,11 @@ def test_versions_are_those_installed():
 
 def test_what_captions_explain_alike_is_split_off():
     entry = FIGURES["volume"]
-    own, alike = manuscript.captions()["volume"]
+    own, alike, tables, quantities = manuscript.captions()["volume"]
+    assert (tables, quantities) == (("volume",), ["volume"])
     assert f"{own} {alike}" == entry.full_caption()
     assert own.endswith("(symbols).")
     assert alike == NOTES[entry.note].plain
     assert alike.startswith("Error bars")
-    assert manuscript.captions()["model"] == (FIGURES["model"].full_caption(), "")
+    assert manuscript.captions()["model"][:2] == (FIGURES["model"].full_caption(), "")
     assert manuscript.captions().keys() == FIGURES.keys() | STUDY_FIGURES.keys()

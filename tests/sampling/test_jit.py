@@ -261,8 +261,8 @@ def instructions(environment, **effects):
 def test_absent_effects_leave_no_instruction(package):
     """The kernel of the plain scene is the same where the package knows no effect at all.
 
-    In the copy every optional function is what stands in for it, but for the one that puts discs on
-    walls; the compiler never sees the code of the effects.
+    In the copy every optional function is what stands in for it, but for those that put discs on
+    walls and see either disc there; the compiler never sees the code of the effects.
     """
     sources, environment = package
     # The copy has the sources of this package, and so its kernels, if they are compiled.
@@ -274,7 +274,8 @@ def test_absent_effects_leave_no_instruction(package):
     text = module.read_text(encoding="utf-8")
     mark = "    def decorate(present):"
     assert text.count(mark) == 1
-    without = "return lambda present: inlined(present if present.__name__ == 'on_wall' else absent)"
+    kept = "present.__name__ in ('on_wall', 'hit')"
+    without = f"return lambda present: inlined(present if {kept} else absent)"
     module.write_text(text.replace(mark, f"    {without}\n\n{mark}"), encoding="utf-8")
     assert instructions(environment) == present
     failed = subprocess.run(

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
+from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.studies.accuracy_cost import figure, figure_by_radius, scalar
@@ -145,7 +147,7 @@ def test_every_method_is_there(rows):
         "area": "shell balanced_shell surface sobol quadrature closed_form exact",
         "time": "lockstep single_precision scalar time_step",
         "floor": "shell time_step",
-        "radius": "lockstep poisson paid",
+        "radius": "lockstep strip poisson paid",
         "precision": "lockstep single_precision",
     }
     for part, names in methods.items():
@@ -178,6 +180,15 @@ def test_a_hop_that_dies_out_costs_ever_more(rows):
     prices = [row["seconds"] for row in found if row["radius"] > 0.1]
     assert prices == sorted(prices)
     assert prices[-1] > 100 * prices[0]
+
+
+@pytest.mark.parametrize("hop", HOPS)
+def test_from_starts_next_to_it_it_does_not(rows, hop):
+    """Some two starts for 1/error², of 2 to 32 events: no more than 128, by the random numbers."""
+    found = of(rows, part="radius", method="strip", quantity=f"{hop}_time")
+    last = Box.of(PAPER).threshold(hop)
+    assert min(1 - row["radius"] / last for row in found) < 2e-6
+    assert all(row["work"] < 128 / row["error"] ** 2 for row in found)
 
 
 @pytest.mark.parametrize("module", [figure, figure_by_radius])

@@ -276,14 +276,14 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
         "theory", "sampling", "estimates", "times", "dynamics", "reversal", "coverage"
     }  # fmt: skip
     with style.context():
-        drawn = figure.draw(None, {"stability": rows})
+        drawn = figure.draw(PAPER, {"stability": rows})
         style.save(drawn, tmp_path / "figure.png")
     assert len(drawn.axes) == 8
 
 
 def test_a_table_without_rows_is_drawn_empty(tmp_path):
     with style.context():
-        style.save(figure.draw(None, {"stability": []}), tmp_path / "figure.png")
+        style.save(figure.draw(PAPER, {"stability": []}), tmp_path / "figure.png")
 
 
 def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path, monkeypatch):

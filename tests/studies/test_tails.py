@@ -185,7 +185,7 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch)
     assert [row["quantity"] for row in rows].count("rate") == 1
     assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
     with style.context():
-        whole, ratio, alone = figure.draw(None, {"tails": rows}).axes
+        whole, ratio, alone = figure.draw(BOX, {"tails": rows}).axes
     law = next(line for line in whole.lines if line.get_linestyle() == "-")
     times = np.array(in_mean_times(PAPER, "disc_collision", (5, 50)))
     due = tail_constant(PAPER, "disc_collision") / times**3

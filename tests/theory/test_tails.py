@@ -8,6 +8,7 @@ from theory.antiderivatives import TURNED
 
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.theory import exact, tails
 from twodiscs.theory.tails import density_at_zero, tail_constant
 
 BOUND = 1e-13
@@ -72,3 +73,46 @@ def test_only_plain_scenes_have_known_distributions(function):
             function(bad)
     with pytest.raises(ValueError, match=r"must be plain .* it has radius_ratio, field"):
         function(Scene(*PAPER, 0.2, radius_ratio=0.5, field=0.1))
+
+
+def rows_apart(rng, height, sigma, time, n):
+    """Return how many of ``n`` starts keep |y1 − y2| ≥ σ for a time, by reflecting both discs.
+
+    Heights are uniform in [0, ``height``] and velocities in the unit disc, as the invariant measure
+    has them. Between reflections the distance is linear, so its least is at one of them or an end.
+    """
+    y = rng.uniform(0, height, (2, n))
+    speed, angle = np.sqrt(rng.uniform(0, 1, n)), rng.uniform(0, 2 * math.pi, n)
+    v = speed * np.array([np.cos(angle), np.sin(angle)])
+    with np.errstate(divide="ignore"):
+        hits = (np.arange(-9, 10)[:, None, None] * height - y) / v
+    times = np.clip(hits.reshape(-1, n), 0, time)
+    times = np.concatenate([times, np.full((1, n), time)])
+    folded = np.abs((y[:, None] + v[:, None] * times + height) % (2 * height) - height)
+    apart = folded[0] - folded[1]
+    return int(np.sum(np.all(apart >= sigma, axis=0) | np.all(apart <= -sigma, axis=0)))
+
+
+@pytest.mark.parametrize(("axis", "radius"), [("x", 0.05), ("x", 0.15), ("y", 0.1), ("y", 0.3)])
+def test_drifts_last_with_the_exact_probability(axis, radius):
+    """One standard error is some half a per cent; four tests at five of them."""
+    scene, n = Scene(1.5, 1.0, radius), 2 * 10**5
+    ranges = scene.range_x, scene.range_y
+    along, height = ranges if axis == "x" else ranges[::-1]
+    time = 2.1 * (height - scene.contact_distance)
+    found = rows_apart(np.random.default_rng(3), height, scene.contact_distance, time, n)
+    # Free along the axis, and none of these starts overlaps.
+    share = (along * height) ** 2 / exact.volume(scene)
+    due = tails.drift_probability(scene, time, axis) / share
+    assert abs(found / n - due) < 5 * math.sqrt(due * (1 - due) / n)
+
+
+def test_drifts_make_the_bound_of_the_tail():
+    scene, time = Scene(1.5, 1.0, 0.1), 50.0
+    both = sum(tails.drift_probability(scene, time, axis) for axis in "xy")
+    tau = exact.mean_times(scene)["disc_collision"]
+    assert 2 * tau * both / time == pytest.approx(
+        tails.tail_constant(scene, "disc_collision") / time**3, rel=1e-13
+    )
+    with pytest.raises(ValueError, match="time must be at least"):
+        tails.drift_probability(scene, 0.1)

@@ -12,7 +12,7 @@ import yaml
 from snakemake import cli
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper")
+PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper", "CITATION.cff")
 
 
 def forked(arguments, folder, sources):

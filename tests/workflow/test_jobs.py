@@ -34,7 +34,7 @@ def test_edits_of_comments_and_docstrings_rerun_nothing(built):
     built.replace(f"{source}/dynamics/counting.py", counting, '"""The job\n\n    of a radius."""')
     meaning = '"""expectation − exact: what the thickness of the shell adds"""'
     built.replace(f"{source}/comparison/scene_tables.py", meaning, '"""how far off"""')
-    table = '"""One row a radius and quantity: the exact values."""'
+    table = '"""One row per radius and quantity: the exact values."""'
     built.replace(f"{source}/comparison/scene_tables.py", table, '"""The exact values."""')
     assert built.jobs() == []
 

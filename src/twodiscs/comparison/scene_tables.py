@@ -20,7 +20,7 @@ VOLUME, AREA = Column(float, "length⁴"), Column(float, "length³")
 
 
 class Grid(Table):
-    """One row a radius: what the scene computes."""
+    """One row per radius: what the scene computes."""
 
     radius: LENGTH
     regime: TEXT
@@ -31,7 +31,7 @@ class Grid(Table):
 
 
 class Theory(Table):
-    """One row a radius and quantity: the exact values."""
+    """One row per radius and quantity: the exact values."""
 
     radius: LENGTH
     quantity: TEXT
@@ -82,8 +82,8 @@ class Sampled(Table):
 
 class Volume(Sampled):
     """
-    One row a radius: the volume of configuration space, exact and by Monte Carlo. In a field it is
-    weighted with the invariant density; for balls it is in length⁶.
+    One row per radius: the volume of configuration space, exact and by Monte Carlo. In a field it
+    is weighted with the invariant density; for balls it is in length⁶.
     """
 
     exact: VOLUME
@@ -95,7 +95,7 @@ class Volume(Sampled):
 
 class Areas(Sampled):
     """
-    One row a radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
+    One row per radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
     of finite thickness is not a surface, so its exact expectation has a column. In a field areas
     are weighted as the flux is; for balls they are in length⁵.
     """
@@ -109,7 +109,7 @@ class Areas(Sampled):
 
 class MeanTimes(Table):
     """
-    One row a radius and event: the mean time between events, exact and by dynamics. What starts
+    One row per radius and event: the mean time between events, exact and by dynamics. What starts
     anywhere saw of a hop whose row is from a strip is compared in check.csv.
     """
 
@@ -165,7 +165,7 @@ class MeanTimes(Table):
 
 
 class HopHistogram(Table):
-    """One row a radius and bin: intervals between hops, from one crossing to the next."""
+    """One row per radius and bin: intervals between hops, from one crossing to the next."""
 
     radius: LENGTH
     event: TEXT
@@ -197,7 +197,7 @@ class HopHistogram(Table):
 
 
 class Check(Table):
-    """One row a comparison with the exact theory."""
+    """One row per comparison with the exact theory."""
 
     comparison: TEXT
     """volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and z_spread"""
@@ -232,7 +232,7 @@ class Check(Table):
 
 
 class Cost(Table):
-    """One row a job: what it took. The only table of a scene that differs from run to run."""
+    """One row per job: what it took. The only table of a scene that differs from run to run."""
 
     stage: TEXT
     """monte_carlo, dynamics or intervals; total of the jobs that were forecast"""
@@ -269,7 +269,7 @@ class Trajectory(Table):
 
 
 class Forecast(Table):
-    """One row a scene and stage: what the configuration is going to take on this machine."""
+    """One row per scene and stage: what the configuration is going to take on this machine."""
 
     scene: TEXT
     """the scene; all for what is made once, and for the total"""

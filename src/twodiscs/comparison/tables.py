@@ -1,7 +1,7 @@
 """Tables: CSV files whose columns, units and meaning are declared once, as a class.
 
     class Tails(Table):
-        '''One row a time t: how probable an interval T longer than t is.'''
+        '''One row per time t: how probable an interval T longer than t is.'''
 
         radius: LENGTH
         '''radius of the discs'''

@@ -354,10 +354,11 @@ FIGURES = {
         "Shells around surfaces",
         GEOMETRY,
         """
-        The area of a surface is measured by the samples within a distance ε of it. (a) The
-        surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
-        extends √2 ε to either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2
-        and y = |y1 − y2|/√2, has a shell on its outer side only.
+        The area of a surface is measured by the samples within a distance ε of it. (a) The surface
+        of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends √2 ε to
+        either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and y = |y1 −
+        y2|/√2, has a shell on its outer side only. Boxes longer than nine to five are drawn
+        shorter.
         """,
         "figures.geometry.surface_shell",
     ),

@@ -28,9 +28,10 @@ def draw(box, tables, names, label, place, single=None, rooted=False, laws=(), a
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
     the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
     ``rooted``, as the square root; ``place`` that of the legend, and ``single`` the method if there
-    is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are drawn besides; with
-    ``approach`` a panel beneath shows the times over the distance from the radius of their end.
-    Raises ``InputError`` if the table has none of the quantities, and for no table or several.
+    is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
+    drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
+    radius of their end. Raises ``InputError`` if the table has none of the quantities, and for no
+    table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"

@@ -244,7 +244,7 @@ def kernels(options):
 
 
 def verdict(options):
-    """Write a line a scene if every comparison passed; otherwise print failures and return 1."""
+    """Write a line per scene if every comparison passed; otherwise print failures and return 1."""
     judge = function_of(options.module, "verdict")
     if not options.table:
         raise InputError("verdict needs --table, the check table of a scene or of several")

@@ -173,12 +173,12 @@ STUDIES = {
         ),
         Study(
             "stability",
-            "how each method does where arithmetic has it hard",
+            "how accurate each method is in numerically hard cases",
             (Stability,),
             30.0,
             {
                 "stability": Entry(
-                    "Where arithmetic has it hard",
+                    "Numerically hard cases",
                     NUMERICS,
                     """
                     How the methods behave at hard radii; dashed lines are what is asked for. (a)
@@ -195,8 +195,8 @@ STUDIES = {
                     event costs; the line is one rounding that grows at this rate. The legend says
                     after how many events half of the digits are lost, and in brackets after how
                     many they should be. (h) Share of 95 % intervals that cover the exact mean
-                    time, over independent repetitions; crosses mark events too rare for an
-                    interval.
+                    time, over independent repetitions; a cross would be
+                    an event too rare for an interval. Rows without a symbol were not run.
                     """,
                     "studies.stability.figure",
                     tables=("stability",),

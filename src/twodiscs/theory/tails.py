@@ -2,9 +2,9 @@
 
 import math
 
-from twodiscs.model.checks import one_of
+from twodiscs.model.checks import InputError, one_of
 from twodiscs.model.events import HOPS
-from twodiscs.theory.exact import areas
+from twodiscs.theory.exact import areas, volume
 from twodiscs.theory.laws import a_plain_scene
 from twodiscs.theory.plain import Arc
 
@@ -34,6 +34,25 @@ def density_at_zero(scene, hop):
     return 3 * math.sqrt(2) / (16 * side)
 
 
+def drift_probability(scene, time, axis="x"):
+    """Return the exact probability that discs drift along an ``axis`` in separate rows for a time.
+
+    That is P(|y1 − y2| ≥ σ throughout ``time``) = 2 A² (B − σ)₊⁴/(π V time²) from the invariant
+    measure, for "x", and A ↔ B for "y". It holds for time ≥ 2 (B − σ)₊, the diameter of the square
+    in which the slacks move: all drifts that stay in it have |(v1, v2)| ≤ 1, where the density of
+    two components of a unit vector in four dimensions is 1/π everywhere. Raises ``InputError`` for
+    anything that is not a plain ``Scene``, an unknown axis and a shorter time.
+    """
+    one_of("axis", axis, ("x", "y"))
+    arc = Arc.of(a_plain_scene(scene))
+    along, beyond = arc.range_x, arc.beyond_y
+    if axis == "y":
+        along, beyond = arc.range_y, arc.beyond_x
+    if not time >= 2 * beyond:
+        raise InputError(f"time must be at least {2 * beyond!r}, not {time!r}")
+    return 2 * along**2 * beyond**4 / (math.pi * volume(scene) * time**2)
+
+
 def tail_constant(scene, event):
     """Return C of the tail P(T > t) → C/t³ of the time between events, in time³.
 
@@ -54,8 +73,9 @@ def tail_constant(scene, event):
 
     and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
 
-    Proved is, for collisions, that P(none within t) is at least this to leading order, and that no
-    other family of directions of two or more dimensions avoids them: with wall hits unfolded
+    Proved is that P(none within t) is at least this once t ≥ 2√((A − σ)₊² + (B − σ)₊²), where the
+    drifts of both axes have it exactly (``drift_probability``), and for hops at least its own term;
+    and that no other family of directions of two or more dimensions avoids collisions: unfolded
     flights are straight lines on a torus of four dimensions, on which the centres coincide on the
     four planes x1 = ±x2, y1 = ±y2; a plane of directions that is transversal to one of these meets
     it, and only (u1, u2) and (v1, v2) are transversal to none. Argued, not proved, is that what is

@@ -11,12 +11,15 @@ from twodiscs.figures.kit.style import BLUE, COLUMN, GREY, VERMILLION, new_figur
 RADIUS = 0.2
 THICKNESS = 0.06
 
+#: Longer boxes are drawn shorter: the shells are at one end of them.
+LONGEST = 1.8
+
 LEFT, GAP, RIGHT, BELOW, ABOVE = 0.3, 0.42, 0.08, 0.3, 0.26
 
 
 def draw(box, tables):
     """Draw the shells in the ``Box``; ``tables`` is not used."""
-    width, height = drawing.outline(box)
+    width, height = drawing.outline(box, LONGEST)
     short = min(width, height)
     radius, epsilon = RADIUS * short, THICKNESS * short
     a, b = width / 2 - radius, height / 2 - radius

@@ -18,9 +18,9 @@ LONGEST = 4
 DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 
 
-def outline(box):
-    """Return (width, height) of a ``Box`` as drawn: longer than ``LONGEST`` to one is shortened."""
-    return min(box.width, LONGEST * box.height), min(box.height, LONGEST * box.width)
+def outline(box, longest=LONGEST):
+    """Return (width, height) of a ``Box`` as drawn: longer than ``longest`` to one is shortened."""
+    return min(box.width, longest * box.height), min(box.height, longest * box.width)
 
 
 def scale(width, height, room_x, room_y):

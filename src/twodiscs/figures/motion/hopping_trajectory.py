@@ -8,8 +8,8 @@ from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figur
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
 
-#: Rows in the lower panel, on average.
-CLOSE = 150
+#: Rows in the lower panel, on average, or fewer to tell hops this share of it apart.
+CLOSE, APART = 150, 0.02
 
 
 def draw(box, tables, radius=None):
@@ -32,6 +32,10 @@ def draw(box, tables, radius=None):
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
     start, end = _crowded(hops, length, times[0], times[-1])
+    gaps = np.diff(hops[(hops > start) & (hops < end)])
+    if gaps.size and gaps.min() < APART * length:
+        length = max(gaps.min() / APART, length / 10)
+        start, end = _crowded(hops, length, times[0], times[-1])
     for axes, thick, mark in (
         (whole, 0.3, {"marker": "o", "markersize": 2.2, "mew": 0}),
         (close, 0.7, {"marker": "|", "markersize": 9, "mew": 0.9}),

@@ -17,9 +17,14 @@ PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
 
 def captions():
-    """Return {figure: (what is the figure's own, what it explains as others do or "")}."""
+    """Return {figure: (its own caption, what others explain alike or "", tables, quantities)}."""
     return {
-        name: (entry.own_caption(), NOTES[entry.note].plain if entry.note else "")
+        name: (
+            entry.own_caption(),
+            NOTES[entry.note].plain if entry.note else "",
+            entry.tables,
+            sorted(entry.needs),
+        )
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 

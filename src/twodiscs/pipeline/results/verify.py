@@ -5,7 +5,7 @@ be the same on every processor. Exact values, scores and whatever follows from t
 libraries, whose last digits differ between processors: these floats must agree to ``RELATIVE``.
 
 The folder of what is expected mirrors that of the results: ``S/points/<method>.json`` holds the
-points of a scene S, a line a radius, and ``S/<table>.csv`` a table. Nothing is built here.
+points of a scene S, one line per radius, and ``S/<table>.csv`` a table. Nothing is built here.
 """
 
 import json

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
 from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.panels import name_box
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -18,10 +19,11 @@ from twodiscs.figures.kit.style import (
     VERMILLION,
     new_figure,
 )
+from twodiscs.model.box import Box
 
 #: Inches: width of two columns, the height, margins and the gaps between the panels.
-WIDTH, HEIGHT = 7.0, 3.7
-LEFT, RIGHT, BOTTOM, TOP, GAP = 0.5, 0.1, 0.36, 0.2, 0.46
+WIDTH, HEIGHT = 7.0, 3.86
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.5, 0.1, 0.36, 0.36, 0.46
 
 #: The lower part of a panel that is split and the gap, in inches; the error there; the times.
 LOWER, BREAK = 1.25, 0.05
@@ -67,6 +69,7 @@ def draw(box, tables):
         _split(upper, lower)
     _times(_panel(figure, 2, BOTTOM, TOP), rows)
     figure.axes[0].set_ylabel("relative error")
+    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=12)
     for axes in figure.axes:
         axes.xaxis.set_major_locator(LogLocator(numticks=12))
         axes.xaxis.set_minor_formatter(NullFormatter())

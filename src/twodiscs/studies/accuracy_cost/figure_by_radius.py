@@ -62,7 +62,7 @@ def _times(axes, rows):
     axes.plot([], [], color=BLACK, label="Poisson process")
     for radius, _ in found:
         axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 30), xlabel="radius $r$")
+    axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 500), xlabel="radius $r$")
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=1, handlelength=1)
     panels.name_limits(axes, found)

@@ -5,8 +5,8 @@ from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Col
 
 class AccuracyCost(Table):
     """
-    One row a method and amount of work: its true error against the processor time it takes, on one
-    core. All rows come from one run, in which the methods take turns.
+    One row per method and amount of work: its true error against the processor time it takes, on
+    one core. All rows come from one run, in which the methods take turns.
     """
 
     part: TEXT

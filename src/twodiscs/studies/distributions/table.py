@@ -8,9 +8,9 @@ AS_ESTIMATE = Column(float, "as estimate")
 
 class Distributions(Table):
     """
-    One row a scene, radius and quantity: how the times to the next hop are distributed, from a hop
-    (intervals T) and from a random moment (first passages F). Every T and every F has a start of
-    its own.
+    One row per scene, radius and quantity: how the times to the next hop are distributed, from a
+    hop (intervals T) and from a random moment (first passages F). Every T and every F has a start
+    of its own.
     """
 
     scene: TEXT

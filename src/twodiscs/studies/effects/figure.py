@@ -73,6 +73,7 @@ def draw(box=None, *, tables):
             lower.set_ylabel("residual $z$")
     _costs(figure, tables["effects_cost"], looks)
     _legend(figure, boxes, looks)
+    panels.name_box(figure.axes[0], plain, up=24)
     return figure
 
 

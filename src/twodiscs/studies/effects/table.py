@@ -6,7 +6,7 @@ AS_EXACT = Column(float, "as exact")
 
 
 class Effects(Table):
-    """One row a scene with effects, radius and quantity, beside discs without effects."""
+    """One row per scene with effects, radius and quantity, beside discs without effects."""
 
     scene: TEXT
     """its name; that of its file in config/scenes"""
@@ -66,4 +66,4 @@ class EffectsCost(Table):
 
 
 class Benchmark(EffectsCost):
-    """One row a benchmark and variant, all variants of a benchmark measured in one run."""
+    """One row per benchmark and variant, all variants of a benchmark measured in one run."""

@@ -409,7 +409,8 @@ STATEMENTS = (
         "V B",
         ("h/4",),
         collision_time_is_smooth,
-        correction="it is differentiable once: beyond `h/4` the area gains a term `∝ (4r − h)^(3/2)`",
+        correction="it is differentiable once: beyond `h/4` the area gains a term "
+        "`∝ (4r − h)^(3/2)`",
         severity="minor",
     ),
     Statement(
@@ -435,8 +436,8 @@ STATEMENTS = (
         "VI",
         HOPS,
         hop_tails_are_exponential,
-        correction="those of vertical hops fall as `t^(−3)` for `r < h/4`, where drifts along x avoid "
-        "them; beyond, some look exponential as far as is seen",
+        correction="those of vertical hops fall as `t^(−3)` for `r < h/4`, where drifts along x "
+        "avoid them; beyond, some look exponential as far as is seen",
         severity="major",
     ),
     Statement(

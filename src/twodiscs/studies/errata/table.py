@@ -4,7 +4,7 @@ from twodiscs.comparison.tables import LENGTH, NUMBER, TEXT, Table
 
 
 class Errata(Table):
-    """One row a displayed formula of arXiv:1908.04749, or a claim of its text: is it right?"""
+    """One row per displayed formula of arXiv:1908.04749, or a claim of its text: is it right?"""
 
     label: TEXT
     """its label in the source, or a short name"""

@@ -8,6 +8,7 @@ from matplotlib.transforms import blended_transform_factory
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.panels import name_box
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -35,7 +36,7 @@ NOTHING = 1e-17
 
 
 def draw(box, tables):
-    """Draw the rows of stability.csv; ``box`` is not used, for the table has its own box."""
+    """Draw the rows of stability.csv, which are on the ``Box`` of the first scene."""
     parts = {}
     for row in tables["stability"]:
         parts.setdefault(row["part"], []).append(row)
@@ -51,6 +52,7 @@ def draw(box, tables):
     _times(_panel(figure, 1, 5.8, 1.1, "f", 1.05), parts.get("times", []))
     _reversal(_panel(figure, 2, 0.5, 2.6, "g"), parts.get("reversal", []))
     _coverage(_panel(figure, 2, 3.65, 3.25, "h"), parts.get("coverage", []))
+    name_box(figure.axes[0], box)
     return figure
 
 

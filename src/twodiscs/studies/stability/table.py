@@ -7,7 +7,7 @@ SEE_QUANTITY = Column(float, "see quantity")
 
 class Stability(Table):
     """
-    One row a number that says how a method behaves where arithmetic has it hard, for the box of the
+    One row per number that says how a method behaves in a numerically hard case, for the box of the
     first scene.
     """
 

@@ -7,7 +7,7 @@ from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, SIZES, VERMILLION, new_figure
 
 #: Inches: the panel of the tails, of their ratio to the law, of the exponential, and gaps.
-TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.75, 0.95, 1.3, 0.07, 0.42, 0.08
+TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.75, 0.95, 1.3, 0.07, 0.42, 0.22
 
 #: Colour and marker of the cases, in the order of the table.
 LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))
@@ -17,7 +17,7 @@ LARGEST_ERROR = 0.3
 
 
 def draw(box, tables):
-    """Draw the rows of tails.csv; ``box`` is not used, for the table has its own radii."""
+    """Draw the rows of tails.csv, in the ``Box`` of the first scene; they have their own radii."""
     rows = tables["tails"]
     low = panels.BOTTOM + EXPONENTIAL + GAP
     figure = new_figure(low + RATIO + JOINT + TAILS + TOP)
@@ -46,6 +46,7 @@ def draw(box, tables):
     alone.legend(loc="upper right")
     for axes, name in ((whole, "a"), (ratio, "b"), (alone, "c")):
         panels.letter(axes, name)
+    panels.name_box(whole, box)
     return figure
 
 

@@ -7,7 +7,7 @@ AS_ESTIMATE = Column(float, "as estimate")
 
 class Tails(Table):
     """
-    One row a time t: how probable an interval T longer than t is, in the box of the first scene.
+    One row per time t: how probable an interval T longer than t is, in the box of the first scene.
     """
 
     event: TEXT

@@ -7,7 +7,7 @@ AS_ESTIMATE = Column(float, "as estimate")
 
 class Thresholds(Table):
     """
-    One row a fitted power law: mean times near a limiting radius r_c, τ = C δ^p with δ = r_c − r,
+    One row per fitted power law: mean times near a limiting radius r_c, τ = C δ^p with δ = r_c − r,
     weighted least squares in ln τ against ln δ.
     """
 

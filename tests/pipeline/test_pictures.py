@@ -1,0 +1,28 @@
+"""The pictures of the pages: one panel each, the one that the text speaks of."""
+
+import pytest
+from figure_cases import PAPER, draw, tables_of, unclear
+
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import style
+from twodiscs.pipeline.documents.pictures import HEIGHT, PANELS, WHOLE, alone
+from twodiscs.studies.catalogue import STUDY_FIGURES
+
+
+def test_pictures_are_of_figures_that_there_are():
+    names = [name for name, *_ in PANELS.values()] + [*WHOLE]
+    assert set(names) <= {*FIGURES, *STUDY_FIGURES}
+
+
+@pytest.mark.parametrize("picture", [p for p, (name, *_) in PANELS.items() if name in FIGURES])
+def test_a_picture_is_a_panel_with_a_legend_and_names_of_its_axes(picture):
+    name, *panel = PANELS[picture]
+    with style.context():
+        figure = draw(name, PAPER, tables_of("paper"))
+        alone(figure, *panel)
+        assert unclear(figure) == []
+        (kept,) = [axes for axes in figure.axes if axes.get_visible()]
+    assert kept.get_legend()
+    assert kept.get_xlabel()
+    assert "residual" not in kept.get_ylabel()
+    assert tuple(figure.get_size_inches()) == (style.COLUMN, HEIGHT)

@@ -1,0 +1,66 @@
+"""The tutorial: its page and its notebook are what its blocks of Python print."""
+
+import math
+import re
+
+import pytest
+from checkout import REPOSITORY
+
+from twodiscs.pipeline.documents import tutorial
+
+nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes notebooks")
+
+PAGE, NOTEBOOK = REPOSITORY / "docs" / "python.md", REPOSITORY / "docs" / "tutorial.ipynb"
+
+
+@pytest.fixture(scope="module")
+def made():
+    return tutorial.tutorial(PAGE.read_text(encoding="utf-8"))
+
+
+def words(text):
+    """Return the words of a text, with numbers as numbers."""
+    words = text.split()
+    return [float(word) if re.fullmatch(r"[-+]?\d[\d.e+-]*", word) else word for word in words]
+
+
+def same(shown, found):
+    """Say whether texts agree, but for the last digits of exact numbers and of what is rounded.
+
+    Those depend on the math library; what is simulated does not.
+    """
+    pairs = zip(words(shown), words(found), strict=True)
+    return all(
+        a == b
+        or (isinstance(a, float) and isinstance(b, float) and math.isclose(a, b, rel_tol=1e-9))
+        for a, b in pairs
+    )
+
+
+def test_the_page_shows_what_its_blocks_print(made):
+    assert same(PAGE.read_text(encoding="utf-8"), made[0])
+
+
+def test_the_notebook_is_the_page(made):
+    kept = nbformat.read(NOTEBOOK, as_version=4)
+    assert [cell.source for cell in kept.cells] == [cell.source for cell in made[1].cells]
+    for old, new in zip(kept.cells, made[1].cells, strict=True):
+        for before, after in zip(old.get("outputs", []), new.get("outputs", []), strict=True):
+            assert before.output_type == after.output_type
+            assert same(text_of(before), text_of(after))
+
+
+def text_of(output):
+    return output.get("text") or output.data.get("text/plain", "")
+
+
+def test_the_notebook_is_small():
+    assert NOTEBOOK.stat().st_size < 500_000
+
+
+def test_outputs_are_put_beneath_their_blocks():
+    page = "# A\n\n```python\nx = 1\nprint('a')\nx + 1\n```\n\n```text\nold\n```\n\nB\n"
+    text, notebook = tutorial.tutorial(page)
+    assert text == page.replace("old\n", "a\n2\n")
+    assert [cell.cell_type for cell in notebook.cells] == ["markdown", "code", "markdown"]
+    assert tutorial.tutorial(text)[0] == text

@@ -1,0 +1,98 @@
+"""A wheel alone: what is installed without the extras does what the face and the shell promise."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from checkout import REPOSITORY
+
+PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+#: What imports a module of the extras fails, as where they are not installed.
+BLOCKED = """
+import sys
+
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {absent!r}:
+            raise ModuleNotFoundError(f"{{name}} is of the extras", name=name)
+
+sys.meta_path.insert(0, Absent())
+"""
+
+#: What the extras ask for.
+EXTRAS = [
+    re.match(r"[\w-]+", one)[0]
+    for some in PROJECT["optional-dependencies"].values()
+    for one in some
+]
+
+#: The modules of a requirement, where they are not called like it.
+MODULES = {
+    "pyyaml": "yaml",
+    "snakemake-logger-plugin-rich": "snakemake_logger_plugin_rich",
+}
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Build a wheel without a network, install it into an empty folder, and return that."""
+    folder = tmp_path_factory.mktemp("wheel")
+    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    offline = ["--no-deps", "--no-index"]
+    source = folder / "source"
+    source.mkdir()
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        (source / name).symlink_to(REPOSITORY / name)
+    leave = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    shutil.copytree(REPOSITORY / "src", source / "src", ignore=leave)
+    wheel = [*pip, "wheel", *offline, "--no-build-isolation", "--wheel-dir", folder, source]
+    subprocess.run(wheel, check=True, capture_output=True, text=True)
+    (built,) = folder.glob("*.whl")
+    target = folder / "target"
+    subprocess.run([*pip, "install", *offline, "--target", target, built], check=True)
+    (target / "sitecustomize.py").write_text(
+        BLOCKED.format(absent={MODULES.get(n, n) for n in EXTRAS}), encoding="utf-8"
+    )
+    return target
+
+
+def outside(installed, *words):
+    """Run Python outside of the repository, with the wheel and without the extras."""
+    environment = {**os.environ, "PYTHONPATH": str(installed)}
+    shown = {"capture_output": True, "text": True, "check": False}
+    run = subprocess.run([sys.executable, *words], cwd=installed, env=environment, **shown)
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
+def test_the_shell_works_from_a_wheel(installed):
+    scene = "--width", "1.5", "--height", "1", "--radius", "0.2", "--json"
+    found = json.loads(outside(installed, "-m", "twodiscs.cli", "exact", *scene))
+    assert found["regime"] == "all-hops"
+    assert (installed / "twodiscs" / "py.typed").exists()
+
+
+def test_the_first_half_of_the_tutorial_runs_from_a_wheel(installed):
+    """And what reads tables needs no extras, which are absent indeed."""
+    page = (REPOSITORY / "docs" / "python.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    code = [*blocks[: len(blocks) // 2], "import twodiscs.pipeline.results.frames\n"]
+    code += ["print(td.__file__)\ntry: import yaml\nexcept ImportError: print('absent')\n"]
+    *_, place, absent = outside(installed, "-c", "".join(code)).split()
+    assert Path(place).is_relative_to(installed)
+    assert absent == "absent"
+
+
+def test_the_lock_has_everything():
+    lock = (REPOSITORY / "requirements.lock").read_text(encoding="utf-8")
+    locked = set(re.findall(r"^([\w-]+)==", lock, re.MULTILINE))
+    asked = {re.match(r"[\w-]+", one)[0] for one in PROJECT["dependencies"]}
+    assert asked | {*EXTRAS} <= locked
+    assert "://" not in lock
