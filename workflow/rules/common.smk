@@ -42,9 +42,6 @@ os.environ.update(
 )
 
 
-# The end of the command of every job that keeps a record of what it wrote.
-RECORDED = " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
 # Longer arguments go into a file: Linux takes 131072 letters in all that a shell is told.
 LONG = 30_000
 
