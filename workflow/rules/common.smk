@@ -42,9 +42,6 @@ os.environ.update(
 )
 
 
-# The end of the command of every job that keeps a record of what it wrote.
-RECORDED = " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
 # Longer arguments go into a file: Linux takes 131072 letters in all that a shell is told.
 LONG = 30_000
 
@@ -110,7 +107,7 @@ def about(scene, seed=CONFIGURATION.seed):
 
 def contents(*paths):
     """Return a hash of files, for inputs whose time stamps may not tell that they were edited."""
-    texts = b"".join(Path(path).read_bytes() for path in paths)
+    texts = b"".join(Path(p).read_bytes() for p in paths if os.path.exists(p))
     return blake2b(texts, digest_size=8).hexdigest()
 
 

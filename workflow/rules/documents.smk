@@ -37,7 +37,7 @@ if MAIN:
             contents=lambda w, output: as_json(
                 manuscript_job(os.path.dirname(output.pdf))
             ),
-            texts=contents(*PAPER.values()),
+            texts=lambda w, input: contents(input.template, *input.others),
             code=code("pipeline.documents.manuscript"),
         shell:
             "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"

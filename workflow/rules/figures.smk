@@ -32,7 +32,8 @@ rule figure:
         code=lambda w: figure_code(FIGURES[w.figure].module),
     shell:
         "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}" + RECORDED
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule shared_figure:
@@ -64,7 +65,8 @@ rule shared_figure:
         code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
     shell:
         "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}" + RECORDED
+        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule animate:
@@ -91,7 +93,7 @@ rule animate:
     shell:
         "python -m twodiscs.pipeline.jobs animation figures.motion.animation --parameters {params.job:q}"
         " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q}"
-        + RECORDED
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule animation:

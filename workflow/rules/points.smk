@@ -15,7 +15,8 @@ rule grid:
         code=table_code("theory.exact", SCENE_TABLES["grid"]),
     shell:
         "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
-        " --parameters {params.job:q} --output {output.table:q}" + RECORDED
+        " --parameters {params.job:q} --output {output.table:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule theory:
@@ -31,7 +32,8 @@ rule theory:
         code=table_code("theory.exact", SCENE_TABLES["theory"]),
     shell:
         "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
-        " --parameters {params.job:q} --output {output.table:q}" + RECORDED
+        " --parameters {params.job:q} --output {output.table:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
@@ -94,7 +96,8 @@ for stage, module in STAGES.items():
             code=code(module),
         shell:
             "python -m twodiscs.pipeline.jobs point {params.module} --parameters {params.job:q}"
-            " --output {output.point:q} --cost {output.cost:q}" + RECORDED
+            " --output {output.point:q} --cost {output.cost:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule trajectory:
@@ -110,4 +113,5 @@ rule trajectory:
         code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
     shell:
         "python -m twodiscs.pipeline.jobs table dynamics.trajectory --parameters {params.job:q}"
-        " --output {output.table:q}" + RECORDED
+        " --output {output.table:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"

@@ -49,7 +49,7 @@ for name in GENERIC:
         shell:
             "python -m twodiscs.pipeline.jobs table {params.module} --function {params.function}"
             " --parameters {params.job:q} --table {params.tables:q} --output {output.table:q}"
-            + RECORDED
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule effects_point:
@@ -78,8 +78,8 @@ rule effects_point:
         " > {output.point:q}.parameters 2> {log:q}"
         " && python -m twodiscs.pipeline.jobs point studies.effects.measure"
         " --parameters @{output.point:q}.parameters --output {output.point:q}"
-        + RECORDED
-        + " && rm {output.point:q}.parameters"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+        " && rm {output.point:q}.parameters"
 
 
 rule effects_table:
@@ -105,7 +105,8 @@ rule effects_table:
         code=table_code("studies.effects.measure", STUDIES["effects"].tables[0]),
     shell:
         "python -m twodiscs.pipeline.jobs table studies.effects.measure --parameters '{{}}'"
-        " --points {input.points:q} --output {output.table:q}" + RECORDED
+        " --points {input.points:q} --output {output.table:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule effects_cost:

@@ -34,7 +34,8 @@ rule table:
     shell:
         "python -m twodiscs.pipeline.jobs table comparison.gather --function {wildcards.table}_rows"
         " --parameters {params.job:q} --table {params.tables:q} --points {params.points:q}"
-        " --output {output.table:q}" + RECORDED
+        " --output {output.table:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 CHECKED = [scene for scene in SCENES.values() if "check" in scene.tables]
@@ -57,4 +58,5 @@ rule check:
         code=table_code("pipeline.results.verdict", SCENE_TABLES["check"]),
     shell:
         "python -m twodiscs.pipeline.jobs verdict pipeline.results.verdict --table {params.tables:q}"
-        " --output {output.passed:q}" + RECORDED
+        " --output {output.passed:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
