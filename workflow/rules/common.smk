@@ -86,7 +86,7 @@ def kept(text):
     path = Path(".snakemake", "parameters", name)
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="\n")
+        path.write_text(f"{text}\n", encoding="utf-8", newline="\n")
     return str(path)
 
 

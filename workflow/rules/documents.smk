@@ -83,7 +83,6 @@ rule report:
                 indent=1,
                 sort_keys=True,
             )
-            + "\n"
         ),
         snakefile=str(HERE / "Snakefile"),
         scenes=as_json({"scenes": report_scenes()}),
@@ -109,7 +108,7 @@ rule manifest:
     benchmark:
         benchmark_of("manifest")
     params:
-        files=lambda w, input: "@" + kept("\n".join(input.files)),
+        files=lambda w, input: f"@{kept(chr(10).join(input.files))}",
         code=code("pipeline.results.manifest"),
     shell:
         "python -m twodiscs.pipeline.results.manifest {params.files:q} --output {output.manifest:q}"
