@@ -474,7 +474,7 @@ def test_the_table_is_written(tmp_path, monkeypatch, measured):
 @pytest.mark.parametrize(
     ("box", "tables", "message"),
     [
-        ({"width": 1.5}, [], "box must have width, height"),
+        ({"width": 1.5}, [], "box must be a block of width"),
         ({"width": 1.5, "height": -1}, [], "height must be"),
         ({"width": 0, "height": 1}, [], "width must be"),
         ({"width": "wide", "height": 1}, [], "width must be"),

@@ -200,7 +200,7 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch)
     [
         ({"box": {"width": 0, "height": 1.0}}, "width must be"),
         ({"box": {"width": 1.5, "height": "1"}}, "height must be"),
-        ({"box": {"width": 1.5}}, "box must have width, height"),
+        ({"box": {"width": 1.5}}, "box must be a block of width"),
         ({"seed": -1}, "seed must be"),
         ({"samples": 0}, "samples must be"),
         ({"radius": 0.1}, "parameters of twodiscs.studies.tails.measure: got an unexpected"),

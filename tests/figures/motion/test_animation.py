@@ -167,7 +167,7 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"box": {"width": 1}}, "box must have width, height and maybe effects, not {'width': 1}"),
+        ({"box": {"width": 1}}, "box must be a block of width, height and maybe effects, not"),
         (
             {"box": BOX.parameters()},
             "figures.motion.animation: missing a required argument: 'radius'",
