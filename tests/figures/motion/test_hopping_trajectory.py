@@ -39,7 +39,7 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
     times = [row["time"] for row in rows if row["event"] == hop]
     for axes in figure.axes:
         assert axes.get_ylabel() == f"${axis}_2-{axis}_1$"
-        dots = next(line for line in axes.lines if line.get_marker() == "o")
+        dots = next(line for line in axes.lines if line.get_marker() in ("o", "|"))
         assert list(dots.get_xdata()) == times
     texts = [" ".join(text.get_text() for text in one.axes[0].texts) for one in (figure, bare)]
     assert ["$r=0.24$" in text for text in texts] == [True, False]
