@@ -196,7 +196,7 @@ def test_what_a_job_took_is_checked_too(tmp_path):
         ("volume", {"monte_carlo": ["0.1", "0.1"]}, {}, "radius 0.1 twice"),
         ("volume", {"sampling": ["0.1"]}, {}, "stage must be one of monte_carlo, dynamics, int"),
         ("areas", {}, {}, "keys must name one point at least"),
-        ("areas", {"monte_carlo": ["0.1"]}, {"box": {"width": 1.5}}, "box must be a block of width"),
+        ("areas", {"monte_carlo": ["0.1"]}, {"box": {"width": 1.5}}, "box must be a block"),
         ("areas", {"monte_carlo": ["0.1"]}, {"box": {"width": -1.0, "height": 1}}, "width must be"),
         ("areas", {"monte_carlo": ["0.1"]}, {"box": "1.5"}, "box must be a block of width"),
         ("areas", {"monte_carlo": ["0.1"]}, {"seed": 1}, "unexpected keyword argument 'seed'"),
