@@ -36,7 +36,7 @@ SCENES = {
     "field": Scene(1.5, 1.0, 0.2, field=0.5),
     "rough": Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4),
     "balls": Scene(1.5, 1.0, 0.2, depth=1.2),
-    "stack": Scene(1.5, 1.0, 0.376, field=0.5),
+    "stack": Scene(1.5, 1.0, 0.3755, field=0.5),
     "balls in a field": Scene(
         1.5, 1.0, 0.2, depth=1.2, periodic="z", field=0.3, radius_ratio=1.2, mass_ratio=2.0
     ),

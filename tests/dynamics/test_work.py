@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals, trajectory
+from twodiscs.dynamics import counting, ensemble, intervals, trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
@@ -88,7 +88,7 @@ def test_small_discs_on_a_torus_end():
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found["replicas"] * found["duration"])
     block = counting.REPLICAS * counting.EVENTS_PER_REPLICA * exact.PASSES_PER_EVENT
-    assert leaves <= 2**0.5 * counting.FIRST_ROUND * block
+    assert leaves <= 2**0.5 * ensemble.FIRST_ROUND * block
     assert found["status"] == {"disc_collision": "budget"}
 
 

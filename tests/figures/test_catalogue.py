@@ -48,7 +48,7 @@ def test_the_modules_that_draw_are_those_of_the_entries():
 @pytest.mark.parametrize("name", FIGURES | STUDY_FIGURES)
 def test_the_options_are_those_that_the_module_takes(name):
     entry = ALL[name]
-    signature(module_of(entry.module).draw).bind(None, {}, **entry.options)
+    signature(module_of(entry.module).draw).bind(None, tables={}, **entry.options)
 
 
 def test_only_the_animation_animates():

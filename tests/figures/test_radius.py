@@ -47,7 +47,7 @@ def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
     single = FIGURES[name].options.get("single")
     assert legend == (["exact", single] if single else list(names.values()))
     assert main.get_ylabel() == FIGURES[name].options["label"]
-    assert main.get_yscale() == ("linear" if FIGURES[name].options.get("linear") else "log")
+    assert main.get_yscale() == ("function" if FIGURES[name].options.get("rooted") else "log")
 
 
 def test_blocked_hop_area_is_shown_as_zero(figures):
