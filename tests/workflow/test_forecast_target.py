@@ -16,7 +16,7 @@ def test_a_forecast_and_what_becomes_of_it(built):
     # It is of the moment, so it is made again whenever it is asked for, and by nothing else.
     assert built.jobs("forecast") == [("forecast", ())]
     rerun = {job for job, _ in built.jobs()}
-    assert rerun == {"table", "paper", "report"}
+    assert rerun == {"table", "paper", "report", "provenance"}
     assert {w for job, w in built.jobs() if job == "table"} == {
         ("scene=six", "table=cost"),
         ("scene=walls", "table=cost"),

@@ -14,7 +14,11 @@ if MAIN:
         input:
             template=PAPER["paper.typ"],
             others=list(PAPER.values())[1:],
-            figures=[files[0] for files in figure_files(MAIN).values()],
+            figures=[
+                files[0]
+                for scene in CONFIGURATION.plain
+                for files in figure_files(scene).values()
+            ],
             tables=[
                 path
                 for scene in CONFIGURATION.plain
