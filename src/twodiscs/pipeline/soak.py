@@ -64,6 +64,16 @@ def contents(results):
     return found
 
 
+def processes(folder):
+    """Return the processes that work in a folder."""
+    found = []
+    for process in psutil.process_iter():
+        with suppress(psutil.Error):
+            if process.cwd() == str(folder):
+                found.append(process)
+    return found
+
+
 class Soak:
     """A build of a configuration in ``folder``, where ``strike`` may be called at will.
 
@@ -103,15 +113,6 @@ class Soak:
 
     def _said(self):
         return (self.folder / "said").read_text(encoding="utf-8", errors="replace")[-3000:]
-
-    def _processes(self):
-        """Return the processes that work in the folder."""
-        found = []
-        for process in psutil.process_iter():
-            with suppress(psutil.Error):
-                if process.cwd() == str(self.folder):
-                    found.append(process)
-        return found
 
     def _files(self):
         """Return the files that a job wrote, and the records of them, sorted."""
@@ -154,7 +155,7 @@ class Soak:
         with suppress(subprocess.TimeoutExpired):
             process.wait(moment)
             return None
-        found = [p for p in self._processes() if p.pid != process.pid]
+        found = [p for p in processes(self.folder) if p.pid != process.pid]
         if whom == "parent":
             process.send_signal(getattr(signal, name))
         elif whom == "session":
@@ -167,7 +168,7 @@ class Soak:
         where = f"after {moment:.1f} of {duration:.1f} s" + " with damaged kernels" * cold
         wrong = [f"{where}, {len(found)} processes of jobs"]
         self._finish(process)
-        _, left = psutil.wait_procs(self._processes(), timeout=60)
+        _, left = psutil.wait_procs(processes(self.folder), timeout=60)
         for one in left:
             wrong.append(f"a process stayed: {one.name()}")
             one.kill()
@@ -188,7 +189,11 @@ class Soak:
             path.write_bytes(content[:place] + rest)
         said = "\n".join(audit(self.results))
         names = [str(path.relative_to(self.results)) for path in some]
-        missed = [f"the audit misses {name}" for name in names if Path(name).name not in said]
+        missed = [
+            f"the audit misses {name}"
+            for path, name in zip(some, names, strict=True)
+            if path.name.removesuffix(".json" if path.parent.name == FOLDER else "") not in said
+        ]
         return [", ".join(names), *missed, *self._again({})]
 
     def _again(self, finished):
@@ -251,8 +256,12 @@ def main():
     with tempfile.TemporaryDirectory() as place:
         kernels = Path(place, "kernels")
         os.environ["NUMBA_CACHE_DIR"] = str(kernels)
-        build = Soak(Path(place, "build"), command, options.seed, kernels=kernels)
-        return bool(soak(iter(build.strike, None), options.seconds))
+        try:
+            build = Soak(Path(place, "build"), command, options.seed, kernels=kernels)
+            return bool(soak(iter(build.strike, None), options.seconds))
+        finally:
+            for process in processes(Path(place, "build")):
+                process.kill()
 
 
 if __name__ == "__main__":
