@@ -105,7 +105,9 @@ def test_what_no_job_wrote_and_what_is_gone_is_named(results):
     ]
 
 
-def test_what_lost_its_record_is_made_again_but_not_what_is_somebodys_own(results, capsys):
+def test_what_lost_its_record_is_made_again_without_a_word_on_what_is_somebodys_own(
+    results, capsys
+):
     for name in ("theory.csv", "own.csv"):
         (results / name).write_text("a\n")
         (results / ".record" / f"{name}.json").unlink(missing_ok=True)
@@ -116,4 +118,4 @@ def test_what_lost_its_record_is_made_again_but_not_what_is_somebodys_own(result
     record.notice("results")
     said = "results/theory.csv has lost its record; it is made again when needed.\n"
     assert capsys.readouterr().err == said
-    assert [path.name for path in (known.parents[1] / "incomplete").iterdir()] == [mark]
+    assert mark in [path.name for path in (known.parents[1] / "incomplete").iterdir()]

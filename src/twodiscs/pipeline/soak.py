@@ -15,7 +15,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from base64 import urlsafe_b64decode
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
@@ -25,7 +24,7 @@ import yaml
 
 from twodiscs.pipeline.arguments import Parser, number, run, whole_number
 from twodiscs.pipeline.results.manifest import TIMED, is_reproducible
-from twodiscs.pipeline.results.record import FOLDER, UNRECORDED, audit, digest, read
+from twodiscs.pipeline.results.record import FOLDER, UNRECORDED, audit, digest, name_of
 
 #: What is built: points of both kinds, tables and figures.
 BUILD = {
@@ -121,15 +120,15 @@ class Soak:
         return [path for path in (*records, *paths) if path.is_file()]
 
     def _finished(self, start):
-        """Return {path: time stamp} of the files that jobs have finished since ``start``."""
-        marks = (self.folder / ".snakemake" / "incomplete").glob("*")
-        begun = {urlsafe_b64decode(mark.name).decode() for mark in marks}
-        stamps = {path: path.stat().st_mtime_ns for path in self._files()}
-        return {
-            path: stamp
-            for path, stamp in stamps.items()
-            if stamp > start and str(path.relative_to(self.folder)) not in begun and read(path)
-        }
+        """Return {path: time stamp} of what Snakemake has taken for finished since ``start``."""
+        found = {}
+        for path in self._files():
+            name = name_of(path.relative_to(self.folder))
+            known = self.folder / ".snakemake" / "metadata" / name
+            begun = self.folder / ".snakemake" / "incomplete" / name
+            if known.exists() and known.stat().st_mtime_ns > start and not begun.exists():
+                found[path] = path.stat().st_mtime_ns
+        return found
 
     def kill(self, name, whom):
         """Kill a build of everything or of a random part; return the moment, and what is wrong.

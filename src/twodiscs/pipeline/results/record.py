@@ -113,16 +113,18 @@ def notice(folder, snakemake=".snakemake"):
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     for path in _unrecorded(folder):
-        if os.path.exists(os.path.join(snakemake, "metadata", _name(path))):
-            found.append((path, "has lost its record"))
+        # Else it is somebody's own, or of a job that went on writing after its shell was killed.
+        known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
+        found.append((path, "has lost its record" if known else None))
     for path, what in found:
-        print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
+        if what:
+            print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
         Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
         with suppress(OSError):  # a name may be too long
-            Path(snakemake, "incomplete", _name(path)).write_text('{"external_jobid": null}')
+            Path(snakemake, "incomplete", name_of(path)).write_text('{"external_jobid": null}')
 
 
-def _name(path):
+def name_of(path):
     """Return what Snakemake calls its own file about an output."""
     return urlsafe_b64encode(str(path).encode()).decode()
 
