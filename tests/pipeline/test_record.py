@@ -101,5 +101,21 @@ def test_what_no_job_wrote_and_what_is_gone_is_named(results):
     assert sorted(record.audit(results)) == [
         f"{results}/.record/m.png.json is damaged",
         f"{results}/m.pdf is missing",
-        f"{results}/own.csv was written by no job",
+        f"{results}/own.csv was written by no job, or has lost its record",
     ]
+
+
+def test_what_lost_its_record_is_made_again_without_a_word_on_what_is_somebodys_own(
+    results, capsys
+):
+    for name in ("theory.csv", "own.csv"):
+        (results / name).write_text("a\n")
+        (results / ".record" / f"{name}.json").unlink(missing_ok=True)
+    mark = urlsafe_b64encode(b"results/theory.csv").decode()
+    known = results.parent / ".snakemake" / "metadata" / mark
+    known.parent.mkdir(parents=True)
+    known.touch()
+    record.notice("results")
+    said = "results/theory.csv has lost its record; it is made again when needed.\n"
+    assert capsys.readouterr().err == said
+    assert mark in [path.name for path in (known.parents[1] / "incomplete").iterdir()]

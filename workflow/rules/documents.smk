@@ -198,6 +198,24 @@ rule:
         " --cores {threads} --output {params.table:q} 2> {log:q}"
 
 
+# What survives kills and damage, tried on a build of its own in a temporary folder.
+
+
+rule:
+    name:
+        "soak"
+    log:
+        log_of("soak"),
+    threads: 64  # all that there are
+    params:
+        snakefile=str(HERE / "Snakefile"),
+        seconds=os.environ.get("SOAK_SECONDS", "600"),
+        seed=os.environ.get("SOAK_SEED", "1"),
+    shell:
+        "python -m twodiscs.pipeline.soak --snakefile {params.snakefile:q} --cores {threads}"
+        " --seconds {params.seconds:q} --seed {params.seed:q} 2> {log:q}"
+
+
 # How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
 
 

@@ -1,6 +1,7 @@
-"""The locks of Snakemake: those of a run that was killed are removed by the next one."""
+"""What Snakemake needs to begin: no lock of a run that was killed, a user's name, a cache."""
 
 import fcntl
+import getpass
 import os
 import socket
 import sys
@@ -8,6 +9,22 @@ from pathlib import Path
 
 #: The open file by which this process says, for as long as it lives, that it uses a folder.
 _held = []
+
+
+def make_do(folder=".snakemake"):
+    """Give Snakemake a user's name where there is none, and a cache where no other can be."""
+    try:
+        getpass.getuser()
+    except (KeyError, OSError):  # no variable, and no entry in the list of users
+        os.environ["USER"] = str(os.getuid())
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "snakemake")
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        writable = os.access(cache, os.W_OK)
+    except OSError:
+        writable = False
+    if not writable:
+        os.environ["XDG_CACHE_HOME"] = os.path.abspath(os.path.join(folder, "cache"))
 
 
 def release(folder=".snakemake"):

@@ -11,6 +11,7 @@ import json
 import os
 import sys
 from base64 import urlsafe_b64encode
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 
@@ -110,19 +111,37 @@ def notice(folder, snakemake=".snakemake"):
 
     To Snakemake these files are incomplete, as those that a killed job has left.
     """
-    for path in touched(folder):
-        print(f"{path} is not what its job wrote; it is made again when needed.", file=sys.stderr)
-        name = urlsafe_b64encode(str(path).encode()).decode()
-        if len(name) < 255:
-            Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
-            Path(snakemake, "incomplete", name).write_text('{"external_jobid": null}')
+    found = [(path, "is not what its job wrote") for path in touched(folder)]
+    for path in _unrecorded(folder):
+        # Else it is somebody's own, or of a job that went on writing after its shell was killed.
+        known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
+        found.append((path, "has lost its record" if known else None))
+    for path, what in found:
+        if what:
+            print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
+        Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
+        with suppress(OSError):  # a name may be too long
+            Path(snakemake, "incomplete", name_of(path)).write_text('{"external_jobid": null}')
+
+
+def name_of(path):
+    """Return what Snakemake calls its own file about an output."""
+    return urlsafe_b64encode(str(path).encode()).decode()
+
+
+def _unrecorded(folder):
+    """Return the files below ``folder`` that should have a record and have none, sorted."""
+    found = []
+    for place, folders, names in os.walk(folder):
+        folders[:] = [name for name in folders if name not in (FOLDER, *UNRECORDED)]
+        paths = [Path(place, name) for name in names if name not in UNRECORDED]
+        found += [path for path in paths if not _record_of(path).exists()]
+    return sorted(found)
 
 
 def audit(folder):
     """Yield a sentence for every file below ``folder`` that differs from the record of its job."""
-    known = set()
     for path, record in _recorded(folder):
-        known.add(path)
         content = read(path)
         if content is None:
             yield f"{record} is damaged"
@@ -137,9 +156,8 @@ def audit(folder):
                 if gone or digest(*inputs) != one["sha256"]:
                     what = os.path.commonpath([os.path.normpath(name) for name in inputs])
                     yield f"{path} was made of another {what}"
-    for path in sorted({one for one in Path(folder).rglob("*") if one.is_file()} - known):
-        if not {*path.relative_to(folder).parts} & {FOLDER, *UNRECORDED}:
-            yield f"{path} was written by no job"
+    for path in _unrecorded(folder):
+        yield f"{path} was written by no job, or has lost its record"
 
 
 def main():
