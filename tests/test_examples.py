@@ -259,7 +259,8 @@ def agreement(folder, scene):
     events = sum(point["events"] for point in points.values())
     independent = sum(row["independent"] for row in rows)
     counts = f"{len(points)} | {len(compared)} | {independent} | {max(compared):.1f} | {events:.1e}"
-    return f"| {scene.box.width:g} × {scene.box.height:g} | {counts.replace('e+0', 'e').replace('e+', 'e')} |"
+    counts = counts.replace("e+0", "e").replace("e+", "e")
+    return f"| {scene.box.width:g} × {scene.box.height:g} | {counts} |"
 
 
 def test_table_of_agreement_is_that_of_the_expected_results():
