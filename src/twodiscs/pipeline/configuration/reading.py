@@ -47,7 +47,7 @@ def read(path):
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}") from None
-    except (yaml.YAMLError, ArithmeticError) as error:
+    except (yaml.YAMLError, ArithmeticError, ValueError) as error:
         raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
     if not isinstance(mapping, dict):
         raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {shown(mapping)}")
