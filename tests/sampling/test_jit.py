@@ -140,6 +140,16 @@ def test_a_users_choice_of_processor_wins(package):
     assert done.stdout.strip() == "+sse2"
 
 
+def test_without_a_compiler_a_kernel_is_its_function(package):
+    _, environment = package
+    script = "from twodiscs.sampling.jit import compiled; print(compiled(lambda x: x + 1)(2))"
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment | {"NUMBA_DISABLE_JIT": "1"},
+        text=True, capture_output=True, check=True,
+    )  # fmt: skip
+    assert done.stdout == "3\n"
+
+
 def test_the_hash_knows_every_source_by_its_text_and_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(jit, "PACKAGE", tmp_path)
     sources = {"model/a.py": "x = 1", "dynamics/b.py": "y = 2", "figures/c.py": "z = 3"}

@@ -181,7 +181,8 @@ class KernelCache(FunctionCache):
 
 
 def _kept(dispatcher):
-    dispatcher._cache = KernelCache(dispatcher.py_func)
+    if not numba.config.DISABLE_JIT:  # else it is the function itself
+        dispatcher._cache = KernelCache(dispatcher.py_func)
     return dispatcher
 
 

@@ -1,6 +1,8 @@
 """Where the time of a build goes: what Snakemake measured of every job, by kind of job.
 
-python -m twodiscs.pipeline.results.spent results
+    python -m twodiscs.pipeline.results.spent results
+
+Times are in seconds, memory in MiB.
 """
 
 from pathlib import Path
