@@ -16,7 +16,7 @@ from twodiscs.model.checks import InputError, count, one_of, proportion
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
-from twodiscs.theory.exact import LEAST_SHARE, free_share, theory_rows
+from twodiscs.theory.exact import theory_rows
 
 #: The columns that people read, and how wide they are.
 COLUMNS = {
@@ -222,16 +222,6 @@ def seed_of(scene, method, seed, name):
     return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
 
 
-def roomy(scene):
-    """Return ``scene``; raise ``InputError`` if its discs have too little room to draw starts."""
-    if a_scene(scene).has_effects and (share := free_share(scene)) < LEAST_SHARE:
-        raise InputError(
-            f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
-            f"a scene with effects must have more room, {LEAST_SHARE:g} of it"
-        )
-    return scene
-
-
 def _named(what, names, allowed):
     """Return some of the texts ``allowed``, in their order, or all of them for None."""
     if names is None:
@@ -262,7 +252,7 @@ def simulate(scene, error, seed, budget, events, name):
     given = error if isinstance(error, Mapping) else None
     if given is not None and events is None:
         events = given
-    events = _named("event", events, roomy(scene).events)
+    events = _named("event", events, a_scene(scene).events)
     target = dict.fromkeys(events, error)
     if given is not None:
         if missing := [event for event in events if event not in given]:
@@ -278,11 +268,13 @@ def simulate(scene, error, seed, budget, events, name):
 
 def sample(scene, samples, seed, quantities, shell, name):
     """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
-    allowed = ("volume", *(f"{event}_area" for event in roomy(scene).events))
+    allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
     quantities, samples = _named("quantity", quantities, allowed), count("samples", samples)
     shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     from twodiscs.sampling.montecarlo import better_point
+    from twodiscs.sampling.starts import require_share
 
+    require_share(scene)
     point, exact = better_point(scene, quantities, samples, shell, seed), _exact(scene)
     areas = [event for event in EVENTS if f"{event}_area" in quantities]
     found = rows.volume_rows(exact, [point]) + rows.area_rows(scene, exact, [point], areas)
@@ -292,7 +284,7 @@ def sample(scene, samples, seed, quantities, shell, name):
 def intervals(scene, hop, number, seed, name):
     """Return the ``Intervals`` between hops (see the face)."""
     one_of("hop", hop, HOPS)
-    if roomy(scene).moment_of_inertia is not None:
+    if a_scene(scene).moment_of_inertia is not None:
         raise InputError(
             "scene must have smooth discs, for rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
@@ -306,7 +298,7 @@ def intervals(scene, hop, number, seed, name):
 def starts(scene, number, seed, name):
     """Return states of the invariant measure, an array with named columns (see the face)."""
     number = count("number", number, most=10**8)
-    seed = seed_of(roomy(scene), "trajectory", seed, name)
+    seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.sampling.starts import records
 
     return records(scene, number, seed)
@@ -316,7 +308,7 @@ def trajectory(scene, seed, start, duration, name):
     """Return one trajectory as a ``DataFrame`` (see the face)."""
     import pandas as pd
 
-    seed = seed_of(scene if start is not None else roomy(scene), "trajectory", seed, name)
+    seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.dynamics.trajectory import COLUMNS, trajectory
 
     frame = pd.DataFrame(trajectory(scene, seed, start, duration), columns=COLUMNS)

@@ -35,6 +35,11 @@ PLANE, BALLS, ROUGH = (
 def require_room(scene):
     """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
     scene.require_followable()
+    require_share(scene)
+
+
+def require_share(scene):
+    """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place."""
     if scene.has_effects and (share := exact.free_share(scene)) < exact.LEAST_SHARE:
         raise InputError(
             f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
