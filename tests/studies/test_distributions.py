@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from fabricated import command
 
+from twodiscs.comparison import estimates
 from twodiscs.dynamics import intervals
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
@@ -97,11 +98,11 @@ def test_a_hazard_that_falls_slowly_shows_in_the_trend():
 def test_density_at_zero_of_a_parabola():
     """Bins of p(t) = 3 − 2 t² of width 1/2 hold 3/2 − 1/12 and 3/2 − 7/12 of a billion."""
     counts = [round(1e9 * (3 / 2 - 1 / 12) / 10), round(1e9 * (3 / 2 - 7 / 12) / 10)]
-    found = distributions.density_at_zero(counts, 10**9, 0.5)
+    found = estimates.density_at_zero(counts, 10**9, 0.5)
     assert found.value == pytest.approx(0.3, rel=1e-8)
     rng = np.random.default_rng(2)
     draws = rng.multinomial(10**4, [0.2, 0.15, 0.65], 2000)
-    found = [distributions.density_at_zero(n[:2], 10**4, 0.5) for n in draws]
+    found = [estimates.density_at_zero(n[:2], 10**4, 0.5) for n in draws]
     spread = np.std([one.value for one in found])
     assert spread == pytest.approx(found[0].stderr, rel=5 / math.sqrt(2 * 2000) + 0.01)
 
@@ -127,10 +128,10 @@ def test_hazard_of_an_exponential_is_its_rate():
             lambda: distributions.constant_hazard([distributions.Bin(0, 1, 1, 1, 9, 99)] * 3),
             "not 3 with 27",
         ),
-        (lambda: distributions.density_at_zero([5, -1], 10, 1.0), "count must be an integer"),
-        (lambda: distributions.density_at_zero([5], 10, 1.0), "at least 2 bins"),
-        (lambda: distributions.density_at_zero([5, 6], 10, 1.0), "at least the 11 counts, not 10"),
-        (lambda: distributions.density_at_zero([5, 6], 100, math.nan), "width must"),
+        (lambda: estimates.density_at_zero([5, -1], 10, 1.0), "count must be an integer"),
+        (lambda: estimates.density_at_zero([5], 10, 1.0), "at least 2 bins"),
+        (lambda: estimates.density_at_zero([5, 6], 10, 1.0), "at least the 11 counts, not 10"),
+        (lambda: estimates.density_at_zero([5, 6], 100, math.nan), "width must"),
         (lambda: list(distributions.measured(PAPER, "any_wall", 1)), "hop must be one of"),
         (lambda: list(distributions.measured(0.24, "vertical_hop", 1)), "scene must be"),
         (lambda: list(distributions.measured(PAPER, "vertical_hop", -1)), "seed must"),

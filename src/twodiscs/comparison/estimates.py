@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from scipy.special import ndtri
 
-from twodiscs.model.checks import InputError, proportion, whole
+from twodiscs.model.checks import InputError, length, proportion, whole
 from twodiscs.theory import virial
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
@@ -242,3 +242,24 @@ def sum_rule(scene, duration, replicas, counts, products):
     duration = real("duration", duration)
     rates = {e: scene.share(e) / scene.copies(e) / duration for e in weights}
     return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)
+
+
+def density_at_zero(counts, intervals, width):
+    """Return the density at 0 as an ``Estimate``: that of p(0) − a t² with the counts of two bins.
+
+    ``counts`` are those of the first bins of ``width`` from 0, out of so many independent
+    ``intervals``; the error is that of multinomial counts. There is no linear term: discs that
+    touch right after a hop are side by side and exchange velocities along x, which does not change
+    when they hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
+    ``intervals``.
+    """
+    n = np.array([whole("count", n, 0) for n in counts[:2]], float)
+    if n.size < 2:
+        raise InputError(f"counts must be of at least 2 bins, not {n.size}")
+    intervals, width = whole("intervals", intervals), length("width", width)
+    if n.sum() > intervals:
+        raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
+    weights = np.array([7, -1]) / 6
+    share = weights @ n / intervals
+    spread = weights**2 @ n / intervals - share**2
+    return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)

@@ -10,12 +10,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from twodiscs.comparison import rows
-from twodiscs.comparison.estimates import HONEST, normal_quantile
+from twodiscs.comparison.estimates import HONEST, density_at_zero, normal_quantile
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, count, one_of, proportion
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
+from twodiscs.theory import tails
 from twodiscs.theory.exact import theory_rows
 
 #: The columns that people read, and how wide they are.
@@ -152,13 +153,11 @@ class Intervals:
     ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
     and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
     ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
-    estimate is a line through the first two bins, so it has no z. Intervals of one chain are
+    estimate is a parabola through the first two bins, so it has no z. Intervals of one chain are
     correlated: errors of densities take them as independent, that of the mean does not.
     """
 
     def __init__(self, scene, point):
-        from twodiscs.theory.tails import density_at_zero
-
         self.scene, self.hop = scene, point["event"]
         self.intervals, self.overflow = point["intervals"], point["overflow"]
         self.rows = rows.histogram_rows(_exact(scene), [point])
@@ -170,22 +169,14 @@ class Intervals:
             f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
             point["intervals"], status, "time",
         )  # fmt: skip
-        a, b = self.counts[:2]
-        share, total = point["bin_width"] * self.intervals, self.intervals
-        square = 2.25 * a + 0.25 * b - (1.5 * a - 0.5 * b) ** 2 / total
-        few = min(a, b) < HONEST
-        exact = None if scene.has_effects else density_at_zero(scene, self.hop)
-        error, status = (None, "too-few") if few else (math.sqrt(square) / share, "extrapolated")
+        found = density_at_zero(self.counts, self.intervals, point["bin_width"])
+        few = min(self.counts[:2]) < HONEST
+        exact = None if scene.has_effects else tails.density_at_zero(scene, self.hop)
+        error, status = (None, "too-few") if few else (found.stderr, "extrapolated")
         self.at_zero = Measurement(
             "density_at_zero",
-            (1.5 * a - 0.5 * b) / share,
-            error,
-            exact,
-            None,
-            a + b,
-            status,
-            "1/time",
-        )
+            found.value, error, exact, None, sum(self.counts[:2]), status, "1/time",
+        )  # fmt: skip
 
     @property
     def density(self):

@@ -16,12 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Estimate, mean_of
+from twodiscs.comparison.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, length, one_of, whole
+from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
@@ -134,27 +134,6 @@ def constant_hazard(bins):
         chi2,
         len(bins) - 1,
     )
-
-
-def density_at_zero(counts, intervals, width):
-    """Return the density at 0 as an ``Estimate``: that of p(0) − a t² with the counts of two bins.
-
-    ``counts`` are those of the first bins of ``width`` from 0, out of so many independent
-    ``intervals``; the error is that of multinomial counts. There is no linear term: discs that
-    touch right after a hop are side by side and exchange velocities along x, which does not change
-    when they hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
-    ``intervals``.
-    """
-    n = np.array([whole("count", n, 0) for n in counts[:2]], float)
-    if n.size < 2:
-        raise InputError(f"counts must be of at least 2 bins, not {n.size}")
-    intervals, width = whole("intervals", intervals), length("width", width)
-    if n.sum() > intervals:
-        raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
-    weights = np.array([7, -1]) / 6
-    share = weights @ n / intervals
-    spread = weights**2 @ n / intervals - share**2
-    return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
 
 
 class Bin(NamedTuple):
