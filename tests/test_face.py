@@ -3,6 +3,7 @@
 import ast
 import json
 import math
+import re
 import subprocess
 import sys
 
@@ -10,14 +11,14 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 from fabricated import command
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import twodiscs as td
 from twodiscs import cli
 from twodiscs.comparison import rows, scene_tables
 from twodiscs.comparison.results import Measurement
-from twodiscs.dynamics.trajectory import state_of
+from twodiscs.dynamics.trajectory import ROUNDING, state_of
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.pipeline import jobs
@@ -373,10 +374,21 @@ def test_junk_is_refused_in_a_sentence(function, data):
 
 
 @given(st.lists(st.floats(-1, 1), min_size=7, max_size=9))
+@example([0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 1.0])
 @settings(max_examples=50, deadline=None)
-def test_numbers_at_random_are_no_state(start):
-    with pytest.raises(td.InputError, match=r"^start must "):
-        td.trajectory(SCENE, start=start)
+def test_numbers_at_random_are_a_state_of_the_scene_or_refused(start):
+    try:
+        table = td.trajectory(SCENE, start=start)
+    except td.InputError as error:
+        assert re.match("start must ", str(error))
+    else:
+        x1, y1, x2, y2, *velocity = start
+        reach_x, reach_y = SCENE.width / 2 - SCENE.radius, SCENE.height / 2 - SCENE.radius
+        assert max(abs(x1), abs(x2)) <= reach_x + ROUNDING * SCENE.width
+        assert max(abs(y1), abs(y2)) <= reach_y + ROUNDING * SCENE.height
+        assert math.hypot(x1 - x2, y1 - y2) >= 2 * SCENE.radius * (1 - ROUNDING)
+        assert abs(math.hypot(*velocity) ** 2 / 2 - 1 / 2) <= 2 * ROUNDING
+        assert list(table.iloc[0][["x1", "y1", "x2", "y2"]]) == start[:4]
 
 
 NO_NUMBERS = st.characters(exclude_categories=["N", "Cs"], exclude_characters="x\0")
