@@ -11,6 +11,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import FOLLOWED
+from twodiscs.sampling import rounds
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory import exact
 
@@ -88,7 +89,7 @@ def test_small_discs_on_a_torus_end():
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found["replicas"] * found["duration"])
     block = counting.REPLICAS * counting.EVENTS_PER_REPLICA * exact.PASSES_PER_EVENT
-    assert leaves <= 2**0.5 * ensemble.FIRST_ROUND * block
+    assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
     assert found["status"] == {"disc_collision": "budget"}
 
 

@@ -11,7 +11,6 @@ from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
     REPLICAS,
-    in_rounds,
     nearest_power_of_two,
     new_rows,
     put_state,
@@ -35,6 +34,7 @@ from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, optional, tally
+from twodiscs.sampling.rounds import Run, in_rounds
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -247,23 +247,8 @@ def run_blocks(
     )  # fmt: skip
 
 
-def count_events(scene, target, budget, seed, report=None):
-    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
-
-    ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
-    blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
-    events to simulate; a block of replicas is the least that is. Work goes in rounds: the first
-    one is small, the next ones as long as the errors seen so far predict. ``report``, if given, is
-    called after each round with a text on what is done and the work that is left, over that done.
-
-    Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
-    share the budget evenly with all the rest; what starts anywhere see of them is counted, too.
-
-    Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
-    events simulated, and for each watched event its count ΣN, its target and status (reached,
-    budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.count_rare``
-    returns for each rare hop. Raises ``InputError`` for an unknown event or a number out of range.
-    """
+def _checked(scene, target, budget, seed):
+    """Return (target by event, the budget in events of equal work, seed), checked."""
     a_scene(scene)
     if not isinstance(target, dict) or not target:
         raise InputError(f"target must name at least one event, with its error, not {target!r}")
@@ -271,26 +256,61 @@ def count_events(scene, target, budget, seed, report=None):
         one_of("event", e, EVENTS): proportion(f"target of {e}", t) for e, t in target.items()
     }
     budget, seed = whole("budget", budget), whole("seed", seed, 0)
-    budget = max(1, int(budget / exact.work_per_event(scene)))
     require_room(scene)
+    return target, max(1, int(budget / exact.work_per_event(scene))), seed
 
-    duration, rare = replica_duration(scene), strip.rare_hops(scene)
+
+def runs_of(scene, target, budget, seed):
+    """Return {name: ``Run``} of what ``count_events`` does: "all" and the rare hops.
+
+    Arguments and errors are those of ``count_events``.
+    """
+    target, budget, seed = _checked(scene, target, budget, seed)
+    duration = replica_duration(scene)
     events = [event for event in EVENTS if event in target]
-    rare = [hop for hop in rare if hop in target]
+    rare = [hop for hop in strip.rare_hops(scene) if hop in target]
     budget //= 1 + len(rare)
     waited = [event for event in events if scene.is_possible(event) and event not in rare]
     index = [EVENTS.index(event) for event in waited]
     goals = np.array([target[event] for event in waited])
-
-    (sums, products), done, rounds, excess = in_rounds(
+    everything = Run(
         lambda first, stop: run_blocks(scene, events, seed, first, stop, duration),
-        lambda total, replicas: relative_errors(*total, replicas)[index] / goals,
-        lambda total: max(1, simulated_events(total[0])),
-        int(budget / (REPLICAS * exact.event_rate(scene) * duration)),
+        lambda sums, blocks: relative_errors(*sums, blocks * REPLICAS)[index] / goals,
+        lambda sums: max(1, simulated_events(sums[0])),
+        REPLICAS * exact.event_rate(scene) * duration,
         budget,
-        report,
     )
-    strips = {hop: strip.count_rare(scene, hop, target[hop], budget, seed, report) for hop in rare}
+    strips = {hop: strip.run_of(scene, hop, target[hop], budget, seed) for hop in rare}
+    return {"all": everything, **strips}
+
+
+def count_events(scene, target, budget, seed, report=None):
+    """Count the events of a ``Scene`` in independent replicas until each is known well enough.
+
+    ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
+    blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
+    events to simulate; a block of replicas is the least that is. Work goes in rounds: see
+    ``sampling.rounds``, also for ``report``.
+
+    Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
+    share the budget evenly with all the rest; what starts anywhere see of them is counted, too.
+
+    Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
+    events simulated, and for each watched event its count ΣN, its target and status (reached,
+    budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.summary``
+    returns for each rare hop. Raises ``InputError`` for an unknown event or a number out of range.
+    """
+    runs = runs_of(scene, target, budget, seed)
+    return summary(scene, target, {name: in_rounds(run, report) for name, run in runs.items()})
+
+
+def summary(scene, target, done):
+    """Return what ``count_events`` does, given what is ``Done`` of each of ``runs_of``."""
+    events = [event for event in EVENTS if event in target]
+    rare = [hop for hop in HOPS if hop in done]
+    waited = [event for event in events if scene.is_possible(event) and event not in rare]
+    (sums, products), blocks, rounds, excess = done["all"]
+    strips = {hop: strip.summary(scene, hop, done[hop]) for hop in rare}
     watched = [EVENTS.index(event) for event in events]
     reached = dict(zip(waited, excess <= 1.0, strict=True))
     status = {
@@ -298,8 +318,8 @@ def count_events(scene, target, budget, seed, report=None):
     }
     return {
         "radius": scene.radius,
-        "duration": duration,
-        "replicas": done * REPLICAS,
+        "duration": replica_duration(scene),
+        "replicas": blocks * REPLICAS,
         "rounds": rounds,
         "events": simulated_events(sums) + sum(found["events"] for found in strips.values()),
         "counts": {EVENTS[e]: int(sums[e]) for e in watched},
@@ -322,6 +342,16 @@ WORK = "events"
 def job(box, radius, accuracy, event_budget, seed, report=None):
     """Return ``count_events`` for plain values: the job of one radius."""
     return count_events(box.scene(radius), accuracy, event_budget, seed, report)
+
+
+def runs(box, radius, accuracy, event_budget, seed):
+    """Return ``runs_of`` for plain values: what the shards of one radius share."""
+    return runs_of(box.scene(radius), accuracy, event_budget, seed)
+
+
+def merged(box, radius, accuracy, event_budget, seed, done):
+    """Return what ``job`` does, given what is ``Done`` of each of ``runs``."""
+    return summary(box.scene(radius), accuracy, done)
 
 
 def compile_kernels(box=None, events=()):

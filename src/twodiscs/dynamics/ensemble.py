@@ -24,12 +24,6 @@ PASSES = 8
 REPLICAS = 1024
 
 
-#: Blocks of the first round, and how many times the work done so far a round may be: an error seen
-#: in few events predicts badly.
-FIRST_ROUND = 32
-GROWTH = 8.0
-
-
 def nearest_power_of_two(value):
     """Return the power of two next to ``value`` > 0 on a logarithmic scale.
 
@@ -101,7 +95,7 @@ def across(state, horizontal):
     return state[0] - state[2], state[4] - state[6]
 
 
-# Rounds ------------------------------------------------------------------------------------------
+# Errors ------------------------------------------------------------------------------------------
 
 
 def relative_errors(sums, products, replicas):
@@ -114,34 +108,3 @@ def relative_errors(sums, products, replicas):
         variance = np.maximum(np.diag(products) / replicas - mean**2, 0.0)
         errors = np.sqrt(variance / replicas) / mean
     return np.where(sums > 0, errors, np.inf)
-
-
-def in_rounds(work, excess_of, events_of, affordable, budget, report=None):
-    """Add up the work of blocks until all is known well enough or the ``budget`` is spent.
-
-    ``work(first, stop)`` returns the sums of a range of blocks; ``excess_of(sums, replicas)`` their
-    errors over those asked for, an array, and ``events_of(sums)`` the events simulated. The first
-    round is small, no more than the ``affordable`` blocks or one, the next ones as long as the
-    errors seen so far predict; without anything to wait for it is the only one. ``report`` is that
-    of ``counting.count_events``. Returns (sums, blocks, rounds, errors).
-    """
-    blocks = max(1, min(FIRST_ROUND, affordable))
-    sums, done, rounds = None, 0, 0
-    while True:
-        part = work(done, done + blocks)
-        sums = part if sums is None else [a + b for a, b in zip(sums, part, strict=True)]
-        done, rounds = done + blocks, rounds + 1
-        excess, simulated = excess_of(sums, done * REPLICAS), events_of(sums)
-        if not excess.size:
-            break
-        worst = float(np.max(excess))
-        # In units of the work done so far: what the error asks for, and what the budget allows.
-        missing, affordable = 1.05 * worst * worst - 1.0, budget / simulated - 1.0
-        if report is not None:
-            done_so_far = f"{simulated:.3g} events, error {worst:.2f} of the target"
-            report(done_so_far, max(0.0, min(missing, affordable)))
-        if worst <= 1.0 or affordable * done < 1.0:
-            break
-        blocks = math.ceil(min(missing, GROWTH) * done)
-        blocks = min(blocks, math.floor(affordable * done))
-    return sums, done, rounds, excess

@@ -20,7 +20,6 @@ from twodiscs.dynamics.ensemble import (
     LANES,
     REPLICAS,
     across,
-    in_rounds,
     new_rows,
     put_state,
     relative_errors,
@@ -32,6 +31,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import strip_of as place_of
+from twodiscs.sampling.rounds import Run
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -211,30 +211,36 @@ def starts(scene, hop, within, number, seed, block=0):
     return found
 
 
-def count_rare(scene, hop, target, budget, seed, report=None):
-    """Count a ``hop`` from starts in its strip until its mean time is known to ``target``.
+def run_of(scene, hop, target, budget, seed):
+    """Return the ``Run`` that counts a ``hop`` from starts in its strip to an error ``target``.
 
-    Arguments are those of ``counting.count_events``; streams are of their own. Returns a dict: the
-    duration 2T and the share P of configuration space, numbers of replicas, rounds, wall and disc
-    events, ΣN, ΣN² and the status.
+    Its streams are its own.
     """
     place = strip_of(scene, hop)
     seed = stream_seed(seed, hop, "strip", key(scene.radius))
-    (sums, squares, events), done, rounds, excess = in_rounds(
+    return Run(
         lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
-        lambda total, replicas: relative_errors(*total[:2], replicas) / target,
-        lambda total: int(total[2]),
-        int(budget / (REPLICAS * max(1.0, expected_events(scene, hop, place)))),
+        lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS) / target,
+        lambda sums: int(sums[2]),
+        REPLICAS * max(1.0, expected_events(scene, hop, place)),
         budget,
-        report,
     )
+
+
+def summary(scene, hop, done):
+    """Return what was found of a rare ``hop``, for a JSON file.
+
+    That is the duration 2T and the share P of configuration space, numbers of replicas, rounds,
+    wall and disc events, ΣN, ΣN² and the status.
+    """
+    place, (count, squares, events) = strip_of(scene, hop), done.sums
     return {
         "duration": 2 * place.time,
         "share": place.share,
-        "replicas": done * REPLICAS,
-        "rounds": rounds,
+        "replicas": done.blocks * REPLICAS,
+        "rounds": done.rounds,
         "events": int(events),
-        "count": int(sums[0]),
+        "count": int(count[0]),
         "squares": int(squares[0, 0]),
-        "status": "reached" if excess[0] <= 1 else "budget",
+        "status": "reached" if done.excess[0] <= 1 else "budget",
     }

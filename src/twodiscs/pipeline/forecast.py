@@ -127,7 +127,8 @@ def pilot_intervals(job):
 
 def pilot_dynamics(job):
     """Return the ``Pilot`` of a job of molecular dynamics, given its parameters."""
-    from twodiscs.dynamics import counting, ensemble, strip
+    from twodiscs.dynamics import counting, strip
+    from twodiscs.sampling.rounds import FIRST_ROUND
 
     scene = _scene(job)
     duration = counting.replica_duration(scene)
@@ -141,7 +142,7 @@ def pilot_dynamics(job):
         return counting.simulated_events(counted[0])
 
     count(1)
-    counted, cost = _timed(lambda: count(ensemble.FIRST_ROUND), events)
+    counted, cost = _timed(lambda: count(FIRST_ROUND), events)
     pilots = [Pilot(events_of_job(scene, job, counted, events(counted), rare), cost)]
     pilots += [pilot_strip(scene, hop, job) for hop in rare]
     total = sum(pilot.events for pilot in pilots)
@@ -151,6 +152,7 @@ def pilot_dynamics(job):
 def pilot_strip(scene, hop, job):
     """Return the ``Pilot`` of a rare ``hop`` of a job."""
     from twodiscs.dynamics import ensemble, strip
+    from twodiscs.sampling.rounds import FIRST_ROUND
 
     place = strip.strip_of(scene, hop)
 
@@ -158,8 +160,8 @@ def pilot_strip(scene, hop, job):
         return strip.run_blocks(scene, hop, place, SEED, 0, blocks)
 
     count(1)
-    counted, cost = _timed(lambda: count(ensemble.FIRST_ROUND), lambda sums: sums[2])
-    replicas = ensemble.FIRST_ROUND * ensemble.REPLICAS
+    counted, cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[2])
+    replicas = FIRST_ROUND * ensemble.REPLICAS
     excess = ensemble.relative_errors(*counted[:2], replicas)[0] / job["accuracy"][hop]
     needed = min(max(1.0, MARGIN * excess**2) * counted[2], job["event_budget"])
     return Pilot(round(needed), cost)
@@ -174,9 +176,10 @@ def events_of_job(scene, job, counted, done, rare=()):
     """
     from twodiscs.dynamics import counting, ensemble
     from twodiscs.model.events import EVENTS
+    from twodiscs.sampling.rounds import FIRST_ROUND
     from twodiscs.theory import exact
 
-    errors = ensemble.relative_errors(*counted, ensemble.FIRST_ROUND * ensemble.REPLICAS)
+    errors = ensemble.relative_errors(*counted, FIRST_ROUND * ensemble.REPLICAS)
     total = exact.event_rate(scene)
     needed = 0.0
     for event, error in job["accuracy"].items():
@@ -190,7 +193,7 @@ def events_of_job(scene, job, counted, done, rare=()):
             alone = CLUSTER * total * time
         needed = max(needed, alone / error**2)
     usual = ensemble.REPLICAS * counting.EVENTS_PER_REPLICA
-    blocks = max(1, min(ensemble.FIRST_ROUND, job["event_budget"] // usual))
+    blocks = max(1, min(FIRST_ROUND, job["event_budget"] // usual))
     first = blocks * ensemble.REPLICAS * counting.replica_duration(scene) * total
     if needed > first:
         needed *= MARGIN
