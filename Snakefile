@@ -45,6 +45,7 @@ if workflow.is_main_process:
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/points.smk"
+include: "workflow/rules/shards.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/studies.smk"

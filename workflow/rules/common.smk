@@ -2,6 +2,7 @@
 import json
 import sys
 from hashlib import blake2b
+from itertools import count
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
@@ -49,6 +50,11 @@ LONG = 30_000
 wildcard_constraints:
     scene="|".join(SCENES),
     key=r"[0-9][0-9.e+-]*",
+
+
+def one_of(names):
+    """Return the pattern of a wildcard that is one of ``names``; without any nothing matches."""
+    return "|".join(names) or "(?!)"
 
 
 def log_of(name):

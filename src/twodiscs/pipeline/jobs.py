@@ -157,6 +157,75 @@ def point(options):
         write_json(options.cost, {"events": events, "seconds": seconds})
 
 
+# A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan says
+# which pieces the points of a scene need, as far as those that are there can tell.
+
+
+def shard_of(part, first, stop):
+    """Return the name of the shard that does a piece of a part of a point."""
+    return f"{part}-{first}-{stop}"
+
+
+def _pieces(options, key, names):
+    """Return {part: sums of its pieces} of the point ``key``, from the files of its shards."""
+    found = {}
+    for name in names:
+        text = Path(options.points[0], key, f"{name}.json").read_text(encoding="utf-8")
+        found.setdefault(name.split("-")[0], []).extend(json.loads(text))
+    return found
+
+
+def _runs(options, given):
+    return call(function_of(options.module, "runs"), given)
+
+
+def shard(options):
+    """Write the sums of a piece of the work of a module at one radius, and what it took."""
+    given = parameters(options.parameters)
+    part, first, stop = (given.pop(name) for name in ("part", "first", "stop"))
+    start = time.process_time()
+    run = _runs(options, given)[part]
+    write_json(options.output[0], module_of("sampling.rounds").piece(run, first, stop))
+    write_json(options.cost, {"seconds": time.process_time() - start})
+
+
+def plan(options):
+    """Write {key: names of the shards} that points need: those of ``keys``, and what they miss."""
+    given, rounds = parameters(options.parameters), module_of("sampling.rounds")
+    needed = {}
+    for key, job in given["jobs"].items():
+        names = given["keys"].get(key, [])
+        found = _pieces(options, key, names)
+        new = [
+            shard_of(part, *one)
+            for part, run in _runs(options, job).items()
+            for one in rounds.pieces(
+                run, given["shard_events"], rounds.followed(run, found.get(part, []))[1]
+            )
+        ]
+        needed[key] = list(dict.fromkeys([*names, *new]))
+    write_json(options.output[0], needed)
+
+
+def merge(options):
+    """Write what a module finds at one radius, given its shards, and what all of them took."""
+    given, rounds = parameters(options.parameters), module_of("sampling.rounds")
+    ((key, names),) = given.pop("keys").items()
+    start = time.process_time()
+    found, done = _pieces(options, key, names), {}
+    for part, run in _runs(options, given).items():
+        done[part], needed = rounds.followed(run, found.get(part, []))
+        if needed > done[part].blocks:
+            raise InputError(f"the shards of {part} at radius {key} end too early")
+    result = call(function_of(options.module, "merged"), given, done=done)
+    write_json(options.output[0], result)
+    costs = [Path(options.points[0], key, "cost", f"{name}.json") for name in names]
+    seconds = time.process_time() - start
+    seconds += sum(json.loads(path.read_text(encoding="utf-8"))["seconds"] for path in costs)
+    events = result[module_of(options.module).WORK]
+    write_json(options.cost, {"events": events, "seconds": seconds})
+
+
 def table(options):
     """Write the table that a module makes of its parameters, of other tables and of points."""
     work = function_of(options.module, options.function)
@@ -259,6 +328,9 @@ def verdict(options):
 
 JOBS = {
     "point": point,
+    "shard": shard,
+    "plan": plan,
+    "merge": merge,
     "table": table,
     "figure": figure,
     "animation": animation,

@@ -77,8 +77,9 @@ def _load(mapping):
     settled = _settled(mapping, schema(), "")
     _validate(settled)
     _fill_defaults(settled, schema())
+    common = {name: settled[name] for name in ("seed", "shard_events")}
     scenes = tuple(
-        _scene(block, f"scenes[{i}]", settled["seed"]) for i, block in enumerate(settled["scenes"])
+        _scene(block, f"scenes[{i}]", common) for i, block in enumerate(settled["scenes"])
     )
     names = [scene.name for scene in scenes]
     for i, name in enumerate(names):
@@ -170,7 +171,7 @@ def _fill_defaults(value, node):
             _fill_defaults(item, node.get("items", {}))
 
 
-def _scene(block, path, seed):
+def _scene(block, path, common):
     box = _box(block, path)
     found = _radii(block["radii"], box, f"{path}.radii")
     scene = box.scene(found[0])
@@ -218,7 +219,7 @@ def _scene(block, path, seed):
             "event_budget": block["event_budget"],
         },
         histogram=histogram,
-        seed=seed,
+        **common,
     )
 
 

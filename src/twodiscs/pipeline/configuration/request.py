@@ -67,6 +67,7 @@ class SceneRequest:
     dynamics: dict
     histogram: dict
     seed: int
+    shard_events: int
 
     @property
     def effects(self):
@@ -148,6 +149,22 @@ class SceneRequest:
         }
         seed = stream_seed(self.seed, self.name, stage, key)
         return self._sorted(**settings[stage], radius=radii[key], seed=seed)
+
+    def is_sharded(self, stage):
+        """Say whether the jobs of a ``stage`` may be cut into shards."""
+        return stage == "dynamics" and self.event_budget > self.shard_events
+
+    def shard_job(self, stage, key, part, first, stop):
+        """Return what a shard depends on: neither the accuracy asked for nor the budget."""
+        given = self.job(stage, key)
+        error = dict.fromkeys(given["accuracy"], 0.5)
+        own = {"accuracy": error, "event_budget": 1, "part": part, "first": first, "stop": stop}
+        return given | own
+
+    def plan_job(self, stage, keys):
+        """Return what a plan of the shards of a ``stage`` depends on, beside the shards ``keys``."""
+        jobs = {key: self.job(stage, key) for key in self.keys[stage]}
+        return {"jobs": jobs, "keys": keys, "shard_events": self.shard_events}
 
     def kernels(self, stage):
         """Return what the compiled code of a ``stage`` depends on, as all of its jobs do too."""

@@ -1,0 +1,113 @@
+# Points that may take more than one job should do. Their work is cut into pieces of an absolute grid; a shard
+# does one of them, whatever accuracy is asked for. A plan says which shards all points of a scene need, as far as
+# those of the plan before it can tell; plans go on until one of them needs nothing more. A merge adds up the
+# shards of its own point: another radius is of no consequence to it.
+SHARDS = f"{RESULTS}/{{scene}}/points/shards/{{stage}}"
+
+
+def planned(scene, stage, rounds=None):
+    """Return {key: names of the shards} that plans ask for: so many of them, or all there are."""
+    names = {}
+    for n in count(1) if rounds is None else range(1, rounds + 1):
+        job = checkpoints.plan.get(scene=scene, stage=stage, round=n)
+        found = json.loads(Path(job.output.plan).read_text(encoding="utf-8"))
+        if found == names:
+            break
+        names = found
+    return names
+
+
+def shard_files(scene, stage, keys):
+    """Return the files of shards; ``keys`` is {key: their names}."""
+    folder = SHARDS.format(scene=scene, stage=stage)
+    return [f"{folder}/{key}/{name}.json" for key, names in keys.items() for name in names]
+
+
+def needed_before(w):
+    """Return {key: names of the shards} that the plans before the one of these wildcards ask for."""
+    return planned(w.scene, w.stage, int(w.round) - 1)
+
+
+def merged_job(w):
+    """Return what the merge of these wildcards depends on."""
+    names = planned(w.scene, w.stage)[w.key]
+    return SCENES[w.scene].job(w.stage, w.key) | {"keys": {w.key: names}}
+
+
+checkpoint plan:
+    input:
+        shards=lambda w: shard_files(w.scene, w.stage, needed_before(w)),
+    output:
+        plan=f"{SHARDS}/plan-{{round}}.json",
+    log:
+        log_of("{scene}/plan-{stage}-{round}"),
+    benchmark:
+        benchmark_of("{scene}/plan-{stage}-{round}")
+    wildcard_constraints:
+        round="[0-9]+",
+    params:
+        about=lambda w: about(w.scene),
+        job=lambda w: as_json(SCENES[w.scene].plan_job(w.stage, needed_before(w))),
+        points=SHARDS,
+        module=lambda w: STAGES[w.stage],
+        code=lambda w: code(STAGES[w.stage]),
+    shell:
+        "python -m twodiscs.pipeline.jobs plan {params.module} --parameters {params.job:q}"
+        " --points {params.points:q} --output {output.plan:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+
+
+rule shard:
+    input:
+        compiled=lambda w: compiled(SCENES[w.scene], w.stage),
+    output:
+        shard=f"{SHARDS}/{{key}}/{{part}}-{{first}}-{{stop}}.json",
+        cost=f"{SHARDS}/{{key}}/cost/{{part}}-{{first}}-{{stop}}.json",
+    log:
+        log_of("{scene}/shard-{stage}-{key}-{part}-{first}-{stop}"),
+    benchmark:
+        benchmark_of("{scene}/shard-{stage}-{key}-{part}-{first}-{stop}")
+    wildcard_constraints:
+        part="[a-z_]+",
+        first="[0-9]+",
+        stop="[0-9]+",
+    params:
+        about=lambda w: about(w.scene),
+        job=lambda w: as_json(
+            SCENES[w.scene].shard_job(
+                w.stage, w.key, w.part, int(w.first), int(w.stop)
+            )
+        ),
+        module=lambda w: STAGES[w.stage],
+        code=lambda w: code(STAGES[w.stage]),
+    shell:
+        "python -m twodiscs.pipeline.jobs shard {params.module} --parameters {params.job:q}"
+        " --output {output.shard:q} --cost {output.cost:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+
+
+rule merge:
+    input:
+        shards=lambda w: shard_files(
+            w.scene, w.stage, {w.key: planned(w.scene, w.stage)[w.key]}
+        ),
+    output:
+        point=f"{RESULTS}/{{scene}}/points/{{stage}}/{{key}}.json",
+        cost=f"{RESULTS}/{{scene}}/points/cost/{{stage}}-{{key}}.json",
+    log:
+        log_of("{scene}/merge-{stage}-{key}"),
+    benchmark:
+        benchmark_of("{scene}/merge-{stage}-{key}")
+    wildcard_constraints:
+        scene=one_of(s.name for s in SCENES.values() if s.is_sharded("dynamics")),
+        stage="dynamics",
+    params:
+        about=lambda w: about(w.scene),
+        job=lambda w: as_json(merged_job(w)),
+        points=SHARDS,
+        module=lambda w: STAGES[w.stage],
+        code=lambda w: code(STAGES[w.stage]),
+    shell:
+        "python -m twodiscs.pipeline.jobs merge {params.module} --parameters {params.job:q}"
+        " --points {params.points:q} --output {output.point:q} --cost {output.cost:q}"
+        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
