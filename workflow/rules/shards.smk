@@ -20,7 +20,9 @@ def planned(scene, stage, rounds=None):
 def shard_files(scene, stage, keys):
     """Return the files of shards; ``keys`` is {key: their names}."""
     folder = SHARDS.format(scene=scene, stage=stage)
-    return [f"{folder}/{key}/{name}.json" for key, names in keys.items() for name in names]
+    return [
+        f"{folder}/{key}/{name}.json" for key, names in keys.items() for name in names
+    ]
 
 
 def needed_before(w):
@@ -28,10 +30,10 @@ def needed_before(w):
     return planned(w.scene, w.stage, int(w.round) - 1)
 
 
-def merged_job(w):
-    """Return what the merge of these wildcards depends on."""
-    names = planned(w.scene, w.stage)[w.key]
-    return SCENES[w.scene].job(w.stage, w.key) | {"keys": {w.key: names}}
+def merged_job(scene, stage, key):
+    """Return what the merge of the shards of a point depends on."""
+    names = planned(scene, stage)[key]
+    return SCENES[scene].job(stage, key) | {"keys": {key: names}}
 
 
 checkpoint plan:
@@ -86,28 +88,31 @@ rule shard:
         " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
-rule merge:
-    input:
-        shards=lambda w: shard_files(
-            w.scene, w.stage, {w.key: planned(w.scene, w.stage)[w.key]}
-        ),
-    output:
-        point=f"{RESULTS}/{{scene}}/points/{{stage}}/{{key}}.json",
-        cost=f"{RESULTS}/{{scene}}/points/cost/{{stage}}-{{key}}.json",
-    log:
-        log_of("{scene}/merge-{stage}-{key}"),
-    benchmark:
-        benchmark_of("{scene}/merge-{stage}-{key}")
-    wildcard_constraints:
-        scene=one_of(s.name for s in SCENES.values() if s.is_sharded("dynamics")),
-        stage="dynamics",
-    params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(merged_job(w)),
-        points=SHARDS,
-        module=lambda w: STAGES[w.stage],
-        code=lambda w: code(STAGES[w.stage]),
-    shell:
-        "python -m twodiscs.pipeline.jobs merge {params.module} --parameters {params.job:q}"
-        " --points {params.points:q} --output {output.point:q} --cost {output.cost:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+for stage, module in STAGES.items():
+
+    rule:
+        name:
+            f"{stage}_merge"
+        input:
+            shards=lambda w, stage=stage: shard_files(
+                w.scene, stage, {w.key: planned(w.scene, stage)[w.key]}
+            ),
+        output:
+            point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
+            cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",
+        log:
+            log_of(f"{{scene}}/{stage}_merge-{{key}}"),
+        benchmark:
+            benchmark_of(f"{{scene}}/{stage}_merge-{{key}}")
+        wildcard_constraints:
+            scene=one_of(s.name for s in SCENES.values() if s.is_sharded(stage)),
+        params:
+            about=lambda w: about(w.scene),
+            job=lambda w, stage=stage: as_json(merged_job(w.scene, stage, w.key)),
+            points=SHARDS.replace("{stage}", stage),
+            module=module,
+            code=code(module),
+        shell:
+            "python -m twodiscs.pipeline.jobs merge {params.module} --parameters {params.job:q}"
+            " --points {params.points:q} --output {output.point:q} --cost {output.cost:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"

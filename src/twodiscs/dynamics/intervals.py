@@ -23,6 +23,7 @@ from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.rounds import as_many
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -31,6 +32,10 @@ from twodiscs.theory import exact
 RETURNS = 256
 CHAINS = 256
 BINS = 512
+
+#: The time of a chain is counted in such parts of the width of a bin; and a usual one.
+GRAIN = 16
+USUAL = GRAIN * RETURNS * 16
 
 #: The usual budget of wall and disc events.
 BUDGET = 10**11
@@ -128,9 +133,12 @@ def record_returns(
                 counts[finder[k], wide[place]] += 1
 
 
-def recorded(scene, event, blocks, chains, returns, seed):
-    """Return (times of the chains, sums, width of bins, edges of wide ones): ``record_returns``."""
-    width = nearest_power_of_two(exact.mean_times(scene)[event] / 16)
+def recorded(scene, event, blocks, chains, returns, seed, first=0):
+    """Return (times of the chains, sums, width of bins, edges of wide ones): ``record_returns``.
+
+    There are so many ``blocks``, from the ``first`` one on.
+    """
+    width = _width(scene, event)
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
         horizontal = True
@@ -144,8 +152,8 @@ def recorded(scene, event, blocks, chains, returns, seed):
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
     sums = np.zeros((2, beyond + 1), np.int64)
     totals = record_returns(
-        np.uint64(seed), 0, blocks, chains, LANES, returns, law_of(upright), *origins(upright),
-        horizontal, width, wide, sums,
+        np.uint64(seed), first, first + blocks, chains, LANES, returns, law_of(upright),
+        *origins(upright), horizontal, width, wide, sums,
     )  # fmt: skip
     return totals, sums, width, edges
 
@@ -165,6 +173,15 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
     or blocked, or a number out of range.
     """
+    blocks, seed = _blocks(scene, event, intervals, seed, budget)
+    totals, sums, _, _ = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
+    means = totals / RETURNS
+    mean, error = math.fsum(means) / means.size, float(np.std(means, ddof=1))
+    return _summary(scene, event, sums, totals.size, mean, error / math.sqrt(means.size))
+
+
+def _blocks(scene, event, intervals, seed, budget):
+    """Return (the number of blocks, seed) of ``hop_intervals``, whose arguments are checked."""
     a_scene(scene)
     one_of("event", event, HOPS)
     if not scene.is_possible(event):
@@ -181,13 +198,19 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
             f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} of "
             f"{events:.2g} events each, not {budget!r}"
         )
-    totals, sums, width, edges = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
-    means = totals / RETURNS
-    counts, squares = sums.tolist()
+    return blocks, seed
+
+
+def _width(scene, event):
+    return nearest_power_of_two(exact.mean_times(scene)[event] / 16)
+
+
+def _summary(scene, event, sums, chains, mean, stderr):
+    edges, (counts, squares) = wide_edges(), sums.tolist()
     return {
         "radius": scene.radius,
         "event": event,
-        "bin_width": width,
+        "bin_width": _width(scene, event),
         "counts": counts[:BINS],
         "squares": squares[:BINS],
         "overflow": counts[BINS],
@@ -196,10 +219,10 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
             "counts": counts[BINS + 1 : BINS + len(edges)],
             "squares": squares[BINS + 1 : BINS + len(edges)],
         },
-        "intervals": totals.size * RETURNS,
-        "chains": totals.size,
-        "mean": math.fsum(means) / means.size,
-        "stderr": float(np.std(means, ddof=1) / math.sqrt(means.size)),
+        "intervals": chains * RETURNS,
+        "chains": chains,
+        "mean": mean,
+        "stderr": stderr,
     }
 
 
@@ -210,6 +233,34 @@ WORK = "intervals"
 def job(box, radius, event, intervals, seed, event_budget=BUDGET):
     """Return ``hop_intervals`` for plain values: the job of one radius."""
     return hop_intervals(box.scene(radius), event, intervals, seed, event_budget)
+
+
+def runs(box, radius, event, intervals, seed, event_budget=BUDGET):
+    """Return {"all": ``Run``} for the arguments of ``job``: what the shards of one radius share.
+
+    Beside the bins, the times of chains are summed up, and their squares: as integers, in 16ths of
+    the width of a bin, from what they are about.
+    """
+    scene = box.scene(radius)
+    blocks, seed = _blocks(scene, event, intervals, seed, event_budget)
+
+    def work(first, stop):
+        totals, sums, width, _ = recorded(
+            scene, event, stop - first, CHAINS, RETURNS, seed, first=first
+        )
+        times = np.rint(totals * (GRAIN / width)).astype(np.int64) - USUAL
+        return sums, np.array([times.sum(), (times * times).sum()])
+
+    events = CHAINS * RETURNS * exact.events_per_interval(scene, event)
+    return {"all": as_many(work, blocks, events)}
+
+
+def merged(box, radius, event, intervals, seed, done, event_budget=BUDGET):
+    """Return what ``job`` does, given what is ``Done`` of ``runs``."""
+    scene, ((sums, (total, squares)), blocks) = box.scene(radius), done["all"][:2]
+    chains, unit = blocks * CHAINS, _width(scene, event) / GRAIN / RETURNS
+    spread = math.sqrt((squares - total * (total / chains)) / (chains - 1) / chains)
+    return _summary(scene, event, sums, chains, unit * (USUAL + int(total) / chains), unit * spread)
 
 
 def compile_kernels(box=None, event="vertical_hop"):

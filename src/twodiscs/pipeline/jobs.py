@@ -157,8 +157,8 @@ def point(options):
         write_json(options.cost, {"events": events, "seconds": seconds})
 
 
-# A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan says
-# which pieces the points of a scene need, as far as those that are there can tell.
+# A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan
+# says which pieces the points of a scene need, as far as those that are there can tell.
 
 
 def shard_of(part, first, stop):
@@ -197,10 +197,10 @@ def plan(options):
         names = given["keys"].get(key, [])
         found = _pieces(options, key, names)
         new = [
-            shard_of(part, *one)
-            for part, run in _runs(options, job).items()
-            for one in rounds.pieces(
-                run, given["shard_events"], rounds.followed(run, found.get(part, []))[1]
+            shard_of(part, *piece)
+            for part, one in _runs(options, job).items()
+            for piece in rounds.pieces(
+                one, given["shard_events"], rounds.followed(one, found.get(part, []))[1]
             )
         ]
         needed[key] = list(dict.fromkeys([*names, *new]))
@@ -213,8 +213,8 @@ def merge(options):
     ((key, names),) = given.pop("keys").items()
     start = time.process_time()
     found, done = _pieces(options, key, names), {}
-    for part, run in _runs(options, given).items():
-        done[part], needed = rounds.followed(run, found.get(part, []))
+    for part, one in _runs(options, given).items():
+        done[part], needed = rounds.followed(one, found.get(part, []))
         if needed > done[part].blocks:
             raise InputError(f"the shards of {part} at radius {key} end too early")
     result = call(function_of(options.module, "merged"), given, done=done)

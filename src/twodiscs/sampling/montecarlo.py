@@ -22,6 +22,8 @@ Thickness is then measured in the metric of the masses, as ``weighted.shell_expe
 """
 
 import math
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,6 +33,7 @@ from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.jit import compiled, inlined, optional, tally, written_out
 from twodiscs.sampling.prism import kinetic_share, power_chance, prism_of, propose_in_prism
+from twodiscs.sampling.rounds import as_many
 from twodiscs.sampling.separations import draw_constants, propose_separation
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
@@ -230,9 +233,30 @@ def sample_point(scene, quantities, samples, shell, seed):
     """
     if a_scene(scene).has_effects:
         return weighted_point(scene, quantities, samples, shell, seed)
+    return _drawn(_in_prism(scene, quantities, shell, seed), samples)
+
+
+class Sampler(NamedTuple):
+    """Draws in blocks of so many samples.
+
+    ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
+    what is found, as ``sample_point`` does.
+    """
+
+    block: int
+    count: Callable
+    point: Callable
+
+
+def _drawn(sampler, samples):
+    blocks = -(-whole("samples", samples) // sampler.block)
+    return sampler.point(blocks * sampler.block, sampler.count(0, blocks))
+
+
+def _in_prism(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of ``sample_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    blocks, seed = -(-whole("samples", samples) // BLOCK), whole("seed", seed, 0)
-    sigma = scene.contact_distance
+    seed, sigma = whole("seed", seed, 0), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
 
     def first_grain(axis, side, thick):
@@ -241,11 +265,16 @@ def sample_point(scene, quantities, samples, shell, seed):
         return first if side > 0 else 2**32 - 1 - first
 
     ends = _ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
-    counts = sample_blocks(
-        np.uint64(seed), 0, blocks, *ranges.values(), sigma, ends, True if any(epsilon) else None
+    shells, prism = True if any(epsilon) else None, (scene.range_x * scene.range_y) ** 2
+
+    def count(first, stop):
+        return sample_blocks(np.uint64(seed), first, stop, *ranges.values(), sigma, ends, shells)
+
+    return Sampler(
+        BLOCK,
+        count,
+        lambda n, counts: _point(scene, "monte_carlo", wanted, epsilon, n, prism, counts),
     )
-    prism = (scene.range_x * scene.range_y) ** 2
-    return _point(scene, "monte_carlo", wanted, epsilon, blocks * BLOCK, prism, counts)
 
 
 def _shells(scene, quantities, shell):
@@ -327,17 +356,24 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     """
     if a_scene(scene).has_effects:
         raise InputError(f"scene must have no effects for conditioned draws, not {scene.effects}")
+    return _drawn(_conditioned(scene, quantities, shell, seed), samples)
+
+
+def _conditioned(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    blocks, seed = -(-whole("samples", samples) // PROPOSALS), whole("seed", seed, 0)
-    draw, sigma = draw_constants(scene), scene.contact_distance
+    seed, draw, sigma = whole("seed", seed, 0), draw_constants(scene), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
     ends = _ends(
         epsilon,
         lambda thick: thick * (2.0 * sigma + thick),
         lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],
     )
-    counts = propose_blocks(np.uint64(seed), 0, blocks, draw, ends)
-    return _point(scene, "conditioned", wanted, epsilon, blocks * PROPOSALS, 2 * draw.mass, counts)
+    return Sampler(
+        PROPOSALS,
+        lambda first, stop: propose_blocks(np.uint64(seed), first, stop, draw, ends),
+        lambda n, counts: _point(scene, "conditioned", wanted, epsilon, n, 2 * draw.mass, counts),
+    )
 
 
 # Scenes with effects ----------------------------------------------------------------------------
@@ -474,14 +510,21 @@ def weighted_point(scene, quantities, samples, shell, seed):
     that its measure is that of the prism times their number. Otherwise arguments, result and errors
     are those of ``sample_point``; a sample takes some forty times as long.
     """
+    return _drawn(_weighted(scene, quantities, shell, seed), samples)
+
+
+def _weighted(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of ``weighted_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    blocks, seed = -(-whole("samples", samples) // BLOCK), whole("seed", seed, 0)
     # Spins have no place in configuration space: one kernel less to compile.
-    prism = prism_of(scene)._replace(inertia=None)
-    found = weighted_blocks(np.uint64(seed), 0, blocks, prism, weighted_ends(scene, epsilon))
-    axes = range(len(scene.axes))
+    seed, prism = whole("seed", seed, 0), prism_of(scene)._replace(inertia=None)
+    ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
-    return _point(scene, "monte_carlo", wanted, epsilon, blocks * BLOCK, measure, found)
+    return Sampler(
+        BLOCK,
+        lambda first, stop: weighted_blocks(np.uint64(seed), first, stop, prism, ends),
+        lambda n, found: _point(scene, "monte_carlo", wanted, epsilon, n, measure, found),
+    )
 
 
 # The choice -------------------------------------------------------------------------------------
@@ -518,15 +561,42 @@ def job(box, radius, areas, volume, samples, shell, seed):
 
     ``areas`` are events and ``volume`` says whether it is sampled too.
     """
-    quantities = ["volume"] * volume + [f"{event}_area" for event in areas]
-    return better_point(box.scene(radius), quantities, samples, shell, seed)
+    return better_point(box.scene(radius), _quantities(areas, volume), samples, shell, seed)
+
+
+def _quantities(areas, volume):
+    return ["volume"] * volume + [f"{event}_area" for event in areas]
+
+
+def _sampler(scene, areas, volume, samples, shell, seed):
+    """Return (the ``Sampler`` of ``job``, the number of its samples)."""
+    draw_from, samples = plan(scene, samples)
+    make = {sample_point: _in_prism, conditioned_point: _conditioned, weighted_point: _weighted}
+    return make[draw_from](scene, _quantities(areas, volume), shell, seed), samples
+
+
+def runs(box, radius, **given):
+    """Return {"all": ``Run``} for the arguments of ``job``: what the shards of one radius share."""
+    sampler, samples = _sampler(box.scene(radius), **given)
+    each = PROPOSALS * DEARER if sampler.block == PROPOSALS else sampler.block
+    return {
+        "all": as_many(
+            lambda first, stop: (sampler.count(first, stop),), samples // sampler.block, each
+        )
+    }
+
+
+def merged(box, radius, done, **given):
+    """Return what ``job`` does, given what is ``Done`` of ``runs``."""
+    sampler, _ = _sampler(box.scene(radius), **given)
+    (counts,), blocks = done["all"][:2]
+    return sampler.point(blocks * sampler.block, counts)
 
 
 def compile_kernels(box=None, areas=(), volume=True):
     """Compile the kernel that samples these quantities in a ``Box``; without one the plain ones."""
     if box is not None:
-        quantities = ["volume"] * volume + [f"{event}_area" for event in areas]
-        better_point(box.tiny, quantities, 1, 0.1, 0)
+        better_point(box.tiny, _quantities(areas, volume), 1, 0.1, 0)
         return
     scene = Box(1.5, 1.0).scene(0.2)
     for quantities in (["volume"], ["volume", f"{SHELLS[-1]}_area"]):

@@ -42,6 +42,17 @@ class Run(NamedTuple):
     budget: int
 
 
+def as_many(work, blocks, block_events):
+    """Return the ``Run`` of so many ``blocks``, or a few more of them: up to the next look."""
+    return Run(
+        work,
+        lambda sums, done: np.sqrt([blocks / done]),
+        lambda sums: 1,
+        block_events,
+        math.inf,
+    )
+
+
 class Done(NamedTuple):
     """What a ``Run`` has found: sums of so many blocks after so many rounds, and their errors."""
 

@@ -18,6 +18,9 @@ STAGES = {
 #: What a core does in a second, roughly, and the seconds of a day.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, DAY = 1e8, 3e7, 86400
 
+#: The most events that any budget allows.
+MOST_EVENTS = 10**15
+
 #: The thickness of shells in jobs that sample no area: any will do, and so an edit of the
 #: configured one does not concern them.
 NO_SHELL = 0.5
@@ -101,9 +104,7 @@ class SceneRequest:
         events = self.event_budget * len(self.keys["dynamics"])
         if events > DAY * EVENTS_PER_SECOND:
             events = sum(map(self._events, self.radii))
-        for radius in self.watch.hop_histogram:
-            each = exact.events_per_interval(self.box.scene(radius), self.histogram["event"])
-            events += min(self.histogram["event_budget"], each * self.histogram["intervals"])
+        events += sum(map(self._events_of_histogram, self.watch.hop_histogram))
         return (samples / SAMPLES_PER_SECOND + events / EVENTS_PER_SECOND) / DAY
 
     def _events(self, radius):
@@ -115,6 +116,10 @@ class SceneRequest:
             if scene.is_possible(event)
         )
         return min(self.event_budget, max(needed, default=0.0))
+
+    def _events_of_histogram(self, radius):
+        each = exact.events_per_interval(self.box.scene(radius), self.histogram["event"])
+        return min(self.histogram["event_budget"], each * self.histogram["intervals"])
 
     @cached_property
     def tables(self):
@@ -151,18 +156,29 @@ class SceneRequest:
         return self._sorted(**settings[stage], radius=radii[key], seed=seed)
 
     def is_sharded(self, stage):
-        """Say whether the jobs of a ``stage`` may be cut into shards."""
-        return stage == "dynamics" and self.event_budget > self.shard_events
+        """Say whether the jobs of a ``stage`` may be too much for one, and are cut into shards."""
+        most = {
+            "monte_carlo": [self.monte_carlo["samples"]],
+            "dynamics": [self.event_budget],
+            "intervals": map(self._events_of_histogram, self.watch.hop_histogram),
+        }
+        return max(most[stage], default=0) > self.shard_events
 
     def shard_job(self, stage, key, part, first, stop):
         """Return what a shard depends on: neither the accuracy asked for nor the budget."""
         given = self.job(stage, key)
-        error = dict.fromkeys(given["accuracy"], 0.5)
-        own = {"accuracy": error, "event_budget": 1, "part": part, "first": first, "stop": stop}
-        return given | own
+        whatever = {
+            "monte_carlo": {"samples": 1},
+            "dynamics": {
+                "accuracy": dict.fromkeys(given.get("accuracy", ()), 0.5),
+                "event_budget": 1,
+            },
+            "intervals": {"intervals": 1, "event_budget": MOST_EVENTS},
+        }
+        return given | whatever[stage] | {"part": part, "first": first, "stop": stop}
 
     def plan_job(self, stage, keys):
-        """Return what a plan of the shards of a ``stage`` depends on, beside the shards ``keys``."""
+        """Return what a plan of the shards of a ``stage`` depends on; ``keys`` are those known."""
         jobs = {key: self.job(stage, key) for key in self.keys[stage]}
         return {"jobs": jobs, "keys": keys, "shard_events": self.shard_events}
 
