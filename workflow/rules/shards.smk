@@ -25,15 +25,14 @@ def shard_files(scene, stage, keys):
     ]
 
 
+def needed(w):
+    """Return {key: names of the shards} of the point of these wildcards."""
+    return {w.key: planned(w.scene, w.stage)[w.key]}
+
+
 def needed_before(w):
     """Return {key: names of the shards} that the plans before the one of these wildcards ask for."""
     return planned(w.scene, w.stage, int(w.round) - 1)
-
-
-def merged_job(scene, stage, key):
-    """Return what the merge of the shards of a point depends on."""
-    names = planned(scene, stage)[key]
-    return SCENES[scene].job(stage, key) | {"keys": {key: names}}
 
 
 checkpoint plan:
@@ -88,15 +87,30 @@ rule shard:
         " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
+# What waits for a checkpoint is not made again when its own parameters change. So a merge, whose parameters say all
+# that its point depends on, does not: it reads the names of its shards from a file that is there for no longer.
+
+
+rule shards:
+    input:
+        shards=lambda w: shard_files(w.scene, w.stage, needed(w)),
+    output:
+        names=temp(f"{SHARDS}/{{key}}/all.json"),
+    log:
+        log_of("{scene}/shards-{stage}-{key}"),
+    params:
+        names=lambda w: kept(json.dumps({"keys": needed(w)})),
+    shell:
+        "cp {params.names:q} {output.names:q} 2> {log:q}"
+
+
 for stage, module in STAGES.items():
 
     rule:
         name:
             f"{stage}_merge"
         input:
-            shards=lambda w, stage=stage: shard_files(
-                w.scene, stage, {w.key: planned(w.scene, stage)[w.key]}
-            ),
+            names=f"{SHARDS.replace('{stage}', stage)}/{{key}}/all.json",
         output:
             point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
             cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",
@@ -108,11 +122,12 @@ for stage, module in STAGES.items():
             scene=one_of(s.name for s in SCENES.values() if s.is_sharded(stage)),
         params:
             about=lambda w: about(w.scene),
-            job=lambda w, stage=stage: as_json(merged_job(w.scene, stage, w.key)),
+            job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),
             points=SHARDS.replace("{stage}", stage),
             module=module,
             code=code(module),
         shell:
             "python -m twodiscs.pipeline.jobs merge {params.module} --parameters {params.job:q}"
-            " --points {params.points:q} --output {output.point:q} --cost {output.cost:q}"
+            " --keys {input.names:q} --points {params.points:q}"
+            " --output {output.point:q} --cost {output.cost:q}"
             " --about {params.about:q} --code {params.code} > {log:q} 2>&1"

@@ -209,7 +209,7 @@ def plan(options):
 
 def merge(options):
     """Write what a module finds at one radius, given its shards, and what all of them took."""
-    given, rounds = parameters(options.parameters), module_of("sampling.rounds")
+    given, rounds = _given(options), module_of("sampling.rounds")
     ((key, names),) = given.pop("keys").items()
     start = time.process_time()
     found, done = _pieces(options, key, names), {}
@@ -243,6 +243,12 @@ def table(options):
     table_of(Path(path).stem, options.module).write(path, rows)
 
 
+def _given(options):
+    """Return the parameters of a job, with those of the file of keys."""
+    more = parameters(f"@{options.keys}") if options.keys else {}
+    return parameters(options.parameters) | more
+
+
 def inputs_of(options):
     """Return {name: paths} of the files that a job reads; raise ``InputError`` for a damaged one.
 
@@ -253,7 +259,7 @@ def inputs_of(options):
         if path.is_file():
             found.setdefault("points", []).append(path)
             continue
-        for stage, keys in parameters(options.parameters).get("keys", {}).items():
+        for stage, keys in _given(options).get("keys", {}).items():
             cost = options.function == "cost_rows"
             names = [f"cost/{stage}-{key}" if cost else f"{stage}/{key}" for key in keys]
             found[stage] = [path / f"{name}.json" for name in names]
@@ -349,6 +355,7 @@ def main():
     parser.add_argument(
         "--points", nargs="*", default=[], metavar="PATH", help="points, or folders"
     )
+    parser.add_argument("--keys", metavar="JSON", help="a file that says which points there are")
     parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
     parser.add_argument("--cost", metavar="JSON", help="where to write the work and the seconds")
     parser.add_argument("--about", help="the scene and the root seed, for the record")
