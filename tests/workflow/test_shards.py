@@ -1,6 +1,5 @@
-"""Points in shards: how they are cut is of no consequence, and no shard is done twice."""
+"""Points in shards: plans go on until the accuracy is reached, and no shard is done twice."""
 
-import pytest
 import yaml
 from checkout import Checkout
 
@@ -11,7 +10,7 @@ TINY = {
         {
             "name": "tiny",
             "box": {"width": 1.5, "height": 1.0},
-            "radii": [0.1, 0.24],
+            "radii": [0.24],
             "watch": {"mean_times": ["horizontal_hop", "top_wall"]},
             "accuracy": 0.01,
             "event_budget": 4e7,
@@ -36,57 +35,44 @@ def build(place, *arguments):
         "--snakefile", str(place.home.path / "Snakefile"), "--cores", "2", *arguments, "--", TABLE
     )
     after = written(place)
-    new = {name for name, stamp in after.items() if before.get(name) != stamp}
+    new = {name: stamp for name, stamp in after.items() if before.get(name) != stamp}
     return (place.path / TABLE).read_bytes(), new
 
 
 def written(place):
-    """Return {path: time stamp} of the files of points and shards."""
+    """Return {path: time stamp} of the files of points, shards and plans."""
     folder = place.path / "results" / "tiny" / "points"
-    files = (path for path in folder.rglob("*.json") if not {"cost", ".record"} & {*path.parts})
+    files = (
+        path for path in folder.rglob("*.json") if not {"cost", ".record", "needed"} & {*path.parts}
+    )
     return {path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in files}
 
 
 def shards(new):
-    """Return the shards among the files ``new``."""
-    return {name for name in new if name.startswith("shards/") and "/plan-" not in name}
+    """Return those of the files ``new`` that are shards."""
+    return {name: new[name] for name in new if name.split("/")[-1][0] in "ah"}
 
 
-@pytest.fixture(scope="module")
-def place(unbuilt, tmp_path_factory):
-    return Checkout(tmp_path_factory.mktemp("shards"), unbuilt)
-
-
-def test_shards(place, unbuilt, tmp_path):
+def test_no_shard_is_done_twice(unbuilt, tmp_path):
+    place = Checkout(tmp_path, unbuilt)
     change(place)
     table, new = build(place)
     first = shards(new)
-    assert {name.split("/")[2] for name in first} == {"0.1", "0.24"}
-    assert any("horizontal_hop-" in name for name in first)
-    assert build(place) == (table, set())
+    assert {name.split("/")[-1].split("-")[0] for name in first} == {"all", "horizontal_hop"}
 
-    # Larger ones: the same bits.
-    other = Checkout(tmp_path, unbuilt)
-    change(other, shard_events=3e7)
-    assert build(other)[0] == table
-
-    # A tighter accuracy takes more shards, and none of the first ones again.
+    # A tighter accuracy takes more shards, however its build was interrupted.
     change(place, accuracy=0.005)
-    tighter, new = build(place)
-    assert tighter != table
-    assert shards(new)
-    assert not shards(new) & first
+    build(place, "--until", "plan")
+    assert (place.path / TABLE).read_bytes() == table
+    tighter = build(place)[0]
+    assert tighter.count(b",0.005,reached,") == 2
+    assert all(written(place)[name] == stamp for name, stamp in first.items())
+    more = shards(written(place)).keys() - first.keys()
+    assert more
 
-    # Another radius is of no consequence to the points there are.
-    change(place, accuracy=0.005, radii=[0.1, 0.24, 0.3])
-    new = build(place)[1]
-    assert {name for name in new if "/plan-" not in name} == {
-        "dynamics/0.3.json",
-        "shards/dynamics/0.3/all-0-32.json",
-    }
-
-    # What was asked for first is still there.
-    change(place)
-    again, new = build(place)
-    assert again == table
-    assert not shards(new)
+    # Another radius is of no consequence to the point there is; the old accuracy is still known.
+    change(place, radii=[0.24, 0.3])
+    rows, new = build(place)
+    assert all("0.3" in name for name in new if "/plan-" not in name and "0.24.json" not in name)
+    assert not {name for name in shards(new) if "/0.24/" in name}
+    assert rows.startswith(table)

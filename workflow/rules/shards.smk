@@ -87,17 +87,26 @@ rule shard:
         " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
-# What waits for a checkpoint is not made again when its own parameters change. So a merge, whose parameters say all
-# that its point depends on, does not: it reads the names of its shards from a file that is there for no longer.
+# What waits for a checkpoint is not made again when its own parameters change. So a merge does not wait: it reads
+# the names of its shards from a file that is called after the parameters, and is of no consequence later.
+
+
+def names_of(scene, stage, key):
+    """Return the path of the names of the shards of a point."""
+    job = json.dumps(SCENES[scene].job(stage, key)) + code(STAGES[stage])
+    name = blake2b(job.encode(), digest_size=8).hexdigest()
+    return f"{SHARDS.format(scene=scene, stage=stage)}/{key}/needed/{name}.json"
 
 
 rule shards:
     input:
         shards=lambda w: shard_files(w.scene, w.stage, needed(w)),
     output:
-        names=temp(f"{SHARDS}/{{key}}/all.json"),
+        names=f"{SHARDS}/{{key}}/needed/{{name}}.json",
     log:
-        log_of("{scene}/shards-{stage}-{key}"),
+        log_of("{scene}/shards-{stage}-{key}-{name}"),
+    wildcard_constraints:
+        name="[0-9a-f]+",
     params:
         names=lambda w: kept(json.dumps({"keys": needed(w)})),
     shell:
@@ -110,7 +119,7 @@ for stage, module in STAGES.items():
         name:
             f"{stage}_merge"
         input:
-            names=f"{SHARDS.replace('{stage}', stage)}/{{key}}/all.json",
+            names=ancient(lambda w, stage=stage: names_of(w.scene, stage, w.key)),
         output:
             point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
             cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",

@@ -21,7 +21,7 @@ from twodiscs.pipeline.arguments import Parser, run
 FOLDER = ".record"
 
 #: What is written without a record: by Snakemake itself, or for one moment.
-UNRECORDED = ("logs", "benchmarks", ".compiled", "configuration.json", "provenance.json",
+UNRECORDED = ("logs", "benchmarks", ".compiled", "needed", "configuration.json", "provenance.json",
               "forecast.csv", "report.html", "report-workflow.html", "README.md")  # fmt: skip
 
 
