@@ -52,6 +52,32 @@ include: "workflow/rules/studies.smk"
 include: "workflow/rules/documents.smk"
 
 
+# What takes a few seconds runs where Snakemake does, whatever runs the others; so does what measures this machine or
+# starts a Snakemake of its own.
+localrules:
+    all,
+    grid,
+    theory,
+    plan,
+    shards,
+    monte_carlo_merge,
+    dynamics_merge,
+    intervals_merge,
+    table,
+    check,
+    figure,
+    shared_figure,
+    animate,
+    paper,
+    report,
+    manifest,
+    provenance,
+    audit,
+    verify,
+    forecast,
+    benchmark,
+
+
 rule all:
     input:
         rules.report.input.results,

@@ -1,6 +1,7 @@
 """Work in pieces: the same bits however it is cut, and nothing is done twice."""
 
 import math
+from itertools import chain, pairwise
 
 import numpy as np
 import pytest
@@ -19,7 +20,8 @@ def planned(runs, events, order=1):
     found = {name: {} for name in runs}
     while True:
         done = {
-            name: rounds.followed(run, sum(found[name].values(), [])) for name, run in runs.items()
+            name: rounds.followed(run, [*chain(*found[name].values())])
+            for name, run in runs.items()
         }
         new = {
             name: [p for p in rounds.pieces(run, events, done[name][1]) if p not in found[name]]
@@ -79,7 +81,7 @@ def test_the_first_look_that_is_good_enough_is_the_end(error, budget, events, or
         n = rounds.next_look(n)
         looks.append(n)
     sums = np.cumsum(counts)
-    for n, following in zip(looks, looks[1:], strict=False):
+    for n, following in pairwise(looks):
         total = int(sums[n - 1])
         if total**-0.5 <= error or budget / (200 * total) * n < following:
             break

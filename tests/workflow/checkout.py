@@ -15,6 +15,11 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper", "CITATION.cff")
 
 
+def first(sources):
+    """Return where Python looks for modules: in ``sources`` before all other places."""
+    return os.pathsep.join(filter(None, [sources, os.environ.get("PYTHONPATH")]))
+
+
 def forked(arguments, folder, sources):
     """Run snakemake in ``folder`` in a copy of this process; return the completed one."""
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as error:
@@ -75,7 +80,7 @@ class Checkout:
             run = subprocess.run(
                 [sys.executable, "-m", "snakemake", *arguments],
                 cwd=self.path,
-                env=os.environ | {"PYTHONPATH": sources},
+                env=os.environ | {"PYTHONPATH": first(sources)},
                 capture_output=True,
                 text=True,
             )

@@ -111,6 +111,11 @@ def about(scene, seed=CONFIGURATION.seed):
     return ", ".join(f"{k} {v}" for k, v in words.items() if v is not None)
 
 
+def minutes(stage=None):
+    """Return how long a job of a stage, or of the one among its wildcards, may take: more when retried."""
+    return lambda w, attempt: attempt * SCENES[w.scene].minutes(stage or w.stage)
+
+
 def contents(*paths):
     """Return a hash of files, for inputs whose time stamps may not tell that they were edited."""
     texts = b"".join(Path(p).read_bytes() for p in paths if os.path.exists(p))

@@ -91,6 +91,8 @@ for stage, module in STAGES.items():
             benchmark_of(f"{{scene}}/{stage}-{{key}}")
         wildcard_constraints:
             scene=one_of(s.name for s in SCENES.values() if not s.is_sharded(stage)),
+        resources:
+            runtime=minutes(stage),
         params:
             about=lambda w: about(w.scene),
             job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),

@@ -72,6 +72,8 @@ rule shard:
         part="[a-z_]+",
         first="[0-9]+",
         stop="[0-9]+",
+    resources:
+        runtime=minutes(),
     params:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(

@@ -1,5 +1,6 @@
 """What a configuration asks for, checked and with every default filled in."""
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -163,6 +164,20 @@ class SceneRequest:
             "intervals": map(self._events_of_histogram, self.watch.hop_histogram),
         }
         return max(most[stage], default=0) > self.shard_events
+
+    def minutes(self, stage):
+        """Return how long a job of a ``stage`` may take, or a shard of it, in minutes.
+
+        That is several times what it takes on a usual core; effects make all of it slower.
+        """
+        most = {
+            "monte_carlo": self.monte_carlo["samples"] / SAMPLES_PER_SECOND,
+            "dynamics": self.event_budget / EVENTS_PER_SECOND,
+            "intervals": self.histogram["event_budget"] / EVENTS_PER_SECOND,
+        }
+        speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
+        seconds = min(most[stage], self.shard_events / speed)
+        return math.ceil(10 + seconds / 60 * (40 if self.effects else 4))
 
     def shard_job(self, stage, key, part, first, stop):
         """Return what a shard depends on: neither the accuracy asked for nor the budget."""

@@ -1,0 +1,71 @@
+"""The same bytes whichever engine runs the jobs: this machine, a queue of scripts, a real Slurm."""
+
+from importlib.util import find_spec
+
+import pytest
+import yaml
+from checkout import REPOSITORY, Checkout
+
+#: Points that are small enough for one job, in a group of two; and one with effects, in shards.
+SCENES = {
+    "walls": {"radii": [0.1, 0.2], "watch": {"mean_times": ["top_wall"]}, "accuracy": 0.1},
+    "field": {
+        "radii": [0.1],
+        "effects": {"field": 0.3},
+        "watch": {"mean_times": ["top_wall"]},
+        "accuracy": 0.1,
+        "event_budget": 2e7,
+    },
+}
+BOX = {"box": {"width": 1.5, "height": 1.0}, "event_budget": 1e7}
+TABLES = [f"results/{name}/mean_times.csv" for name in SCENES]
+
+
+def place_at(path, home):
+    """Return a folder with a configuration to be built by the sources of ``home``."""
+    place = Checkout(path, home)
+    place.configuration.parent.mkdir(parents=True)
+    scenes = [{"name": name} | BOX | scene for name, scene in SCENES.items()]
+    configuration = {"shared": [], "shard_events": 1e7, "scenes": scenes}
+    place.configuration.write_text(yaml.safe_dump(configuration))
+    return place
+
+
+def build(place, *arguments):
+    """Return the tables of a build."""
+    snakefile = str(place.home.path / "Snakefile")
+    place.snakemake("--snakefile", snakefile, *arguments, "--", *TABLES)
+    return [(place.path / name).read_bytes() for name in TABLES]
+
+
+needs_queue = pytest.mark.skipif(
+    find_spec("snakemake_executor_plugin_cluster_generic") is None,
+    reason="the extra `cluster` is not installed",
+)
+
+
+@pytest.fixture(scope="module")
+def local(unbuilt, tmp_path_factory):
+    place = place_at(tmp_path_factory.mktemp("local") / "here", unbuilt)
+    return build(place, "--cores", "2")
+
+
+def profile(home, name, **other):
+    """Return the arguments for a profile with ``other`` settings, kept beside it."""
+    settings = yaml.safe_load((REPOSITORY / "profiles" / name / "config.yaml").read_text())
+    folder = home / f"{name}-here"
+    folder.mkdir()
+    (folder / "config.yaml").write_text(yaml.safe_dump(settings | other))
+    return "--profile", str(folder)
+
+
+@needs_queue
+def test_a_queue_of_scripts(local, unbuilt, tmp_path):
+    place = place_at(tmp_path / "queue", unbuilt)
+    submit = tmp_path / "submit.sh"
+    submit.write_text(f'echo "$1" >> {tmp_path}/submitted; sh "$1"')
+    settings = {"latency-wait": 5, "seconds-between-status-checks": 1}
+    settings["cluster-generic-submit-cmd"] = f"sh {submit}"
+    assert build(place, *profile(tmp_path, "queue", **settings)) == local
+    # Kernels with effects and without, one group of two points, one shard.
+    assert len((tmp_path / "submitted").read_text().splitlines()) == 4
