@@ -5,6 +5,7 @@ from importlib.util import find_spec
 import pytest
 import yaml
 from checkout import REPOSITORY, Checkout
+from slurm import missing, running
 
 #: Points that are small enough for one job, in a group of two; and one with effects, in shards.
 SCENES = {
@@ -69,3 +70,16 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path):
     assert build(place, *profile(tmp_path, "queue", **settings)) == local
     # Kernels with effects and without, one group of two points, one shard.
     assert len((tmp_path / "submitted").read_text().splitlines()) == 4
+
+
+@pytest.mark.skipif(missing() is not None, reason=str(missing()))
+def test_slurm(local, unbuilt, tmp_path, monkeypatch):
+    place = place_at(tmp_path / "jobs", unbuilt)
+    settings = {"slurm-status-command": "squeue", "latency-wait": 5}
+    settings |= {"slurm-init-seconds-before-status-checks": 2, "seconds-between-status-checks": 1}
+    settings["default-resources"] = {"mem_mb": 500, "runtime": 10}
+    with running(tmp_path / "slurm") as environment:
+        for name in ("PATH", "SLURM_CONF"):
+            monkeypatch.setenv(name, environment[name])
+        assert build(place, *profile(tmp_path, "slurm", **settings)) == local
+    assert len([*(place.path / ".snakemake" / "slurm_logs").rglob("*.log")]) >= 4
