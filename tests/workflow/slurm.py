@@ -1,4 +1,4 @@
-"""A real Slurm of one node, in a folder: its three daemons, started as root and ended by their ids."""
+"""A real Slurm of one node, in a folder: three daemons, started as root and ended by their ids."""
 
 import os
 import shutil

@@ -82,4 +82,5 @@ def test_slurm(local, unbuilt, tmp_path, monkeypatch):
         for name in ("PATH", "SLURM_CONF"):
             monkeypatch.setenv(name, environment[name])
         assert build(place, *profile(tmp_path, "slurm", **settings)) == local
-    assert len([*(place.path / ".snakemake" / "slurm_logs").rglob("*.log")]) >= 4
+    submitted = (tmp_path / "slurm" / "slurmctld.log").read_text().count("submit_batch_job: JobId=")
+    assert submitted == 4
