@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, ensemble, intervals, trajectory
+from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
