@@ -482,9 +482,11 @@ def test_what_is_about_a_plain_scene_needs_one():
 # "…" stands for any text.
 
 FILES = {
-    "": ": must hold a block of the keys results, seed, shard_events, accuracy_cost, shared, scenes, "
+    "": ": must hold a block of the keys results, seed, shard_events, "
+    "accuracy_cost, shared, scenes, "
     "not empty",
-    "- 1": ": must hold a block of the keys results, seed, shard_events, accuracy_cost, shared, scenes, "
+    "- 1": ": must hold a block of the keys results, seed, shard_events, "
+    "accuracy_cost, shared, scenes, "
     "not [1]",
     "seed: 1\nseed: 2": ", line 2: the key 'seed' is given a second time",
     "scenes:\n- box: {width: 1, height: 1, width: 2}": ", line 2: the key 'width' is given a sec…",
@@ -518,7 +520,8 @@ LINES = {
     "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
     "zz: 1": (
-        "the configuration has an unknown key 'zz'; its keys are results, seed, shard_events, accuracy_cost, "
+        "the configuration has an unknown key 'zz'; its keys are results, seed, "
+        "shard_events, accuracy_cost, "
         "shared, scenes"
     ),
     "1: 2": "the configuration has an unknown key 1; …",
