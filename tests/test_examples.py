@@ -217,8 +217,10 @@ def targets():
         options.add_argument("--cores")
         options.add_argument("--dry-run", action="store_true")
         options.add_argument("--configfile")
+        options.add_argument("--profile")
         options.add_argument("targets", nargs="*")
         given = options.parse_args(shlex.split(example)[1:])
+        assert given.profile is None or (REPOSITORY / given.profile / "config.yaml").is_file()
         chosen = ("--configfile", given.configfile) if given.configfile else ()
         found.setdefault(chosen, set()).update(given.targets or ["all"])
     return found
