@@ -16,7 +16,7 @@ ENDLESS = {
     "box": {"width": 1.5, "height": 1},
     "radii": [0.2],
     "watch": {"volume": True},
-    "monte_carlo": {"samples": 1e15},
+    "monte_carlo": {"samples": 1e11},
 }
 
 

@@ -287,3 +287,44 @@ def report_scenes():
         }
         for scene in SCENES.values()
     ]
+
+
+# Points that are cut into shards; what asks for which is in shards.smk.
+SHARDS = f"{RESULTS}/{{scene}}/points/shards/{{stage}}"
+
+
+def planned(scene, stage, rounds=None):
+    """Return {key: names of the shards} that plans ask for: so many of them, or all there are."""
+    names = {}
+    for n in count(1) if rounds is None else range(1, rounds + 1):
+        job = checkpoints.plan.get(scene=scene, stage=stage, round=n)
+        found = json.loads(Path(job.output.plan).read_text(encoding="utf-8"))
+        if found == names:
+            break
+        names = found
+    return names
+
+
+def shard_files(scene, stage, keys):
+    """Return the files of shards; ``keys`` is {key: their names}."""
+    folder = SHARDS.format(scene=scene, stage=stage)
+    return [
+        f"{folder}/{key}/{name}.json" for key, names in keys.items() for name in names
+    ]
+
+
+def needed(w):
+    """Return {key: names of the shards} of the point of these wildcards."""
+    return {w.key: planned(w.scene, w.stage)[w.key]}
+
+
+def needed_before(w):
+    """Return {key: names of the shards} that the plans before the one of these wildcards ask for."""
+    return planned(w.scene, w.stage, int(w.round) - 1)
+
+
+def names_of(scene, stage, key):
+    """Return the path of the names of the shards of a point."""
+    job = json.dumps(SCENES[scene].job(stage, key)) + code(STAGES[stage])
+    name = blake2b(job.encode(), digest_size=8).hexdigest()
+    return f"{SHARDS.format(scene=scene, stage=stage)}/{key}/needed/{name}.json"
