@@ -1,5 +1,6 @@
 """A checkout to build in: the repository's files with a configuration of six radii."""
 
+import atexit
 import os
 import re
 import shutil
@@ -8,8 +9,11 @@ import sys
 import tempfile
 from pathlib import Path
 
+import jsonschema  # noqa: F401
 import yaml
 from snakemake import cli
+
+cli.get_argument_parser()  # finds the plug-ins, once for all copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper", "CITATION.cff")
@@ -26,6 +30,7 @@ def forked(arguments, folder, sources):
         child = os.fork()
         if child == 0:
             status = 1
+            atexit._clear()  # what ends the tests is not for a copy of them
             try:
                 os.dup2(out.fileno(), 1)
                 os.dup2(error.fileno(), 2)
@@ -36,6 +41,7 @@ def forked(arguments, folder, sources):
                     del sys.modules[name]
                 sys.path.insert(0, sources)
                 status = snakemake_main(arguments)
+                atexit._run_exitfuncs()
             finally:
                 sys.stdout.flush()
                 sys.stderr.flush()

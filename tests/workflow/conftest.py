@@ -5,6 +5,9 @@ import shutil
 import pytest
 from checkout import Checkout, fresh
 
+#: The scenes with effects that are built: each compiles an engine of its own.
+EFFECTS = ("torus", "unequal")
+
 
 @pytest.fixture(scope="session")
 def unbuilt(tmp_path_factory):
@@ -16,6 +19,9 @@ def unbuilt(tmp_path_factory):
 def complete(tmp_path_factory):
     """A checkout in which everything is built, not to be changed."""
     checkout = fresh(tmp_path_factory.mktemp("complete") / "checkout")
+    for path in (checkout.path / "config" / "scenes").glob("*.yaml"):
+        if path.stem not in EFFECTS:
+            path.unlink()
     checkout.snakemake("--cores", "2")
     return checkout
 

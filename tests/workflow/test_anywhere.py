@@ -19,8 +19,7 @@ TINY = {
             "box": {"width": 1.5, "height": 1.0},
             "radii": [0.1, 0.3],
             "watch": {
-                **{"volume": True, "areas": ["top_wall"], "mean_times": ["top_wall"]},
-                **{"hop_histogram": {"radii": [0.1], "intervals": 2000}, "trajectory": 0.24},
+                **{"areas": ["top_wall"], "mean_times": ["top_wall"], "trajectory": 0.24},
             },
             "accuracy": 0.5,
             "event_budget": 1,
@@ -102,7 +101,7 @@ def own(complete, tmp_path_factory):
 
 def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own, complete):
     names = {*own.results()}
-    assert {f"tiny/{name}.csv" for name in ("volume", "areas", "mean_times", "trajectory")} < names
+    assert {f"tiny/{name}.csv" for name in ("areas", "mean_times", "trajectory")} < names
     assert {*LOST} < names
     assert "paper.pdf" not in names
     assert not (complete.path / "results" / "tiny").exists()

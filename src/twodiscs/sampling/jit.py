@@ -55,8 +55,10 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache  # noqa: E4
 from numba.core.serialize import dumps  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
-#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it.
-OPTIONS = {"error_model": "numpy", "boundscheck": False, "nogil": True}
+#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No C calls any of it.
+OPTIONS = {
+    "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
+}  # fmt: skip
 
 
 @cache
