@@ -55,7 +55,8 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache  # noqa: E4
 from numba.core.serialize import dumps  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
-#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No C calls any of it.
+#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No kernel is
+#: called from C.
 OPTIONS = {
     "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
 }  # fmt: skip
