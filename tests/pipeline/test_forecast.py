@@ -185,3 +185,21 @@ def test_a_scene_with_effects_is_forecast():
     # Grid, theory, volume, areas, mean times, check and cost; and a figure of each of three.
     assert [row["jobs"] for row in rows if row["stage"] == "tables"] == [7]
     assert [row["jobs"] for row in rows if row["stage"] == "figures"] == [3]
+
+
+def test_a_point_in_shards_is_as_many_jobs():
+    """What is under ``shard_events`` is one job; ten shards keep four cores busy."""
+    scene = {"name": "a", "box": BOX, "radii": [0.1], "event_budget": 1e9}
+    for limit, jobs, cores in ((1e9, 1, 1), (1e8, 10, 4)):
+        (request,) = load({"shard_events": limit, "scenes": [scene]}).scenes
+        pilots = [
+            forecast.Pilot(10**9 if stage == "dynamics" else 1, 1.0)
+            for stage, _ in forecast.jobs_of(request)
+        ]
+        rows = forecast.scene_rows(request, pilots, STARTS, 4)
+        (row,) = (row for row in rows if row["stage"] == "dynamics" and row["radius"])
+        assert row["jobs"] == jobs
+        start = STARTS["dynamics"]
+        assert row["seconds"] == 1000 + jobs * start.loading
+        assert row["startup"] == jobs * start.startup
+        assert row["wall_clock"] == (row["seconds"] + row["startup"]) / cores

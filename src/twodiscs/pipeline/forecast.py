@@ -308,10 +308,13 @@ def scene_rows(request, pilots, starts, cores):
     """Return the rows of one scene: every job, its stages and their total."""
     jobs, sums = [], []
     for (stage, job), pilot in zip(jobs_of(request), pilots, strict=True):
-        seconds = starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
-        startup = starts[stage].startup
-        one = row(request.name, stage, cores, 1, pilot.events, seconds, startup, job["radius"])
-        jobs.append(one)
+        shards = request.is_sharded(stage)
+        count = math.ceil(pilot.events / request.shard_events) if shards else 1
+        seconds = count * starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
+        startup = count * starts[stage].startup
+        jobs.append(
+            row(request.name, stage, cores, count, pilot.events, seconds, startup, job["radius"])
+        )
     for stage in STAGES:
         found = [one for one in jobs if one["stage"] == stage]
         if found:
