@@ -1,11 +1,12 @@
 """The same bytes whichever engine runs the jobs: this machine, a queue of scripts, a real Slurm."""
 
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 
 import pytest
 import yaml
 from checkout import REPOSITORY, Checkout
-from slurm import missing, running
+from slurm import lose_node, missing, running
 
 #: Points that are small enough for one job, in a group of two; and one with effects, in shards.
 SCENES = {
@@ -72,15 +73,35 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path):
     assert len((tmp_path / "submitted").read_text().splitlines()) == 4
 
 
-@pytest.mark.skipif(missing() is not None, reason=str(missing()))
-def test_slurm(local, unbuilt, tmp_path, monkeypatch):
-    place = place_at(tmp_path / "jobs", unbuilt)
+@pytest.fixture
+def slurm(tmp_path, monkeypatch):
+    """A Slurm that runs, (its folder, its environment), and arguments for its profile."""
+    if missing() is not None:
+        pytest.skip(missing())
     settings = {"slurm-status-command": "squeue", "latency-wait": 5}
     settings |= {"slurm-init-seconds-before-status-checks": 2, "seconds-between-status-checks": 1}
     settings["default-resources"] = {"mem_mb": 500, "runtime": 10}
     with running(tmp_path / "slurm") as environment:
         for name in ("PATH", "SLURM_CONF"):
             monkeypatch.setenv(name, environment[name])
-        assert build(place, *profile(tmp_path, "slurm", **settings)) == local
-    submitted = (tmp_path / "slurm" / "slurmctld.log").read_text().count("submit_batch_job: JobId=")
-    assert submitted == 4
+        yield tmp_path / "slurm", environment, profile(tmp_path, "slurm", **settings)
+
+
+def submitted(folder):
+    """Return how many jobs Slurm was given."""
+    return (folder / "slurmctld.log").read_text().count("submit_batch_job: JobId=")
+
+
+def test_slurm(local, unbuilt, tmp_path, slurm):
+    folder, _, arguments = slurm
+    assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
+    assert submitted(folder) == 4
+
+
+def test_what_a_lost_node_did_is_done_again(local, unbuilt, tmp_path, slurm):
+    folder, environment, arguments = slurm
+    with ThreadPoolExecutor() as threads:
+        lost = threads.submit(lose_node, folder, environment)
+        assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
+        lost.result()
+    assert submitted(folder) == 4 + 1
