@@ -195,8 +195,8 @@ STUDIES = {
                     event costs; the line is one rounding that grows at this rate. The legend says
                     after how many events half of the digits are lost, and in brackets after how
                     many they should be. (h) Share of 95 % intervals that cover the exact mean
-                    time, over independent repetitions; a cross would be
-                    an event too rare for an interval. Rows without a symbol were not run.
+                    time, over independent repetitions. Rows without a symbol were not run.
+                    Crosses are events too rare for an interval.
                     """,
                     "studies.stability.figure",
                     tables=("stability",),
