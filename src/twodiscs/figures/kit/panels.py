@@ -71,11 +71,10 @@ def mark(main, lower, found):
     name_limits(main, found)
 
 
-def add_panel(figure, bottom, height):
-    """Return new axes across the figure, ``height`` inches high and ``bottom`` inches up."""
-    up = figure.get_figheight()
-    across = COLUMN - LEFT - RIGHT
-    return figure.add_axes((LEFT / COLUMN, bottom / up, across / COLUMN, height / up))
+def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
+    """Return new axes at ``left``, ``bottom``, ``width`` × ``height``: inches; else a column wide."""
+    across, up = figure.get_size_inches()
+    return figure.add_axes((left / across, bottom / up, width / across, height / up))
 
 
 def letter(axes, name):
