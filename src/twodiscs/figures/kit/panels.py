@@ -72,7 +72,7 @@ def mark(main, lower, found):
 
 
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
-    """Return new axes at ``left``, ``bottom``, ``width`` × ``height``: inches; else a column wide."""
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
     across, up = figure.get_size_inches()
     return figure.add_axes((left / across, bottom / up, width / across, height / up))
 

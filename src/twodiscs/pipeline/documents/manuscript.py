@@ -53,10 +53,10 @@ def typeset(template, output, contents):
 
     The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
     ``captions`` of all figures, the ``commit`` of the template, the ``versions``, how many
-    ``intervals`` a chain has, and below one in how many samples of the prism another sampler is
-    taken, ``dearer``. Its entry ``results``, their folder, becomes a path from the root that results
-    and the project have in common. The same inputs at the same commit give the same bytes on every
-    machine: fonts are those that come with Typst.
+    ``intervals`` a chain has, and how many times ``dearer`` conditioned samples are. Its entry
+    ``results``, their folder, becomes a path from the root that results and the project have in
+    common. The same inputs at the same commit give the same bytes on every machine: fonts are
+    those that come with Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
