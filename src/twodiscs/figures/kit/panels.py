@@ -213,8 +213,8 @@ def legend(axes, box, series, place, single=None):
     """Explain the symbols at a ``place``; ``single`` names the method of the only series.
 
     ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
-    regimes end, which may lie as low as half of the largest; "best", and any in a ``box`` with effects,
-    is wherever the curves leave room.
+    regimes end, which may lie as low as half of the largest; "best" is wherever the curves leave
+    room, and the place in a ``box`` with effects.
     """
     place = "best" if box.effects else place
     handles, names = [], []
