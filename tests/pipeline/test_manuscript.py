@@ -117,12 +117,13 @@ def test_every_number_is_read_from_the_results():
     assert typed_numbers((PAPER / "paper.typ").read_text()) == []
 
 
-def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there():
+def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():
     source = (PAPER / "paper.typ").read_text()
-    calls = re.findall(r"#(?:drawn|abreast|beside)\((.*)\)", source)
-    named = [name for call in calls for name in re.findall(r'"(\w+)"', call)]
+    named = re.findall(r'#drawn\("(\w+)"', source)
     assert len({*named}) == len(named) > 1
     assert {*named} <= {*FIGURES, *STUDY_FIGURES}
+    spoken = " ".join(re.findall(r"#see\((.*?)\)", source))
+    assert {*named} == {*re.findall(r"\w+", spoken)}
 
 
 # Fabricated results -------------------------------------------------------------------------------
@@ -144,6 +145,8 @@ def hard(part, quantity, method=None, **values):
 
 OF_SCENE = {
     "grid": rows("grid", {"radius": 0.1}, {"radius": 0.2}),
+    "areas": rows("areas", {"quantity": "horizontal_hop_area", "status": "reached"}),
+    "mean_times": rows("mean_times", {"event": "vertical_hop", "status": "reached"}),
     "check": rows(
         "check",
         {"method": "monte_carlo", "z": -1.25, "passed": True, "independent": True},
@@ -351,6 +354,9 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
         (("check", 0, "passed"), False),
         (("check", 0, "independent"), False),
         (("errata", 1, "severity"), "slip"),
+        (("areas", 0, "status"), "too-few"),
+        (("mean_times", 0, "bound"), 0.5),
+        (("stability", 5, "value"), None),
         (("cost", 0, "events"), 9_000_000),
         (("cost", 1, "events"), 90_000_000),
         (("errata", 1, "ratio"), 0.25),
@@ -375,6 +381,12 @@ def test_what_the_tables_say_is_what_is_printed(paper, unchanged, cell, value):
     assert paper(change={cell: value}) != unchanged
 
 
+@pytest.mark.parametrize("name", ["DEARER", "RETURNS"])
+def test_numbers_of_the_methods_are_those_of_the_code(paper, unchanged, name, monkeypatch):
+    monkeypatch.setattr(manuscript, name, 3)
+    assert paper() != unchanged
+
+
 def test_a_mistake_in_the_template_is_one_sentence(paper):
     with pytest.raises(ValueError, match="does not compile: unknown variable: nothing"):
         paper(text="#nothing")
@@ -392,6 +404,19 @@ def plain(node):
     if isinstance(node, list):
         return "".join(map(plain, node))
     return node if isinstance(node, str) else ""
+
+
+def query(call, folder, **contents):
+    """Return what the ``call`` of a function of results.typ gives."""
+    shutil.copy(PAPER / "results.typ", folder)
+    source = folder / "one.typ"
+    source.write_text(f'#import "results.typ": *\n#metadata({call}) <found>')
+    contents = {"tables": [], "figures": [], "captions": manuscript.captions()} | contents
+    found = typst.query(
+        str(source), "<found>", sys_inputs={"contents": json.dumps(contents)}, field="value"
+    )
+    (value,) = json.loads(found)
+    return value
 
 
 @pytest.mark.parametrize(
@@ -415,16 +440,33 @@ def plain(node):
     ],
 )
 def test_numbers_are_written_as_physicists_do(call, shown, tmp_path):
-    shutil.copy(PAPER / "results.typ", tmp_path)
-    source = tmp_path / "one.typ"
-    source.write_text(f'#import "results.typ": *\n#metadata({call}) <found>')
-    contents = {"scenes": [{"figures": [], "tables": []}], "tables": [], "figures": []}
-    found = typst.query(
-        str(source), "<found>", sys_inputs={"contents": json.dumps(contents)}, field="value"
-    )
-    (value,) = json.loads(found)
+    value = query(call, tmp_path, scenes=[{"figures": [], "tables": []}])
     text = plain(value).replace(" ", "").replace("(", "(").replace("-", "−")
     assert text == shown
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence", "boxes"),
+    [
+        ("model", "are drawn shorter.", {"5 1", "1 5"}),
+        ("surface_shell", "are drawn shorter.", {"2 1", "5 1", "1 5"}),
+        ("mean_hop_time", "In a square box", {"1 1"}),
+        ("mean_hop_time", "Arrows", set()),
+        ("volume", "Crosses", set()),
+        ("stability", "Crosses", set()),
+        ("stability", "Rows without a symbol were not run.", {"1 1", "1.5 1", "2 1", "5 1", "1 5"}),
+    ],
+)
+def test_captions_say_what_the_figure_has(name, sentence, boxes, tmp_path):
+    found = set()
+    for box in ("1 1", "1.5 1", "2 1", "5 1", "1 5"):
+        width, height = map(float, box.split())
+        scene = {"figures": [], "tables": [], "width": width, "height": height}
+        own, alike = query(f'said("{name}")', tmp_path, scenes=[scene])
+        if sentence in f"{own} {alike}":
+            found.add(box)
+    assert sentence in (FIGURES | STUDY_FIGURES)[name].full_caption()
+    assert found == boxes
 
 
 # Where it comes from ------------------------------------------------------------------------------

@@ -82,8 +82,8 @@ class Entry:
 GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
 SYMBOLS = """
-    Error bars are one standard error, and hidden where smaller than the symbols; crosses are
-    estimates from too few events to give one.
+    Error bars are one standard error, and hidden where smaller than the symbols. Crosses are
+    estimates from too few events for an error bar.
 """
 ARROWS = "Arrows start at 95 % lower bounds where no event was seen."
 LINES = "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius."
@@ -156,7 +156,7 @@ FIGURES = {
         """
         Two hard discs of radius r in a box of width w and height h. Coordinates start from the
         centre of the box. The centres of the discs keep to the dashed rectangle, of half-sides a
-        = w/2 − r and b = h/2 − r. Drawings shorten boxes longer than four to one.
+        = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn shorter.
         """,
         "figures.geometry.model",
     ),
@@ -164,10 +164,9 @@ FIGURES = {
         "Hopping dynamics",
         DYNAMICS,
         """
-        One trajectory: the separation of the discs along the longer side of the box that ends at
-        walls (x in a square) against time. Dots mark the hops, at which it changes sign. (b) The
-        shaded stretch of time enlarged, with a bar for each hop: a hop is often undone soon, before
-        collisions have scrambled the motion.
+        (a) One trajectory: the separation of the discs in one direction against time. Dots mark the
+        hops, at which it changes sign. (b) The shaded stretch of time enlarged, with a bar for each
+        hop: a hop is often undone soon, before collisions have scrambled the motion.
         """,
         "figures.motion.hopping_trajectory",
         tables=("trajectory",),
@@ -357,8 +356,7 @@ FIGURES = {
         The area of a surface is measured by the samples within a distance ε of it. (a) The surface
         of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends √2 ε to
         either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and y = |y1 −
-        y2|/√2, has a shell on its outer side only. Boxes longer than nine to five are drawn
-        shorter.
+        y2|/√2, has a shell on its outer side only. Boxes longer than 1.8:1 are drawn shorter.
         """,
         "figures.geometry.surface_shell",
     ),

@@ -85,5 +85,5 @@ def _virials(axes, box, rows, radii):
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)
     axes.set_ylim(0.01, None)
-    panels.legend(axes, box, series, "lower right")
+    panels.legend(axes, box, series, "best")
     panels.letter(axes, "b")

@@ -195,8 +195,8 @@ STUDIES = {
                     event costs; the line is one rounding that grows at this rate. The legend says
                     after how many events half of the digits are lost, and in brackets after how
                     many they should be. (h) Share of 95 % intervals that cover the exact mean
-                    time, over independent repetitions; a cross would be
-                    an event too rare for an interval. Rows without a symbol were not run.
+                    time, over independent repetitions. Rows without a symbol were not run.
+                    Crosses are events too rare for an interval.
                     """,
                     "studies.stability.figure",
                     tables=("stability",),
@@ -246,10 +246,10 @@ STUDIES = {
                     both discs may have bounced, from t = √2 (h − 2r) on for vertical hops. Bars are
                     constant rates fitted to all that comes after four mean times, dotted where the
                     rate is not constant there (by χ² or by a trend, at the level of 1e-3). Those of
-                    small discs fall on, towards the rate of a cubic tail, 3τ/t (grey). (b) Mean
-                    time from a random moment to the next hop (open symbols) and what intervals make
-                    of it, τ(1 + CV²)/2 (dots), with CV their coefficient of variation. Error bars
-                    are one standard error.
+                    small discs fall on, towards the rate of a cubic tail, 3τ/t (dash-dotted). (b)
+                    Mean time from a random moment to the next hop (open symbols) and what intervals
+                    make of it, τ(1 + CV²)/2 (dots), with CV their coefficient of variation. Error
+                    bars are one standard error.
                     """,
                     "studies.distributions.figure",
                     tables=("distributions",),

@@ -71,11 +71,10 @@ def mark(main, lower, found):
     name_limits(main, found)
 
 
-def add_panel(figure, bottom, height):
-    """Return new axes across the figure, ``height`` inches high and ``bottom`` inches up."""
-    up = figure.get_figheight()
-    across = COLUMN - LEFT - RIGHT
-    return figure.add_axes((LEFT / COLUMN, bottom / up, across / COLUMN, height / up))
+def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
+    across, up = figure.get_size_inches()
+    return figure.add_axes((left / across, bottom / up, width / across, height / up))
 
 
 def letter(axes, name):
@@ -214,8 +213,8 @@ def legend(axes, box, series, place, single=None):
     """Explain the symbols at a ``place``; ``single`` names the method of the only series.
 
     ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
-    regimes end, which may lie as low as half of the largest. In a ``box`` with effects it is
-    wherever the curves leave room.
+    regimes end, which may lie as low as half of the largest; "best" is wherever the curves leave
+    room, and the place in a ``box`` with effects.
     """
     place = "best" if box.effects else place
     handles, names = [], []

@@ -6,10 +6,12 @@ import platform
 import subprocess
 from importlib.metadata import version
 
+from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES, NOTES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.results.record import write
+from twodiscs.sampling.montecarlo import DEARER
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: What the manuscript names the versions of, beside Python.
@@ -50,10 +52,11 @@ def typeset(template, output, contents):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
-    ``captions`` of all figures, the ``commit`` of the template and the ``versions``; its entry
+    ``captions`` of all figures, the ``commit`` of the template, the ``versions``, how many
+    ``intervals`` a chain has, and how many times ``dearer`` conditioned samples are. Its entry
     ``results``, their folder, becomes a path from the root that results and the project have in
-    common. The same inputs at the same commit give the same bytes on every machine: fonts are those
-    that come with Typst.
+    common. The same inputs at the same commit give the same bytes on every machine: fonts are
+    those that come with Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
@@ -64,6 +67,8 @@ def typeset(template, output, contents):
     contents = contents | {
         "captions": captions(),
         "commit": commit(folder),
+        "dearer": DEARER,
+        "intervals": RETURNS,
         "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
         "versions": versions(),
     }

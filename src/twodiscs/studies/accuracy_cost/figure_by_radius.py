@@ -16,8 +16,8 @@ from twodiscs.figures.kit.style import (
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 
-#: Inches: the panel of the times, the gap, the panel of single precision.
-TIMES, GAP, SINGLE = 2.5, 0.42, 1.35
+#: Inches: the figure; the height and the widths of the panels of the times and of single precision.
+WIDTH, HEIGHT, TIMES, SINGLE = 7.0, 2.1, 3.72, 2.1
 
 #: The least distance of a curve from where its event ends, relatively.
 CLOSEST = 1e-3
@@ -26,9 +26,10 @@ CLOSEST = 1e-3
 def draw(box, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
     rows = tables["accuracy_cost"]
-    figure = new_figure(panels.BOTTOM + SINGLE + GAP + TIMES + panels.TOP)
-    _times(panels.add_panel(figure, panels.BOTTOM + SINGLE + GAP, TIMES), rows)
-    _single(panels.add_panel(figure, panels.BOTTOM, SINGLE), rows)
+    figure = new_figure(panels.BOTTOM + HEIGHT + panels.TOP, WIDTH)
+    _times(panels.add_panel(figure, panels.BOTTOM, HEIGHT, width=TIMES), rows)
+    left = WIDTH - panels.RIGHT - SINGLE
+    _single(panels.add_panel(figure, panels.BOTTOM, HEIGHT, left, SINGLE), rows)
     return figure
 
 
