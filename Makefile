@@ -1,5 +1,6 @@
-# make        sets up .venv, then builds everything that config/config.yaml asks for
-# make test   the same set-up, then everything that decides whether a change is good
+# make            sets up .venv, then builds everything that config/config.yaml asks for
+# make test       the same set-up, then what decides whether a change is good
+# make test-all   that, and what takes long and seldom fails: coverage of intervals, other processors, Slurm
 #
 # CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
 
@@ -9,7 +10,7 @@ CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 pytho
 PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 
-.PHONY: all test
+.PHONY: all test test-all
 
 all: .venv/ready
 	$(IN_VENV) snakemake --cores $(CORES)
@@ -19,13 +20,16 @@ all: .venv/ready
 	@echo "The paper    results/paper.pdf"
 	@echo "The report   results/report.html"
 
+test-all: WHICH = -m "slow or not slow"
+test-all: test
+
 test: .venv/ready
 	$(IN_VENV) ruff check src tests
 	$(IN_VENV) ruff format --check src tests
 	$(IN_VENV) snakefmt --check Snakefile workflow
 	@# Those of the workflow take a core of their own; what they say follows when both are done.
-	$(IN_VENV) sh -c 'pytest tests/workflow > .workflow-tests.log 2>&1 & other=$$!; \
-	  pytest --ignore=tests/workflow; status=$$?; \
+	$(IN_VENV) sh -c 'pytest $(WHICH) tests/workflow > .workflow-tests.log 2>&1 & other=$$!; \
+	  pytest $(WHICH) --ignore=tests/workflow; status=$$?; \
 	  wait $$other || status=1; cat .workflow-tests.log; exit $$status'
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them

@@ -86,6 +86,7 @@ def generic_output(tmp_path_factory):
     return subprocess.run(command, env=environment, check=True, capture_output=True).stdout
 
 
+@pytest.mark.slow
 def test_the_bits_do_not_depend_on_the_processor(generic_output):
     here = subprocess.run([sys.executable, "-c", GENERIC], check=True, capture_output=True).stdout
     assert generic_output == here
@@ -114,6 +115,7 @@ for e, event in enumerate(EVENTS):
 """
 
 
+@pytest.mark.slow
 def test_an_event_more_than_a_double_has_room_for_is_counted(tmp_path):
     """Declared in a copy of the package, the near wall has its exact rate, and no other changes."""
     package = shutil.copytree(twodiscs.__path__[0], tmp_path / "twodiscs")

@@ -24,6 +24,7 @@ def covered():
     return {(row["radius"], row["quantity"]): row for row in rows}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", RADII)
 def test_intervals_cover_the_exact_time_in_92_to_98_of_100(covered, radius):
     """1600 repetitions know the coverage to 0.55 %: a true 95 % fails once in 1e7 seeds."""
@@ -49,6 +50,7 @@ def test_too_few_events_are_said_to_be_too_few(monkeypatch):
     assert row["passed"] is None
 
 
+@pytest.mark.slow
 def test_binomial_intervals_cover_volume_and_areas():
     """1600 points of one block of proposals, against the exact expectation of each shell."""
     scene = BOX.scene(0.38)

@@ -33,6 +33,7 @@ if not path.exists():
 """
 
 
+@pytest.mark.slow
 def test_a_small_build_survives(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PYTHONPATH", str(REPOSITORY / "src"))
     command = [*SNAKEMAKE, "--cores", "2", "results/one/grid.csv", "results/one/theory.csv"]

@@ -264,6 +264,7 @@ def instructions(environment, **effects):
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow
 def test_absent_effects_leave_no_instruction(package):
     """The kernel of the plain scene is the same where the package knows no effect at all.
 

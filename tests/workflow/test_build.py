@@ -46,6 +46,7 @@ def test_report_holds_every_figure_and_table_and_asks_for_nothing_from_outside(c
     assert 'src="http' not in page + front
 
 
+@pytest.mark.slow
 def test_another_run_on_one_core_gives_the_same_bytes(complete, tmp_path_factory):
     again = fresh(tmp_path_factory.mktemp("again") / "checkout")
     stages = ("monte_carlo", "dynamics")

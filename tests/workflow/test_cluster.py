@@ -92,12 +92,14 @@ def submitted(folder):
     return (folder / "slurmctld.log").read_text().count("submit_batch_job: JobId=")
 
 
+@pytest.mark.slow
 def test_slurm(local, unbuilt, tmp_path, slurm):
     folder, _, arguments = slurm
     assert build(place_at(tmp_path / "jobs", unbuilt), *arguments) == local
     assert submitted(folder) == 4
 
 
+@pytest.mark.slow
 def test_what_a_lost_node_did_is_done_again(local, unbuilt, tmp_path, slurm):
     folder, environment, arguments = slurm
     with ThreadPoolExecutor() as threads:

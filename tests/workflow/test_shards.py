@@ -1,5 +1,6 @@
 """Points in shards: plans go on until the accuracy is reached, and no shard is done twice."""
 
+import pytest
 import yaml
 from checkout import Checkout
 
@@ -53,6 +54,7 @@ def shards(new):
     return {name: new[name] for name in new if name.split("/")[-1][0] in "ah"}
 
 
+@pytest.mark.slow
 def test_no_shard_is_done_twice(unbuilt, tmp_path):
     place = Checkout(tmp_path, unbuilt)
     change(place)
