@@ -72,6 +72,7 @@ localrules:
     report,
     manifest,
     provenance,
+    crate,
     audit,
     verify,
     forecast,
@@ -80,7 +81,4 @@ localrules:
 
 rule all:
     input:
-        rules.report.input.results,
-        rules.report.output if "report" in CONFIGURATION.shared else [],
-        rules.manifest.output,
-        rules.provenance.output,
+        rules.crate.input.files,

@@ -138,6 +138,39 @@ rule provenance:
         " --output {output.json:q} > {log:q} 2>&1"
 
 
+# An RO-Crate of it all, with the texts of the workflow in it. Not part of `all`.
+
+
+TEXTS = [HERE / "Snakefile", *sorted(HERE.glob("workflow/rules/*.smk"))]
+
+
+rule crate:
+    input:
+        files=[
+            rules.report.input.results,
+            rules.report.output if "report" in CONFIGURATION.shared else [],
+            rules.manifest.output,
+            rules.provenance.output,
+        ],
+        texts=map(str, TEXTS),
+        citation=str(HERE / "CITATION.cff"),
+    output:
+        json=f"{RESULTS}/ro-crate-metadata.json",
+        texts=[f"{RESULTS}/workflow/{path.relative_to(HERE)}" for path in TEXTS],
+    log:
+        log_of("crate"),
+    benchmark:
+        benchmark_of("crate")
+    params:
+        files=lambda w, input: f"@{kept(chr(10).join(input.files))}",
+        sources=str(HERE),
+        contents=lambda w, input: contents(*input.texts, input.citation),
+        code=code("pipeline.documents.crate"),
+    shell:
+        "python -m twodiscs.pipeline.documents.crate {params.files:q} --sources {params.sources:q}"
+        " --texts {input.texts:q} --output {output.json:q} > {log:q} 2>&1"
+
+
 # All results against the record of the jobs that wrote them.
 
 

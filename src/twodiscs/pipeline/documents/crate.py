@@ -1,0 +1,171 @@
+"""Results as an RO-Crate: what each file is, its hash, and which workflow made it of what.
+
+    python -m twodiscs.pipeline.documents.crate results/paper.pdf … --sources . \\
+        --texts Snakefile … --output results/ro-crate-metadata.json
+
+The crate is the folder of the output, with a copy of the texts of the workflow. Its dates and
+versions are those of ``provenance.json``: the same results give the same bytes. An argument @FILE
+stands for the lines of a file.
+"""
+
+import json
+from mimetypes import MimeTypes
+from pathlib import Path
+from urllib.parse import quote
+
+import yaml
+
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.pipeline.documents.pages import TABLES
+from twodiscs.pipeline.documents.report import ENTRIES
+from twodiscs.pipeline.results.record import audit, digest, write
+
+#: The profiles that the crate follows, and where the word sha256 is defined.
+PROFILES = {
+    "ro/wfrun/process/0.5": "Process Run Crate",
+    "ro/wfrun/workflow/0.5": "Workflow Run Crate",
+    "workflowhub/workflow-ro-crate/1.0": "Workflow RO-Crate",
+}
+TERMS = "https://w3id.org/ro/terms/workflow-run/context"
+
+#: What is used of provenance.json.
+KNOWN = {"changed_since_the_commit", "commit", "first_file", "last_file", "versions"}
+
+#: What is neither a table nor a figure.
+OTHERS = {
+    "check.passed": "The verdict: exact theory, Monte Carlo and molecular dynamics agree",
+    "configuration.json": "The configuration that all results were built from",
+    "manifest.sha256": "Fingerprints of all tables and figures that hold no run times",
+    "paper.pdf": "The manuscript",
+    "provenance.json": "Commit, versions, machine and times",
+    "report.html": "The report: verdict, agreement and key figures",
+    "report-workflow.html": "Snakemake's report: every table and figure, and the job that made it",
+}
+
+
+def described(name, path):
+    """Return the properties of the file at ``path`` that the crate calls ``name``."""
+    stem, kind = Path(name).stem, Path(name).suffix
+    text = OTHERS.get(name, "A part of the workflow")
+    if kind == ".csv" and stem in TABLES:
+        text = TABLES[stem].meaning()
+    elif "figures/" in name and stem in ENTRIES:
+        text = f"{ENTRIES[stem].title}. {ENTRIES[stem].caption}"
+    return {
+        "name": name,
+        "description": text,
+        # As Python knows types of files, whatever the machine does.
+        "encodingFormat": MimeTypes().types_map[True].get(kind, "text/plain"),
+        "contentSize": str(path.stat().st_size),
+        "sha256": digest(path),
+    }
+
+
+def crate_of(files, texts, citation, made):
+    """Return the ``ROCrate`` of ``files``, {name in it: path}.
+
+    Its workflow are the ``texts``, alike, the Snakefile first. ``citation`` and ``made`` are what
+    CITATION.cff and provenance.json say.
+    """
+    from rocrate.model.contextentity import ContextEntity
+    from rocrate.rocrate import ROCrate
+
+    def add(identifier, kind, name, **more):
+        properties = {"@type": kind, "name": name, **more}
+        return crate.add(ContextEntity(crate, identifier, properties=properties))
+
+    def author(known):
+        name = known.get("name") or f"{known['given-names']} {known['family-names']}"
+        return add(f"#{quote(name)}", "Organization" if "name" in known else "Person", name)
+
+    def files_of(paths):
+        return [crate.add_file(p, name, properties=described(name, p)) for name, p in paths]
+
+    crate = ROCrate(version="1.1")
+    crate.metadata.extra_contexts.append(TERMS)
+    licence = f"https://spdx.org/licenses/{citation['license']}"
+    authors = [author(known) for known in citation["authors"]]
+    shared = {
+        "author": authors if len(authors) > 1 else authors[0],
+        "license": add(licence, "CreativeWork", citation["license"], url=licence),
+    }
+    found = files_of(files.items())
+    (main, text), *parts = texts.items()
+    changed = " with changes" if made["changed_since_the_commit"] else ""
+    properties = {
+        **described(main, text),
+        **shared,
+        "name": citation["title"],
+        "version": f"{citation['version']}, commit {made['commit']}{changed}",
+        "softwareRequirements": [
+            add(f"#{name}", "SoftwareApplication", name, version=version)
+            for name, version in made["versions"].items()
+        ],
+    }
+    snakemake = {"lang": "snakemake", "lang_version": made["versions"]["snakemake"], "main": True}
+    workflow = crate.add_workflow(text, main, properties=properties, **snakemake)
+    workflow["hasPart"] = files_of(parts)
+    build = {
+        "name": "The build of these results",
+        "description": "All jobs, from the first file that was written to the last",
+        "startTime": made["first_file"],
+        "endTime": made["last_file"],
+        "actionStatus": "http://schema.org/CompletedActionStatus",
+    }
+    given = crate.get("configuration.json")
+    results = [one for one in found if one is not given]
+    root = {
+        **shared,
+        "name": f"Results of {citation['title']}",
+        "description": citation["abstract"].strip(),
+        "datePublished": made["last_file"],
+        "keywords": ", ".join(citation["keywords"]),
+        "conformsTo": [
+            add(f"https://w3id.org/{place}", "CreativeWork", name, version=Path(place).name)
+            for place, name in PROFILES.items()
+        ],
+        "citation": [
+            add(f"https://doi.org/{one['doi']}", "ScholarlyArticle", one["title"])
+            for one in citation["references"]
+        ],
+        "mentions": crate.add_action(workflow, "#build", given, results, build),
+    }
+    for name, value in root.items():
+        crate.root_dataset[name] = value
+    return crate
+
+
+def main():
+    parser = Parser(
+        prog="twodiscs.pipeline.documents.crate",
+        description=__doc__.split("\n")[0],
+        fromfile_prefix_chars="@",
+    )
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
+    parser.add_argument("--sources", required=True, type=Path, help="the checkout that made them")
+    parser.add_argument("--texts", nargs="+", required=True, type=Path, metavar="FILE")
+    parser.add_argument("--output", required=True, type=Path, metavar="FILE")
+    options = parser.parse_args()
+    folder = options.output.parent
+    files = {path.relative_to(folder).as_posix(): path for path in sorted(options.files)}
+    texts = {f"workflow/{p.relative_to(options.sources).as_posix()}": p for p in options.texts}
+    if gone := [path for path in files.values() if not path.exists()]:
+        raise InputError(f"{gone[0]} is missing; results are built by make")
+    written = [options.output, *(folder / name for name in texts)]
+    if differences := list(audit(folder, without=written)):
+        raise InputError(f"{differences[0]}; differences in all: {len(differences)}")
+    path = folder / "provenance.json"
+    try:
+        made = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        made = None
+    if not isinstance(made, dict) or not made.keys() >= KNOWN:
+        raise InputError(f"{path} is damaged; delete it, and it is made again")
+    citation = yaml.safe_load((options.sources / "CITATION.cff").read_text(encoding="utf-8"))
+    crate_of(files, texts, citation, made).write(folder)
+    write(written, {"files": list(files.values())}, job="crate")
+
+
+if __name__ == "__main__":
+    run(main)
