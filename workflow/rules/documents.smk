@@ -1,6 +1,7 @@
 # What is made of all results: the manuscript, the report, fingerprints and the comparison with what is
 # expected; and what is measured of this machine, a forecast and the speed of the engines.
 from twodiscs.pipeline.results.manifest import is_reproducible
+from twodiscs.pipeline.results.record import WORKFLOW
 
 PAPER = {
     name: str(HERE / "paper" / name)
@@ -156,7 +157,7 @@ rule crate:
         citation=str(HERE / "CITATION.cff"),
     output:
         json=f"{RESULTS}/ro-crate-metadata.json",
-        texts=[f"{RESULTS}/workflow/{path.relative_to(HERE)}" for path in TEXTS],
+        texts=directory(f"{RESULTS}/{WORKFLOW}"),
     log:
         log_of("crate"),
     benchmark:

@@ -3,9 +3,9 @@
     python -m twodiscs.pipeline.documents.crate results/paper.pdf … --sources . \\
         --texts Snakefile … --output results/ro-crate-metadata.json
 
-The crate is the folder of the output, with a copy of the texts of the workflow. Its dates and
-versions are those of ``provenance.json``: the same results give the same bytes. An argument @FILE
-stands for the lines of a file.
+The crate is the folder of the output, with a copy of the texts of the workflow in ``_workflow``.
+Its dates and versions are those of ``provenance.json``: the same results give the same bytes. An
+argument @FILE stands for the lines of a file.
 """
 
 import json
@@ -19,7 +19,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.pages import TABLES
 from twodiscs.pipeline.documents.report import ENTRIES
-from twodiscs.pipeline.results.record import audit, digest, write
+from twodiscs.pipeline.results.record import WORKFLOW, audit, digest, require, write
 
 #: The profiles that the crate follows, and where the word sha256 is defined.
 PROFILES = {
@@ -149,11 +149,12 @@ def main():
     options = parser.parse_args()
     folder = options.output.parent
     files = {path.relative_to(folder).as_posix(): path for path in sorted(options.files)}
-    texts = {f"workflow/{p.relative_to(options.sources).as_posix()}": p for p in options.texts}
-    if gone := [path for path in files.values() if not path.exists()]:
-        raise InputError(f"{gone[0]} is missing; results are built by make")
-    written = [options.output, *(folder / name for name in texts)]
-    if differences := list(audit(folder, without=written)):
+    texts = {f"{WORKFLOW}/{p.relative_to(options.sources).as_posix()}": p for p in options.texts}
+    for path in files.values():
+        if not path.exists():
+            raise InputError(f"{path} is missing; results are built by make")
+        require(path)
+    if differences := list(audit(folder, without=[options.output])):
         raise InputError(f"{differences[0]}; differences in all: {len(differences)}")
     path = folder / "provenance.json"
     try:
@@ -164,7 +165,8 @@ def main():
         raise InputError(f"{path} is damaged; delete it, and it is made again")
     citation = yaml.safe_load((options.sources / "CITATION.cff").read_text(encoding="utf-8"))
     crate_of(files, texts, citation, made).write(folder)
-    write(written, {"files": list(files.values())}, job="crate")
+    read = {"files": [*files.values()], "texts": [folder / name for name in texts]}
+    write([options.output], read, job="crate")
 
 
 if __name__ == "__main__":

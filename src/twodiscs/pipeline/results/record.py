@@ -20,9 +20,13 @@ from twodiscs.pipeline.arguments import Parser, run
 
 FOLDER = ".record"
 
+#: Where an RO-Crate of results has the texts of the workflow. No scene can be called like this.
+WORKFLOW = "_workflow"
+
 #: What is written without a record: by Snakemake itself, or for one moment.
-UNRECORDED = ("logs", "benchmarks", ".compiled", "needed", "configuration.json", "provenance.json",
-              "forecast.csv", "report.html", "report-workflow.html", "README.md")  # fmt: skip
+UNRECORDED = ("logs", "benchmarks", ".compiled", "needed", WORKFLOW, "configuration.json",
+              "provenance.json", "forecast.csv", "report.html", "report-workflow.html",
+              "README.md")  # fmt: skip
 
 
 def digest(*paths):
