@@ -1,6 +1,7 @@
 """A whole build: all is there, the same bytes come out again, and a wrong formula is found."""
 
 import csv
+from hashlib import sha256
 
 import pytest
 from checkout import fresh
@@ -89,3 +90,19 @@ def test_what_is_damaged_is_made_again(built):
     jobs = built.jobs("check", "results/six/figures/volume.pdf")
     assert ("dynamics", ("scene=six", "key=0.2")) in jobs
     assert ("figure", ("scene=six", "figure=volume")) in jobs
+
+
+def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
+    rocrate = pytest.importorskip(
+        "rocrate.rocrate", reason="rocrate, of the extra workflow, is not installed"
+    )
+    others = ("logs/", ".compiled/", "benchmarks/", ".record/", "points/")
+    called = {name for name in built.results() if not any(one in name for one in others)}
+    built.snakemake("--cores", "1", "crate")
+    crate = rocrate.ROCrate(built.path / "results")
+    files = {one.id: one for one in crate.data_entities if not one.id.startswith("_workflow/")}
+    assert set(files) == called
+    for name, one in files.items():
+        assert one["sha256"] == sha256((built.path / "results" / name).read_bytes()).hexdigest()
+        assert one["description"] != crate.get("_workflow/workflow/rules/points.smk")["description"]
+    assert built.jobs("crate") == []
