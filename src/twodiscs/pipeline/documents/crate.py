@@ -21,7 +21,7 @@ from twodiscs.pipeline.documents.pages import TABLES
 from twodiscs.pipeline.documents.report import ENTRIES
 from twodiscs.pipeline.results.record import WORKFLOW, audit, digest, require, write
 
-#: The profiles that the crate follows, and where the word sha256 is defined.
+#: The profiles that the crate follows, below w3id.org, and where sha256 is defined.
 PROFILES = {
     "ro/wfrun/process/0.5": "Process Run Crate",
     "ro/wfrun/workflow/0.5": "Workflow Run Crate",
