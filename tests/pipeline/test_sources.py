@@ -308,6 +308,25 @@ def test_standard_library_only():
     assert "twodiscs.pipeline.sources" in run.stdout.split()
 
 
+def test_an_edit_of_the_same_size_and_time_is_run(package, monkeypatch):
+    """Python alone would run what it has compiled: it looks at nothing else."""
+    module = package / "helper.py"
+    environment = os.environ | {"PYTHONPATH": str(package.parent)}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+
+    def runs(text):
+        module.write_text(text)
+        os.utime(module, (1e9, 1e9))
+        command = [sys.executable, "-c", "import twodiscs.helper as h; print(h.x)"]
+        return subprocess.run(command, env=environment, capture_output=True, text=True).stdout
+
+    monkeypatch.setattr(sources, "_used", {})
+    assert runs("x = 1") == "1\n"
+    assert runs("x = 2") == "1\n"
+    sources.fingerprint("helper")
+    assert runs("x = 2") == "2\n"
+
+
 @pytest.mark.parametrize("damage", [None, "", "[1]", "{"])
 def test_what_is_remembered_of_sources_changes_no_fingerprint(place, package, monkeypatch, damage):
     """The memory is by the text of each file; one that cannot be read is as good as none."""

@@ -13,6 +13,7 @@ import re
 from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
+from importlib.util import cache_from_source
 from pathlib import Path
 
 from twodiscs.model.checks import InputError
@@ -114,7 +115,12 @@ def _read(path):
     key = blake2b(text, digest_size=16).hexdigest()
     if not _used:
         atexit.register(_remember)
-    _used[key] = _memory().get(key) or _parsed(text, path)
+    known = _memory().get(key)
+    if not known:
+        # Python sees an edit by size and time stamp alone, and would go on with what it compiled.
+        with suppress(OSError):
+            os.unlink(cache_from_source(path))
+    _used[key] = known or _parsed(text, path)
     return _used[key]
 
 
