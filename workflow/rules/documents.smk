@@ -91,14 +91,15 @@ rule report:
         ),
         snakefile=str(HERE / "Snakefile"),
         scenes=as_json({"scenes": report_scenes()}),
+        files=lambda w, input: kept("\n".join(input.results)),
         texts=lambda w, input: contents(*input.texts, input.style, input.front),
         code=code("pipeline.documents.report"),
     shell:
-        "{{ cp {params.configuration:q} {output.configuration:q};"
+        "{{ cp {params.configuration:q} {output.configuration:q}; mapfile -t files < {params.files:q};"
         " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
-        ' "$@" --configfile {output.configuration:q} -- {input.results:q}; }};'
+        ' "$@" --configfile {output.configuration:q} -- "${{files[@]}}"; }};'
         " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
-        " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results:q}"
+        ' again --rulegraph dot | python -m twodiscs.pipeline.documents.report "${{files[@]}}"'
         " --template {input.front:q} --parameters {params.scenes:q}"
         " --workflow report-workflow.html --output {output.html:q}; }} > {log:q} 2>&1"
 
