@@ -94,6 +94,22 @@ def test_a_damaged_input_stops_a_job_with_its_name(results, monkeypatch, capsys)
     assert not (results / "n.pdf").exists()
 
 
+@pytest.mark.parametrize("old", ['"inputs"', '"made_by"', '"seal"', "seed 3"])
+def test_an_edited_record_is_a_damaged_one(results, old):
+    path = results / ".record" / "theory.csv.json"
+    text = path.read_text()
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, old[::-1]))
+    assert record.read(results / "theory.csv") is None
+    assert f"{path} is damaged" in list(record.audit(results))
+
+
+@pytest.mark.parametrize("text", ["1", "[]", '""', "null", "{}"])
+def test_what_is_no_record_is_none(results, text):
+    (results / ".record" / "theory.csv.json").write_text(text)
+    assert record.read(results / "theory.csv") is None
+
+
 def test_what_no_job_wrote_and_what_is_gone_is_named(results):
     (results / "own.csv").write_text("a\n")
     (results / "m.pdf").unlink()

@@ -60,6 +60,7 @@ def write(paths, inputs, **made):
         record = _record_of(path)
         record.parent.mkdir(exist_ok=True)
         content = {"inputs": read, "made_by": made, "sha256": digest(path)}
+        content["seal"] = _seal(content)
         record.write_text(json.dumps(content, indent=1, sort_keys=True) + "\n", encoding="utf-8")
         _stamp(path, record)
 
@@ -69,12 +70,18 @@ def _stamp(path, record):
     os.utime(record, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
+def _seal(content):
+    """Return the hash of what a record says."""
+    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
 def read(path):
     """Return the record of a file, None if there is none or it is damaged."""
-    try:
-        return json.loads(_record_of(Path(path)).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
+    with suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
+        content = json.loads(_record_of(Path(path)).read_text(encoding="utf-8"))
+        if content.pop("seal") == _seal(content):
+            return content
+    return None
 
 
 def require(path):
