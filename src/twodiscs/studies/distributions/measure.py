@@ -175,12 +175,20 @@ def hazard(counts, intervals, width):
 def near_threshold(box, hop):
     """Return radii that approach the one at which ``hop`` becomes blocked; none if it stays open.
 
-    They are ``DISTANCES`` below it, relative to it.
+    They are ``DISTANCES`` below it, relative to it. Where the hop is too rare even for the fewest
+    intervals, in very long boxes, they are left out.
     """
     limit = box.threshold(one_of("hop", hop, HOPS))
     if limit not in box.thresholds:
         return []
-    return [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
+    radii = [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
+    return [radius for radius in radii if _affordable(box.scene(radius), hop)]
+
+
+def _affordable(scene, hop):
+    """Say whether the fewest intervals there can be take a few times ``EVENTS`` at most."""
+    events = exact.event_rate(scene) * exact.mean_times(scene)[hop]
+    return BLOCKS * events < 4 * EVENTS
 
 
 def measured(scene, hop, seed, events=EVENTS):

@@ -225,20 +225,30 @@ COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
 #: The window of the fitted rate, in units of the mean.
 WINDOW = (3, 9)
 
+#: Wall and disc events of a mean time, at most: intervals are followed for a thousand of those.
+RAREST = 100
+
 
 def cases(box):
     """Return pairs (event, radius) of a ``Box``: tails of disc collisions, of hops, of hops alone.
 
     Radii are 0.24, 0.1 and 0.3 times the shorter side. Beyond a quarter of it no drift avoids the
-    hops that are still open; where none is, the last case is missing.
+    hops that are still open; where none is, the last case is missing. So is one of events that come
+    less than once in ``RAREST`` events, in very long boxes.
     """
     hop, short = "vertical_hop" if box.width >= box.height else "horizontal_hop", box.shortest
     found = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
     return [
         (event, radius)
         for event, radius in found
-        if box.fits(radius) and box.scene(radius).is_possible(event)
+        if box.fits(radius) and _comes(box.scene(radius), event)
     ]
+
+
+def _comes(scene, event):
+    return scene.is_possible(event) and (
+        exact.event_rate(scene) * exact.mean_times(scene)[event] < RAREST
+    )
 
 
 def rows(box, samples, replicas, seed):
