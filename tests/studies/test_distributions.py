@@ -23,6 +23,7 @@ from twodiscs.studies.distributions import figure
 from twodiscs.studies.distributions import measure as distributions
 from twodiscs.studies.distributions.table import Distributions
 from twodiscs.studies.tails.measure import tail
+from twodiscs.studies.thresholds import figure as thresholds_figure
 from twodiscs.theory import tails
 
 BOX = Box(1.5, 1.0)
@@ -227,6 +228,15 @@ def test_radii_near_the_threshold():
     assert near("vertical_hop")[-1] == 0.37125
     assert near("vertical_hop", 3.0) == []
     assert near("vertical_hop", 1.0, 3.0)[0] == 0.21
+    assert near("horizontal_hop", 1e6) == []  # an interval takes more than 1e7 events
+
+
+@pytest.mark.parametrize("drawn", [figure, thresholds_figure])
+def test_without_any_rows_the_box_is_named(drawn):
+    box = Box(1e6, 1.0)
+    with style.context():
+        found = drawn.draw(box, {"distributions": []})
+    assert any("1e+06" in text.get_text() for text in found.axes[0].texts)
 
 
 # The table and the figure -------------------------------------------------------------------------

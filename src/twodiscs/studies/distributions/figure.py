@@ -26,12 +26,15 @@ SMALLEST_P = 1e-3
 
 
 def draw(box, tables):
-    """Draw the rows of distributions.csv on its first scene; ``box`` is not used."""
+    """Draw the rows of distributions.csv on its first scene; without any, name ``box`` alone."""
     rows = tables["distributions"]
     rows = [row for row in rows if row["scene"] == rows[0]["scene"]]
     figure = new_figure(panels.BOTTOM + PASSAGES + GAP + RATES + TOP)
     rates = panels.add_panel(figure, panels.BOTTOM + PASSAGES + GAP, RATES)
     passages = panels.add_panel(figure, panels.BOTTOM, PASSAGES)
+    if not rows:
+        panels.name_box(rates, box, ": hops are too rare to record intervals")
+        return figure
     _rates(rates, rows)
     _passages(passages, rows)
     panels.letter(rates, "a")

@@ -40,7 +40,7 @@ def draw(box, tables):
             _points(hops, law, rows, name, style)
             hops.plot(distances, exact, color=colour, zorder=2)
             hops.plot(distances, law(radii), color=colour, lw=0.7, ls=(0, (4, 2)))
-            first = tables["distributions"][0]["scene"]
+            first = next((row["scene"] for row in tables["distributions"]), None)
             found = near(box, law, passages(tables["distributions"], first, event))
             _points(hops, law, found, None, {"color": colour, "marker": "x", "markersize": 3})
     hops.plot([], [], "x", color=BLACK, markersize=3, label="first passages")
