@@ -59,13 +59,13 @@ def _times(axes, rows):
                     mfc=inside, ms=SIZES[marker],
                     label=name_of(event) if method == "lockstep" else None,
                 )  # fmt: skip
-    axes.plot([], [], ls="", marker="o", color=BLACK, ms=SIZES["o"], label="run to this error")
+    axes.plot([], [], ls="", marker="o", color=BLACK, ms=SIZES["o"], label="at this error")
     axes.plot([], [], color=BLACK, label="Poisson process")
     for radius, _ in found:
         axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 500), xlabel="radius $r$")
+    axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 1e4), xlabel="radius $r$")
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
-    axes.legend(loc="upper left", ncols=2, columnspacing=1, handlelength=1)
+    axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
     panels.name_limits(axes, found)
     panels.name_box(axes, box)
     panels.letter(axes, "a")
