@@ -79,6 +79,7 @@ def test_the_shell_works_from_a_wheel(installed):
     assert (installed / "twodiscs" / "py.typed").exists()
 
 
+@pytest.mark.slow
 def test_the_first_half_of_the_tutorial_runs_from_a_wheel(installed):
     """And what reads tables needs no extras, which are absent indeed."""
     page = (REPOSITORY / "docs" / "python.md").read_text(encoding="utf-8")

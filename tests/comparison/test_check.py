@@ -91,6 +91,7 @@ def test_all_that_was_measured_is_compared(points, theory):
         assert row["estimate"] == pytest.approx(1, abs=6 * row["stderr"])
 
 
+@pytest.mark.slow
 def test_false_alarms_are_as_rare_as_stated(laws, theory, monkeypatch):
     # A large probability, so that alarms can be counted. Bonferroni's is an upper bound; where most
     # tests are continuous and nearly independent it is not far from the truth.

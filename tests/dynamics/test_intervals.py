@@ -32,6 +32,7 @@ def test_hop_intervals_have_the_exact_mean(event, radius):
     check_mean(PAPER.with_radius(radius), event, 2_000_000)
 
 
+@pytest.mark.slow
 def test_horizontal_hops_in_a_field_have_the_exact_mean():
     """This box cannot be turned by a quarter: its horizontal hops have starts of their own."""
     check_mean(SCENES["field"], "horizontal_hop", 500_000)

@@ -187,7 +187,14 @@ SCENES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=repr)
+#: The reference takes seconds: all of them, but for every third one, are slow.
+REFERENCES = [
+    pytest.param(scene, marks=[pytest.mark.slow] if i % 3 else [], id=repr(scene))
+    for i, scene in enumerate(SCENES)
+]
+
+
+@pytest.mark.parametrize("scene", REFERENCES)
 def test_reference(scene):
     """All volumes and areas agree with the reference."""
     assert_close(numbers(scene), reference(scene))

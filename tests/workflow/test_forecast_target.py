@@ -2,7 +2,10 @@
 
 import csv
 
+import pytest
 
+
+@pytest.mark.slow
 def test_a_forecast_and_what_becomes_of_it(built):
     built.configure(lambda mapping: mapping["scenes"].pop(0) and mapping.update(shared=[]))
     run = built.snakemake("--cores", "2", "forecast")

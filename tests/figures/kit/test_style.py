@@ -30,6 +30,7 @@ def words_of(folder, name, outputs):
     return [*words, "--output", *outputs]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["integration_regimes", "mean_hop_time"])
 def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path):
     style_file = tmp_path / "matplotlibrc"

@@ -145,6 +145,7 @@ def test_other_boxes(box, tmp_path):
 GIVEN = json.dumps({"box": BOX.parameters(), "radius": RADIUS})
 
 
+@pytest.mark.slow
 def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     table, style_file = tmp_path / "trajectory.csv", tmp_path / "matplotlibrc"
     Trajectory.write(table, rows)
