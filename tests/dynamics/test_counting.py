@@ -66,7 +66,8 @@ from twodiscs.sampling import montecarlo
 scene = Scene(1.5, 1.0, 0.24)
 counts = counting.count_events(scene, {event: 0.02 for event in EVENTS}, 10**6, 11)
 times = intervals.hop_intervals(scene, "vertical_hop", 1, 11)
-samples = montecarlo.sample_point(scene, ["volume", "disc_collision_area"], 1, 0.02, 11)
+areas = ["volume", *(event + "_area" for event in EVENTS)]
+samples = montecarlo.sample_point(scene, areas, 1, 0.02, 11)
 effects = {"periodic": "x", "field": 0.3, "radius_ratio": 1.2, "mass_ratio": 2.0}
 scene = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4, **effects)
 bent = counting.count_events(scene, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11)

@@ -98,12 +98,16 @@ def test_old_caches_of_this_package_go_and_nothing_else(package):
     assert len(list(home.iterdir())) == 4 + len(others)
 
 
+def finished(environment, script):
+    return subprocess.run(
+        [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
+    )
+
+
 def cache_folder(environment):
     """Return where a process keeps the kernels of the dynamics, None where nowhere."""
     script = "from twodiscs.sampling import jit; print(jit.cache_folder('dynamics'))"
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, text=True, capture_output=True, check=True
-    )
+    done = finished(environment, script)
     assert (done.stderr != "") == (done.stdout == "None\n")
     return None if done.stdout == "None\n" else Path(done.stdout.rstrip())
 
@@ -129,20 +133,14 @@ def test_parallel_first_runs_do_not_race(package):
 def test_a_users_choice_of_processor_wins(package):
     _, environment = package
     script = "import twodiscs.sampling.jit, os; print(os.environ['NUMBA_CPU_FEATURES'])"
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment | {"NUMBA_CPU_FEATURES": "+sse2"},
-        text=True, capture_output=True, check=True,
-    )  # fmt: skip
+    done = finished(environment | {"NUMBA_CPU_FEATURES": "+sse2"}, script)
     assert done.stdout.strip() == "+sse2"
 
 
 def test_without_a_compiler_a_kernel_is_its_function(package):
     _, environment = package
     script = "from twodiscs.sampling.jit import compiled; print(compiled(lambda x: x + 1)(2))"
-    done = subprocess.run(
-        [sys.executable, "-c", script], env=environment | {"NUMBA_DISABLE_JIT": "1"},
-        text=True, capture_output=True, check=True,
-    )  # fmt: skip
+    done = finished(environment | {"NUMBA_DISABLE_JIT": "1"}, script)
     assert done.stdout == "3\n"
 
 

@@ -307,9 +307,9 @@ def summed(scene, stage, cores, rows):
 def scene_rows(request, pilots, starts, cores):
     """Return the rows of one scene: every job, its stages and their total."""
     jobs, sums = [], []
+    most = {s: request.shard_events if request.is_sharded(s) else math.inf for s in STAGES}
     for (stage, job), pilot in zip(jobs_of(request), pilots, strict=True):
-        shards = request.is_sharded(stage)
-        count = math.ceil(pilot.events / request.shard_events) if shards else 1
+        count = max(1, math.ceil(pilot.events / most[stage]))
         seconds = count * starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
         startup = count * starts[stage].startup
         jobs.append(

@@ -34,6 +34,8 @@ def draw(box, tables):
     passages = panels.add_panel(figure, panels.BOTTOM, PASSAGES)
     if not rows:
         panels.name_box(rates, box, ": hops are too rare to record intervals")
+        for axes in (rates, passages):
+            axes.set_axis_off()
         return figure
     _rates(rates, rows)
     _passages(passages, rows)
