@@ -9,6 +9,7 @@ surface Δ = 0 of a hop can cross it within T, before or after, and its rate is
 with the exact share P of configuration space that is in the strip, and the mean number ⟨N⟩ of
 crossings in [−T, T] over starts of the invariant measure there. No start is left out that counts,
 so that holds for every T. The past of a start is the future of the one with reversed velocities.
+For the same reason a path ends as soon as |Δ| exceeds β times the time that is left.
 """
 
 import math
@@ -39,16 +40,19 @@ from twodiscs.theory import exact
 #: Hops that come more often than once in so many events are counted from starts anywhere.
 RARE = 40
 
-#: Passes between two looks at which lanes have ended: flights are short.
-PASSES = 4
+#: Passes between two looks at which lanes have ended: paths are short.
+PASSES = 2
 
 #: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
 #: Where that holds for the widest strip, too, there is no neck, and no gain.
 FILL = 0.75
 NO_NECK = 0.97
 
-#: Wall and disc events that a start may last, about.
+#: Wall and disc events in the time 2T, about: at most so many.
 MOST_EVENTS = 32
+
+#: The share of the time 2T that paths last, about: the more events the less, 1 to 0.55.
+LASTING = 0.75
 
 #: Counts of hops and of events share a double: a hop counts so many events.
 HOP = 2.0**32
@@ -60,6 +64,11 @@ class Strip(NamedTuple):
     time: float
     within: float
     share: float
+
+    @property
+    def fastest(self):
+        """The largest relative speed |Δ̇| = β towards the surface that there is in the strip."""
+        return self.within / self.time
 
 
 def strip(scene, hop, time):
@@ -87,7 +96,7 @@ def widest(scene, hop):
 
 
 def expected_events(scene, hop, place):
-    """Return some number of events of a start: 1.45 T over the room that discs have in the neck."""
+    """Return about how many events come in a time 2T: 1.45 T over the room in the neck."""
     arch = place.within**2 / (6 * scene.contact_distance)
     return 2 * place.time * scene.fastest / (scene.room(hop) + arch)
 
@@ -118,11 +127,12 @@ def rare_hops(scene):
 
 
 @compiled
-def count_hops(seed, first, stop, replicas, lanes, time, law, draw, prism, horizontal):
+def count_hops(seed, first, stop, replicas, lanes, time, fastest, law, draw, prism, horizontal):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
 
-    Returns (Σ N (1), Σ N² (1, 1), wall and disc events), int64. The hops are vertical ones, or
-    horizontal ones if ``horizontal`` is True instead of None.
+    A path ends where its discs would have to be faster than ``fastest`` to hop once more. Returns
+    (Σ N (1), Σ N² (1, 1), wall and disc events), int64. The hops are vertical ones, or horizontal
+    ones if ``horizontal`` is True instead of None.
     """
     rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
@@ -165,10 +175,11 @@ def count_hops(seed, first, stop, replicas, lanes, time, law, draw, prism, horiz
                 times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
             for i in range(lanes):
                 before, code, count = state_at(rows, i, law), codes[i], packed[i]
-                remaining[i] -= times[i]
                 after = after_event(before, times[i], code, law)
                 put_state(rows, i, after, law)
-                hop = crosses(across(before, horizontal)[0], across(after, horizontal)[0])
+                separation, left = across(after, horizontal)[0], remaining[i] - times[i]
+                remaining[i] = left if abs(separation) <= fastest * left else 0.0
+                hop = crosses(across(before, horizontal)[0], separation)
                 count += HOP if hop else 0.0
                 packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
 
@@ -189,8 +200,8 @@ def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes
         # That is a horizontal hop of the box on its side.
         scene, hop, horizontal = Box.of(scene).turned().scene(scene.radius), "horizontal_hop", True
     return count_hops(
-        np.uint64(seed), first, stop, replicas, lanes, place.time, law_of(scene),
-        *origins(scene, hop, place.within), horizontal,
+        np.uint64(seed), first, stop, replicas, lanes, place.time, place.fastest,
+        law_of(scene), *origins(scene, hop, place.within), horizontal,
     )  # fmt: skip
 
 
@@ -222,7 +233,7 @@ def run_of(scene, hop, target, budget, seed):
         lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
         lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS) / target,
         lambda sums: int(sums[2]),
-        REPLICAS * max(1.0, expected_events(scene, hop, place)),
+        REPLICAS * max(1.0, LASTING * expected_events(scene, hop, place)),
         budget,
     )
 
