@@ -15,6 +15,7 @@ from snakemake.utils import update_config
 
 from twodiscs.model import checks
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import stream_seed
@@ -299,6 +300,30 @@ def test_another_radius_is_one_more_job_of_each_method():
     assert after.keys() - before.keys() == {("monte_carlo", "0.15"), ("dynamics", "0.15")}
     changed = {job[0] for job in before if repr(before[job]) != repr(after[job])}
     assert changed == {"theory", "grid"}
+
+
+def test_many_radii_are_bundles_and_another_one_joins_one_of_them():
+    many = [round(0.01 + i * 1e-4, 6) for i in range(2001)]
+    watch = {"volume": True, "mean_times": True, "hop_histogram": [0.1]}
+    before, after = (one(radii=radii, watch=watch) for radii in (many[:-1], many))
+    for stage in ("monte_carlo", "dynamics"):
+        bundles = before.bundles[stage]
+        assert sorted(key for some in bundles.values() for key in some) == sorted(
+            before.keys[stage]
+        )
+        assert 10 < len(bundles) < 100
+        changed = [name for name in bundles if bundles[name] != after.bundles[stage][name]]
+        (joined,) = changed
+        assert after.bundles[stage][joined] == [*bundles[joined], repr(many[-1])]
+        jobs = after.bundle_job(stage, joined)["jobs"]
+        assert jobs[repr(many[-1])] == after.job(stage, repr(many[-1]))
+        assert after.minutes(stage, joined) > after.minutes(stage)
+    # One radius a job: few, and what is in shards.
+    assert not before.bundles["intervals"]
+    assert not one(radii=many[:1000], watch=watch).bundles["dynamics"]
+    assert not one(radii=many, watch=watch, event_budget=1e13).bundles["dynamics"]
+    with pytest.raises(InputError, match="bundle must be one of those of dynamics, not 'x'"):
+        before.bundle_job("dynamics", "x")
 
 
 def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
@@ -826,6 +851,9 @@ def test_what_takes_longer_than_a_day_is_known_before():
     assert 1 < one(accuracy=1e-6, event_budget=1e15).days < 1000
     assert one(event_budget=1e15).days < 1  # the accuracy is reached long before
     assert one(watch={"volume": True}, monte_carlo={"samples": 1e15}).days > 100
+    # Of many radii some are looked at.
+    fine = [one(accuracy=1e-6, event_budget=1e15, radii={"count": n}).days / n for n in (500, 1000)]
+    assert fine[0] == pytest.approx(fine[1], rel=0.2)
 
 
 def test_the_fewest_intervals_are_a_block():

@@ -59,6 +59,41 @@ def test_parameters_may_be_in_a_file_and_say_all_that_counts(run, tmp_path):
     assert one == two != other
 
 
+def test_a_bundle_is_its_points_and_does_what_is_missing(run, tmp_path):
+    """The points of a bundle, their records too, are those of jobs of their own."""
+    given = {repr(r): POINTS["dynamics"] | {"radius": r} for r in RADII}
+    points = tmp_path / "points" / "dynamics"
+
+    def bundle(jobs):
+        words = ["--parameters", {"jobs": jobs}, "--points", points, "--about", "scene paper"]
+        assert run("bundle", "dynamics.counting", *words, "--output", points / "b.json") == 0
+        files = [*points.glob("0*.json"), *points.glob(".record/0*.json")]
+        assert json.loads((points / "b.json").read_text()).keys() == jobs.keys()
+        return {path.relative_to(points): path.read_bytes() for path in files}
+
+    points.mkdir(parents=True)
+    first, *others = given
+    bundle({first: given[first]})
+    stamp = (points / f"{first}.json").stat().st_mtime_ns
+    whole = bundle(given)
+    assert (points / f"{first}.json").stat().st_mtime_ns == stamp
+    # What was edited, has another parameter or has lost what it took is made again.
+    for key in others[:2]:
+        (points / f"{key}.json").write_text("{}")
+    (points.parent / "cost" / f"dynamics-{others[2]}.json").unlink()
+    assert bundle(given) == whole
+    assert (points.parent / "cost" / f"dynamics-{others[2]}.json").exists()
+    assert bundle(given | {first: given[first] | {"seed": 2}}) != whole
+    assert bundle(given) == whole
+
+    key = others[0]
+    (points / f"{key}.json").unlink()
+    words = ["--parameters", given[key], "--about", "scene paper"]
+    words += ["--output", points / f"{key}.json"]
+    assert run("point", "dynamics.counting", *words) == 0
+    assert bundle(given) == whole
+
+
 def test_a_long_job_says_what_it_has_done_and_what_is_left(run, capsys):
     assert run("point", "dynamics.counting", "--parameters", POINTS["dynamics"],
                "--output", "a.json") == 0  # fmt: skip
@@ -182,6 +217,9 @@ MISTAKES = {
     "half an option": (["point", "x", "--out", "output"], "are required: --output"),
     "no output": (["point", "x", "--parameters", "{}"], "are required: --output"),
     "no parameters": (["point", "x", "--output", "output"], "point needs --parameters"),
+    "a bundle of nowhere": (
+        words("bundle", "dynamics.counting", {"jobs": {}}), "bundle needs --points, the folder"
+    ),
     "no module": (words("point", "nothing", {}), "module must be one of the package twodiscs"),
     "another package": (words("point", "os", {}), "module must be one of the package twodiscs"),
     "no module but a class": (words("point", "model.box.Box", {}), "module must be one of"),

@@ -75,6 +75,30 @@ def test_what_changed_is_made_again_and_named(results, capsys):
     ]
 
 
+def test_with_a_point_its_bundle_is_made_again(results, capsys):
+    points = results / "paper" / "points"
+    (points / "dynamics" / "bundles").mkdir(parents=True)
+    (points / "cost").mkdir()
+    for name, keys in {"0001": ["0.1", "0.2"], "0002": ["0.11"]}.items():
+        path = points / "dynamics" / "bundles" / f"{name}.json"
+        path.write_text(json.dumps(dict.fromkeys(keys, "hash"), indent=1))
+        record.write([path], {})
+    for name in ("dynamics/0.1", "cost/dynamics-0.11", "dynamics/0.2"):
+        (points / f"{name}.json").write_text("{}")
+        record.write([points / f"{name}.json"], {})
+    rewrite(points / "dynamics" / "0.1.json", b"[]")
+    folder = results.parent / ".snakemake/incomplete"
+    bundle = "results/paper/points/dynamics/bundles/000{}.json".format
+    record.notice("results")
+    assert "paper/points/dynamics/0.1.json is not what its job wrote" in capsys.readouterr().err
+    marked = {path.name for path in folder.iterdir()}
+    assert record.name_of(bundle(1)) in marked
+    assert record.name_of(bundle(2)) not in marked
+    rewrite(points / "cost" / "dynamics-0.11.json", b"[]")
+    record.notice("results")
+    assert record.name_of(bundle(2)) in {path.name for path in folder.iterdir()}
+
+
 def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):
     table = results / "theory.csv"
     stamp = table.stat().st_mtime_ns

@@ -113,7 +113,9 @@ def about(scene, seed=CONFIGURATION.seed):
 
 def minutes(stage=None):
     """Return how long a job of a stage, or of the one among its wildcards, may take: more when retried."""
-    return lambda w, attempt: attempt * SCENES[w.scene].minutes(stage or w.stage)
+    return lambda w, attempt: attempt * SCENES[w.scene].minutes(
+        stage or w.stage, w.get("bundle")
+    )
 
 
 def contents(*paths):
@@ -123,11 +125,16 @@ def contents(*paths):
 
 
 def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):
-    """Return what the jobs of these stages found, a file for each stage and radius."""
+    """Return what the jobs of these stages found, a file for each stage and radius or bundle."""
     return [
-        f"{RESULTS}/{scene.name}/{folder.format(stage=stage, key=key)}"
+        f"{RESULTS}/{scene.name}/{path.format(stage=stage, key=key)}"
         for stage in stages
-        for key in scene.keys[stage]
+        for path, keys in (
+            [("points/{stage}/bundles/{key}.json", scene.bundles[stage])]
+            if scene.bundles[stage]
+            else [(folder, scene.keys[stage])]
+        )
+        for key in keys
     ]
 
 
@@ -193,6 +200,11 @@ def gathered_points(scene, table):
     if table == "cost":
         return cost_files(scene)
     return point_files(scene, GATHERED[table])
+
+
+def points_folder(path):
+    """Return the folder ``points`` that the file of a point, or of a bundle of them, is in."""
+    return str(next(folder for folder in Path(path).parents if folder.name == "points"))
 
 
 def tables_beside(scene, table):

@@ -90,7 +90,11 @@ for stage, module in STAGES.items():
         benchmark:
             benchmark_of(f"{{scene}}/{stage}-{{key}}")
         wildcard_constraints:
-            scene=one_of(s.name for s in SCENES.values() if not s.is_sharded(stage)),
+            scene=one_of(
+                s.name
+                for s in SCENES.values()
+                if not s.is_sharded(stage) and not s.bundles[stage]
+            ),
         resources:
             runtime=minutes(stage),
         params:
@@ -101,6 +105,41 @@ for stage, module in STAGES.items():
         shell:
             "python -m twodiscs.pipeline.jobs point {params.module} --parameters {params.job:q}"
             " --output {output.point:q} --cost {output.cost:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+
+
+# Of many radii a job does a bundle. Its points are no outputs, which Snakemake would remove before the job starts:
+# those that are there stay.
+
+
+for stage, module in STAGES.items():
+
+    rule:
+        name:
+            f"{stage}_bundle"
+        input:
+            compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
+        output:
+            bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
+        log:
+            log_of(f"{{scene}}/{stage}_bundle-{{bundle}}"),
+        benchmark:
+            benchmark_of(f"{{scene}}/{stage}_bundle-{{bundle}}")
+        wildcard_constraints:
+            bundle="[0-9]+",
+        resources:
+            runtime=minutes(stage),
+        params:
+            about=lambda w: about(w.scene),
+            job=lambda w, stage=stage: as_json(
+                SCENES[w.scene].bundle_job(stage, w.bundle)
+            ),
+            points=lambda w, output: str(Path(output.bundle).parents[1]),
+            module=module,
+            code=code(module),
+        shell:
+            "python -m twodiscs.pipeline.jobs bundle {params.module} --parameters {params.job:q}"
+            " --points {params.points:q} --output {output.bundle:q}"
             " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 

@@ -29,7 +29,7 @@ rule table:
         tables=lambda w, input: named_tables(
             tables_beside(w.scene, w.table), input.tables
         ),
-        points=lambda w, input: str(Path(input.points[0]).parents[1]),
+        points=lambda w, input: points_folder(input.points[0]),
         code=lambda w: table_code("comparison.gather", SCENE_TABLES[w.table]),
     shell:
         "python -m twodiscs.pipeline.jobs table comparison.gather --function {wildcards.table}_rows"

@@ -13,6 +13,7 @@ name, those named here too, so that an edit of one of them does not concern the 
 file that holds it; their entry ``box`` becomes a ``Box``.
 """
 
+import argparse
 import inspect
 import json
 import sys
@@ -157,6 +158,30 @@ def point(options):
         write_json(options.cost, {"events": events, "seconds": seconds})
 
 
+def bundle(options):
+    """Write the points of a module at several radii to a folder, each as a job of its own would.
+
+    Those that are there already, made of the same, stay: only what is missing is done. The output
+    holds {key: SHA-256 of the point}.
+    """
+    record, found = module_of("pipeline.results.record"), {}
+    if not options.points:
+        raise InputError("bundle needs --points, the folder of the points")
+    folder, jobs = Path(options.points[0]), parameters(options.parameters)["jobs"]
+    costs = folder.parent / "cost"
+    costs.mkdir(parents=True, exist_ok=True)
+    for key, given in jobs.items():
+        paths = folder / f"{key}.json", costs / f"{folder.name}-{key}.json"
+        own = {"job": "point", "parameters": json.dumps(given), "points": []}
+        own |= {"output": [paths[0]], "cost": paths[1]}
+        one = argparse.Namespace(**vars(options) | own)
+        if not record.is_made(paths, made_by(one)):
+            point(one)
+            keep_record(one, {})
+        found[key] = record.digest(paths[0])
+    write_json(options.output[0], found)
+
+
 # A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan
 # says which pieces the points of a scene need, as far as those that are there can tell.
 
@@ -268,13 +293,17 @@ def inputs_of(options):
     return found
 
 
-def keep_record(options, inputs):
-    """Record what made the files of a job."""
+def made_by(options):
+    """Return what makes the files of a job."""
     made = {"about": options.about, "code": options.code, "job": options.job}
     made |= {"function": options.function, "module": options.module}
-    made["parameters"] = parameters(options.parameters) if options.parameters else {}
+    return made | {"parameters": parameters(options.parameters) if options.parameters else {}}
+
+
+def keep_record(options, inputs):
+    """Record what made the files of a job."""
     paths = [*options.output, *([options.cost] if options.cost else [])]
-    module_of("pipeline.results.record").write(paths, inputs, **made)
+    module_of("pipeline.results.record").write(paths, inputs, **made_by(options))
 
 
 def origin(options):
@@ -334,6 +363,7 @@ def verdict(options):
 
 JOBS = {
     "point": point,
+    "bundle": bundle,
     "shard": shard,
     "plan": plan,
     "merge": merge,

@@ -1,8 +1,10 @@
 """What a configuration asks for, checked and with every default filled in."""
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
+from hashlib import blake2b
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
@@ -18,6 +20,13 @@ STAGES = {
 
 #: What a core does in a second, roughly, and the seconds of a day.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, DAY = 1e8, 3e7, 86400
+
+#: With more radii than this a job does a bundle of some of them, for every job costs Snakemake
+#: milliseconds; and how many those are, about.
+MANY, BUNDLE = 1000, 40
+
+#: So many radii tell what many of them will take.
+SOME = 100
 
 #: The most events that any budget allows.
 MOST_EVENTS = 10**15
@@ -94,17 +103,34 @@ class SceneRequest:
         }
         return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
 
+    @cached_property
+    def bundles(self):
+        """{stage: {name: keys}} of the bundles of points that are one job; none of a few radii.
+
+        Another radius joins one of them, and leaves all others as they are.
+        """
+        found = {stage: defaultdict(list) for stage in STAGES}
+        for stage, keys in self.keys.items():
+            if len(keys) <= MANY or self.is_sharded(stage):
+                continue
+            number = 1 << round(math.log2(len(keys) / BUNDLE))
+            for name in keys:
+                digits = blake2b(name.encode(), digest_size=4).digest()
+                found[stage][f"{int.from_bytes(digits) % number:04d}"].append(name)
+        return {stage: dict(some) for stage, some in found.items()}
+
     @property
     def days(self):
         """The processor time that the scene takes, roughly: in days of a usual core.
 
         Theory says how many events an error takes; that is looked at only where the budgets alone
-        would allow for a day.
+        would allow for a day, and at some of many radii.
         """
         samples = self.monte_carlo["samples"] * len(self.keys["monte_carlo"])
         events = self.event_budget * len(self.keys["dynamics"])
         if events > DAY * EVENTS_PER_SECOND:
-            events = sum(map(self._events, self.radii))
+            some = self.radii[:: -(-len(self.radii) // SOME)]
+            events = sum(map(self._events, some)) * len(self.radii) / len(some)
         events += sum(map(self._events_of_histogram, self.watch.hop_histogram))
         return (samples / SAMPLES_PER_SECOND + events / EVENTS_PER_SECOND) / DAY
 
@@ -165,8 +191,8 @@ class SceneRequest:
         }
         return max(most[stage], default=0) > self.shard_events
 
-    def minutes(self, stage):
-        """Return how long a job of a ``stage`` may take, or a shard of it, in minutes.
+    def minutes(self, stage, bundle=None):
+        """Return how long a job of a ``stage`` may take, a shard or a bundle of it, in minutes.
 
         That is several times what it takes on a usual core; effects make all of it slower.
         """
@@ -176,8 +202,15 @@ class SceneRequest:
             "intervals": self.histogram["event_budget"] / EVENTS_PER_SECOND,
         }
         speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
-        seconds = min(most[stage], self.shard_events / speed)
+        points = len(self.bundles[stage].get(bundle, [bundle]))
+        seconds = points * min(most[stage], self.shard_events / speed)
         return math.ceil(10 + seconds / 60 * (40 if self.effects else 4))
+
+    def bundle_job(self, stage, name):
+        """Return what each job of a bundle depends on; raise ``InputError`` if there is none."""
+        if name not in self.bundles[stage]:
+            raise InputError(f"bundle must be one of those of {stage}, not {name!r}")
+        return {"jobs": {one: self.job(stage, one) for one in self.bundles[stage][name]}}
 
     def shard_job(self, stage, key, part, first, stop):
         """Return what a shard depends on: neither the accuracy asked for nor the budget."""

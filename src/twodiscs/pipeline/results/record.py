@@ -91,6 +91,15 @@ def require(path):
         raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
 
 
+def is_made(paths, made):
+    """Say whether the files at ``paths`` are what a job wrote that had the same ``made``."""
+    records = [(path, read(path)) for path in paths if Path(path).is_file()]
+    return len(records) == len(paths) and all(
+        known is not None and known["made_by"] == made and known["sha256"] == digest(path)
+        for path, known in records
+    )
+
+
 def _recorded(folder):
     """Yield (path, its record) of all files below ``folder`` that have one."""
     for place, folders, names in os.walk(folder):
@@ -120,7 +129,8 @@ def touched(folder):
 def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
-    To Snakemake these files are incomplete, as those that a killed job has left.
+    To Snakemake these files are incomplete, as those that a killed job has left, and so is the
+    bundle that a point was made in.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     for path in _unrecorded(folder):
@@ -131,8 +141,17 @@ def notice(folder, snakemake=".snakemake"):
         if what:
             print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
         Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
-        with suppress(OSError):  # a name may be too long
-            Path(snakemake, "incomplete", name_of(path)).write_text('{"external_jobid": null}')
+        for output in (path, *_bundles_of(path)):
+            with suppress(OSError):  # a name may be too long
+                name = Path(snakemake, "incomplete", name_of(output))
+                name.write_text('{"external_jobid": null}')
+
+
+def _bundles_of(path):
+    """Return the bundles that the point at ``path`` is in, or that it is what a job of took."""
+    stage, _, key = path.stem.partition("-") if path.parent.name == "cost" else ("", "", path.stem)
+    folder = path.parent.parent / stage if stage else path.parent
+    return [one for one in folder.glob("bundles/*.json") if f'"{key}"' in one.read_text("utf-8")]
 
 
 def name_of(path):

@@ -1,0 +1,87 @@
+"""Many radii: a job does a bundle of points, and of those what is missing."""
+
+from collections import Counter
+
+import pytest
+import yaml
+from checkout import Checkout
+
+RADII = [round(0.01 + 2e-4 * i, 4) for i in range(1001)]
+TABLES = ("results/many/mean_times.csv", "results/many/volume.csv")
+
+
+def write(place, radii, **keys):
+    """Write a configuration of one scene with these ``radii``, whose points take no time."""
+    scene = {
+        "name": "many",
+        "box": {"width": 1.5, "height": 1.0},
+        "radii": radii,
+        "watch": {"mean_times": ["top_wall"], "volume": True},
+        "accuracy": 0.5,
+        "event_budget": 1000,
+        "monte_carlo": {"samples": 1000},
+    }
+    place.configuration.parent.mkdir(exist_ok=True)
+    place.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [scene | keys]}))
+
+
+@pytest.fixture
+def place(unbuilt, tmp_path):
+    """A folder that uses the sources of another one, with many radii."""
+    place = Checkout(tmp_path, unbuilt)
+    write(place, RADII)
+    return place
+
+
+def files(place):
+    """Return {path: (time stamp, bytes)} of the points."""
+    folder = place.path / "results" / "many" / "points"
+    points = [*folder.glob("dynamics/*.json"), *folder.glob("monte_carlo/*.json")]
+    return {
+        path.relative_to(folder).as_posix(): (path.stat().st_mtime_ns, path.read_bytes())
+        for path in points
+    }
+
+
+def test_jobs_are_few(place):
+    snakefile = ("--snakefile", str(place.home.path / "Snakefile"))
+    jobs = place.jobs("--cores", "2", *snakefile, "--", *TABLES)
+    rules = Counter(rule for rule, _ in jobs)
+    assert rules.keys() == {
+        "compile", "dynamics_bundle", "monte_carlo_bundle", "table", "theory",
+    }  # fmt: skip
+    assert len(RADII) / 100 < rules["dynamics_bundle"] == rules["monte_carlo_bundle"] < 100
+    write(place, RADII[:1000])
+    rules = Counter(rule for rule, _ in place.jobs("--cores", "2", *snakefile, "--", *TABLES))
+    assert rules["dynamics"] == rules["monte_carlo"] == 1000
+
+
+@pytest.mark.slow
+def test_what_is_there_stays(place):
+    def build():
+        snakefile = str(place.home.path / "Snakefile")
+        place.snakemake("--snakefile", snakefile, "--cores", "2", "--", *TABLES)
+        return files(place), [(place.path / table).read_bytes() for table in TABLES]
+
+    write(place, RADII[:3])
+    few, _ = build()
+    write(place, RADII)
+    many, tables = build()
+    assert len(many) == 2 * len(RADII)
+    assert few.items() <= many.items()
+
+    # Another radius; a damaged point; a tighter accuracy, which the tables must not miss.
+    write(place, [*RADII, 0.3])
+    more, _ = build()
+    assert more.keys() - many.keys() == {"dynamics/0.3.json", "monte_carlo/0.3.json"}
+    assert many.items() <= more.items()
+    write(place, RADII)
+    (place.path / "results/many/points/dynamics/0.1.json").write_text("{}")
+    mended, same = build()
+    assert same == tables
+    assert {name for name in many if mended[name] != many[name]} == {"dynamics/0.1.json"}
+    assert mended["dynamics/0.1.json"][1] == many["dynamics/0.1.json"][1]
+    write(place, RADII, accuracy=0.4)
+    _, tighter = build()
+    assert b",0.4," in tighter[0]
+    assert tighter[1] == tables[1]
