@@ -295,7 +295,9 @@ def report_scenes():
                 if side
             ),
             "effects": scene.effects,
+            "height": scene.box.height,
             "name": scene.name,
+            "width": scene.box.width,
         }
         for scene in SCENES.values()
     ]

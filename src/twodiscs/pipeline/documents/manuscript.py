@@ -7,9 +7,10 @@ import subprocess
 from importlib.metadata import version
 
 from twodiscs.dynamics.intervals import RETURNS
-from twodiscs.figures.catalogue import FIGURES, NOTES
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.results.record import write
 from twodiscs.sampling.montecarlo import DEARER
 from twodiscs.studies.catalogue import STUDY_FIGURES
@@ -18,15 +19,13 @@ from twodiscs.studies.catalogue import STUDY_FIGURES
 PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
 
-def captions():
-    """Return {figure: (its own caption, what others explain alike or "", tables, quantities)}."""
+def captions(results, scene):
+    """Return {figure: (its own caption, what others explain alike or "", which of the ``NOTES``)}.
+
+    ``scene`` is the one that the manuscript is about; see ``captions.said``.
+    """
     return {
-        name: (
-            entry.own_caption(),
-            NOTES[entry.note].plain if entry.note else "",
-            entry.tables,
-            sorted(entry.needs),
-        )
+        name: (*said(entry, results, scene), entry.note)
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 
@@ -65,7 +64,7 @@ def typeset(template, output, contents):
     folder = os.path.dirname(os.path.abspath(template))
     root = os.path.commonpath([results, os.path.dirname(folder)])  # CITATION.cff is there
     contents = contents | {
-        "captions": captions(),
+        "captions": captions(results, contents["scenes"][0]),
         "commit": commit(folder),
         "dearer": DEARER,
         "intervals": RETURNS,

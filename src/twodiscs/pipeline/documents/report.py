@@ -16,6 +16,7 @@ from twodiscs.comparison.scene_tables import Check, Cost, Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.documents.architecture import direct
+from twodiscs.pipeline.documents.captions import caption
 from twodiscs.pipeline.documents.manuscript import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
@@ -54,15 +55,20 @@ def agreement(folder, scene):
 
 
 def figure(folder, path, scenes):
-    """Return title, caption and picture of the figure at ``path``, relative to ``folder``."""
+    """Return title, caption and picture of the figure at ``path``, relative to ``folder``.
+
+    A figure of no scene is about the first of those without effects.
+    """
     entry = ENTRIES[path.stem]
     scene = scenes.get(path.parts[0])
-    caption = entry.full_caption(scene["effects"] if scene else ())
+    main = next((one for one in scenes.values() if not one["effects"]), None)
+    about = scene or main
+    text = caption(entry, folder, about) if about else entry.full_caption()
     if scene:
-        caption += f" Scene {scene['name']}, {scene['box']}."
+        text += f" Scene {scene['name']}, {scene['box']}."
     data = Path(folder, path).read_bytes()
     return {
-        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(caption)))),
+        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
         "title": entry.title,
         "uri": f"data:image/png;base64,{b64encode(data).decode()}",
         "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
