@@ -145,6 +145,17 @@ def test_what_no_job_wrote_and_what_is_gone_is_named(results):
     ]
 
 
+def test_with_what_is_gone_everything_made_of_it_is_made_again(results, capsys):
+    (results / "theory.csv").unlink()
+    record.notice("results")
+    assert sorted(capsys.readouterr().err.splitlines()) == [
+        f"results/{name} was made of a file that is gone; it is made again when needed."
+        for name in ("m.pdf", "m.png")
+    ]
+    marked = {path.name for path in (results.parent / ".snakemake/incomplete").iterdir()}
+    assert marked == {record.name_of(f"results/{name}") for name in ("m.pdf", "m.png")}
+
+
 def test_what_lost_its_record_is_made_again_without_a_word_on_what_is_somebodys_own(
     results, capsys
 ):

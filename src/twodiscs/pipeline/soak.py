@@ -73,6 +73,13 @@ def processes(folder):
     return found
 
 
+def _with_record(path):
+    """Return (file, its record) of a path that is one of them."""
+    if path.parent.name == FOLDER:
+        return path.parents[1] / path.name.removesuffix(".json"), path
+    return path, path.parent / FOLDER / f"{path.name}.json"
+
+
 class Soak:
     """A build of a configuration in ``folder``, where ``strike`` may be called at will.
 
@@ -113,10 +120,16 @@ class Soak:
     def _said(self):
         return (self.folder / "said").read_text(encoding="utf-8", errors="replace")[-3000:]
 
+    def _reasons(self):
+        """Return what the last run says of the files that it makes, and why."""
+        said = (self.folder / "said").read_text(encoding="utf-8", errors="replace").splitlines()
+        telling = ("    output:", "    reason:")
+        return [line for line in said if line.startswith(telling) or "is made again" in line]
+
     def _files(self):
         """Return the files that a job wrote, and the records of them, sorted."""
         records = sorted(self.results.rglob(f"{FOLDER}/*.json"))
-        paths = [path.parents[1] / path.name.removesuffix(".json") for path in records]
+        paths = [_with_record(record)[0] for record in records]
         return [path for path in (*records, *paths) if path.is_file()]
 
     def _finished(self, start):
@@ -188,10 +201,12 @@ class Soak:
             path.write_bytes(content[:place] + rest)
         said = "\n".join(audit(self.results))
         names = [str(path.relative_to(self.results)) for path in some]
+        # Of what is gone with its record nothing is left to tell.
+        told = [_with_record(path) for path in some]
         missed = [
             f"the audit misses {name}"
-            for path, name in zip(some, names, strict=True)
-            if path.name.removesuffix(".json" if path.parent.name == FOLDER else "") not in said
+            for (path, record), name in zip(told, names, strict=True)
+            if path.name not in said and (path.exists() or record.exists())
         ]
         return [", ".join(names), *missed, *self._again({})]
 
@@ -207,6 +222,8 @@ class Soak:
         for path, stamp in finished.items():
             if path.exists() and path.stat().st_mtime_ns != stamp:
                 wrong.append(f"{path.relative_to(self.results)} was finished and made again")
+        if wrong and not status:
+            wrong += self._reasons()
         if wrong:
             shutil.rmtree(self.folder)
             shutil.copytree(self.undisturbed, self.folder)

@@ -126,13 +126,30 @@ def touched(folder):
     return found
 
 
+def bereft(folder):
+    """Return the files below ``folder`` that were made of others which are gone.
+
+    Of those beside points, which are made of nothing but shards.
+    """
+    found = []
+    for path, _ in _recorded(folder):
+        if "points" in path.parts or not path.exists() or (known := read(path)) is None:
+            continue
+        files = (name for one in known["inputs"].values() for name in one["files"])
+        if not all((path.parent / name).exists() for name in files):
+            found.append(path)
+    return found
+
+
 def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
     To Snakemake these files are incomplete, as those that a killed job has left, and so is the
-    bundle that a point was made in.
+    bundle that a point was made in. What is gone comes back with the files that were made of it:
+    Snakemake alone would not miss it.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
+    found += [(path, "was made of a file that is gone") for path in bereft(folder)]
     for path in _unrecorded(folder):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
