@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from figure_cases import PAPER, draw, tables_of
+from figure_cases import PAPER, draw, simulated, tables_of
 
 from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import curves, style
+from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
 
@@ -88,3 +89,25 @@ def test_times_approach_the_end_of_their_hop(figures):
     rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
     shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
     assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}
+
+
+def test_the_legend_leaves_out_what_is_never_seen():
+    """In this field no disc gets up to the top wall, so there is no curve of it."""
+    box = Box(1.0, 4.0, {"field": 0.5})
+    assert not box.scene(0.1).is_possible("top_wall")
+    rng = np.random.default_rng(1)
+    rows = [
+        simulated(rng, scene, event, time, 0.01)
+        for scene in map(box.scene, (0.05, 0.1, 0.2))
+        for event, time in mean_times(scene).items()
+    ]
+    entry = FIGURES["mean_wall_time"]
+    with style.context():
+        main = radius.draw(box, {"mean_times": rows}, **entry.options).axes[1]
+    legend = main.get_legend()
+    names = entry.options["names"]
+    assert [text.get_text() for text in legend.get_texts()] == [
+        names["right_wall_time"], names["any_wall_time"],
+    ]  # fmt: skip
+    shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
+    assert shown == [style.SERIES[0], style.SERIES[2]]

@@ -38,6 +38,11 @@ class Series:
     rows: list
     exact: np.ndarray
 
+    def is_seen(self):
+        """Say whether there is a positive value to be drawn."""
+        drawn = (row["estimate"] or row.get("bound") for row in self.rows)
+        return bool(np.any(self.exact > 0)) or any(drawn)
+
 
 def panels(box, label, beneath=0):
     """Return (figure, main axes, axes of the residuals) for curves over the radius.
@@ -212,9 +217,10 @@ def residuals(axes, rows, colour, marker):
 def legend(axes, box, series, place, single=None):
     """Explain the symbols at a ``place``; ``single`` names the method of the only series.
 
-    ``place`` is a corner in matplotlib's words; "beside" is the top, short of the radii where
-    regimes end, which may lie as low as half of the largest; "best" is wherever the curves leave
-    room, and the place in a ``box`` with effects.
+    Series of which nothing is seen, of events that are impossible, are left out. ``place`` is a
+    corner in matplotlib's words; "beside" is the top, short of the radii where regimes end, which
+    may lie as low as half of the largest; "best" is wherever the curves leave room, and the place
+    in a ``box`` with effects.
     """
     place = "best" if box.effects else place
     handles, names = [], []
@@ -223,7 +229,7 @@ def legend(axes, box, series, place, single=None):
         if single:
             handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
             names += ["exact", single]
-        else:
+        elif one.is_seen():
             handles += axes.plot([], [], **style)
             names.append(one.name)
     if place == "beside":
