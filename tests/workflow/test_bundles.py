@@ -51,9 +51,6 @@ def test_jobs_are_few(place):
         "compile", "dynamics_bundle", "monte_carlo_bundle", "table", "theory",
     }  # fmt: skip
     assert len(RADII) / 100 < rules["dynamics_bundle"] == rules["monte_carlo_bundle"] < 100
-    write(place, RADII[:1000])
-    rules = Counter(rule for rule, _ in place.jobs("--cores", "2", *snakefile, "--", *TABLES))
-    assert rules["dynamics"] == rules["monte_carlo"] == 1000
 
 
 @pytest.mark.slow
