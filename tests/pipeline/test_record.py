@@ -147,6 +147,8 @@ def test_what_no_job_wrote_and_what_is_gone_is_named(results):
 
 def test_with_what_is_gone_everything_made_of_it_is_made_again(results, capsys):
     (results / "theory.csv").unlink()
+    record.notice("results", again=False)
+    assert not capsys.readouterr().err
     record.notice("results")
     assert sorted(capsys.readouterr().err.splitlines()) == [
         f"results/{name} was made of a file that is gone; it is made again when needed."

@@ -83,9 +83,8 @@ def test_what_is_deleted_comes_back(built, lost):
 def test_a_deleted_point_comes_back_with_what_was_made_of_it(built):
     (built.path / "results/six/points/monte_carlo/0.2.json").unlink()
     (built.path / "results/six/points/cost/dynamics-0.3.json").unlink()
-    jobs = built.jobs("check")
     rules = {("monte_carlo", ("scene=six", "key=0.2")), ("dynamics", ("scene=six", "key=0.3"))}
-    assert rules <= {*jobs}
+    assert rules <= {*built.jobs()}
 
 
 def test_what_is_damaged_is_made_again(built):

@@ -13,7 +13,11 @@ import subprocess
 import pytest
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.pipeline.documents.captions import caption
 from twodiscs.studies.catalogue import STUDY_FIGURES
+
+#: The scene that figures of no scene are about.
+SIX = {"name": "six", "width": 1.5, "height": 1.0}
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -196,7 +200,7 @@ def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
     assert six[5] == "{} × 10{}".format(*re.fullmatch(r"(.*)e\+0?(.*)", f"{events:.1e}").groups())
 
 
-def test_key_figures_have_their_captions_beneath_them(front):
+def test_key_figures_have_their_captions_beneath_them(front, complete):
     first, *key = front["figures"]
     assert first["title"] == ANIMATION.title
     titles = {entry.title: entry for entry in (FIGURES | STUDY_FIGURES).values()}
@@ -207,8 +211,8 @@ def test_key_figures_have_their_captions_beneath_them(front):
         # Nearly as wide as a column of a journal in its natural size, or as the window.
         assert figure["shown"] > 300
     for figure in key:
-        caption = titles[figure["title"]].full_caption()
-        assert caption.replace("_", "") in plain(figure["caption"])
+        text = caption(titles[figure["title"]], complete.path / "results", SIX)
+        assert text.replace("_", "") in plain(figure["caption"])
 
 
 def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):

@@ -141,15 +141,17 @@ def bereft(folder):
     return found
 
 
-def notice(folder, snakemake=".snakemake"):
+def notice(folder, snakemake=".snakemake", again=True):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
     To Snakemake these files are incomplete, as those that a killed job has left, and so is the
-    bundle that a point was made in. What is gone comes back with the files that were made of it:
-    Snakemake alone would not miss it.
+    bundle that a point was made in. What is gone comes back with the files that were made of it,
+    for Snakemake alone would not miss it: unless incomplete files are not made ``again``, then it
+    would stop.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
-    found += [(path, "was made of a file that is gone") for path in bereft(folder)]
+    if again:
+        found += [(path, "was made of a file that is gone") for path in bereft(folder)]
     for path in _unrecorded(folder):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
