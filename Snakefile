@@ -35,7 +35,7 @@ CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
 if workflow.is_main_process:
     if release():
-        notice(CONFIGURATION.results, again=workflow.dag_settings.force_incomplete)
+        notice(CONFIGURATION.results)
     if CONFIGURATION.days > 1:
         logger.warning(
             f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"

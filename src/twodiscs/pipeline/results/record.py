@@ -23,6 +23,9 @@ FOLDER = ".record"
 #: Where an RO-Crate of results has the texts of the workflow. No scene can be called like this.
 WORKFLOW = "_workflow"
 
+#: Whether Snakemake makes incomplete files again: the profile says so here, too.
+AGAIN = False
+
 #: What is written without a record: by Snakemake itself, or for one moment.
 UNRECORDED = ("logs", "benchmarks", ".compiled", "needed", WORKFLOW, "configuration.json",
               "provenance.json", "forecast.csv", "report.html", "report-workflow.html",
@@ -141,16 +144,15 @@ def bereft(folder):
     return found
 
 
-def notice(folder, snakemake=".snakemake", again=True):
+def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
     To Snakemake these files are incomplete, as those that a killed job has left, and so is the
     bundle that a point was made in. What is gone comes back with the files that were made of it,
-    for Snakemake alone would not miss it: unless incomplete files are not made ``again``, then it
-    would stop.
+    which Snakemake alone would not miss: if incomplete files are made ``AGAIN``, or it would stop.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
-    if again:
+    if AGAIN:
         found += [(path, "was made of a file that is gone") for path in bereft(folder)]
     for path in _unrecorded(folder):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
