@@ -55,3 +55,23 @@ def test_what_does_not_recover_is_told(tmp_path, capsys):
 def test_a_build_that_fails_undisturbed_is_no_start(tmp_path):
     with pytest.raises(RuntimeError, match="the undisturbed build fails:\nno luck"):
         soak.Soak(tmp_path / "build", [sys.executable, "-c", "exit('no luck')"], 1)
+
+
+def test_what_a_failed_job_left_is_not_finished():
+    """Snakemake writes its metadata all the same, and a job may outlive its shell."""
+    said = """
+[Sun Nov 22 08:00:00 2026]
+rule grid:
+    output: results/one/grid.csv
+    jobid: 2
+
+[Sun Nov 22 08:00:01 2026]
+Error in rule figure:
+    message: None
+    jobid: 3
+    output: results/one/figures/model.pdf, results/one/figures/model.png
+    log: results/logs/one/figure-model.log (check log file(s) for error details)
+"""
+    figures = "results/one/figures"
+    assert soak.failed(said) == {f"{figures}/model.pdf", f"{figures}/model.png"}
+    assert soak.failed("") == set()

@@ -9,6 +9,7 @@ finished job may be done twice, and no process may stay.
 
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -63,6 +64,12 @@ def contents(results):
     return found
 
 
+def failed(said):
+    """Return the outputs of the jobs that failed, of all that Snakemake ``said``, as a set."""
+    found = re.findall(r"^Error in rule .*:\n(?:    .*\n)*?    output: (.+)", said, re.MULTILINE)
+    return {name for line in found for name in line.split(", ")}
+
+
 def processes(folder):
     """Return the processes that work in a folder."""
     found = []
@@ -98,7 +105,7 @@ class Soak:
             shutil.rmtree(self.results, ignore_errors=True)
             start = time.monotonic()
             if self._finish(self._start()):
-                raise RuntimeError(f"the undisturbed build fails:\n{self._said()}")
+                raise RuntimeError(f"the undisturbed build fails:\n{self._said()[-3000:]}")
             self.durations.append(time.monotonic() - start)
         self.expected = contents(self.results)
         shutil.copytree(folder, self.undisturbed)
@@ -118,12 +125,12 @@ class Soak:
             return f"none after {PATIENCE} s"
 
     def _said(self):
-        return (self.folder / "said").read_text(encoding="utf-8", errors="replace")[-3000:]
+        return (self.folder / "said").read_text(encoding="utf-8", errors="replace")
 
     def _reasons(self):
         """Return what the last run says of the files that it makes, and why."""
-        said = (self.folder / "said").read_text(encoding="utf-8", errors="replace").splitlines()
         telling = ("    output:", "    reason:")
+        said = self._said().splitlines()
         return [line for line in said if line.startswith(telling) or "is made again" in line]
 
     def _files(self):
@@ -133,9 +140,15 @@ class Soak:
         return [path for path in (*records, *paths) if path.is_file()]
 
     def _finished(self, start):
-        """Return {path: time stamp} of what Snakemake has taken for finished since ``start``."""
-        found = {}
+        """Return {path: time stamp} of what has been finished since ``start``.
+
+        Snakemake takes what a failed job leaves for finished, and removes it; where its shell alone
+        was killed a job may write the rest of it after that.
+        """
+        found, lost = {}, failed(self._said())
         for path in self._files():
+            if str(path.relative_to(self.folder)) in lost:
+                continue
             name = name_of(path.relative_to(self.folder))
             known = self.folder / ".snakemake" / "metadata" / name
             begun = self.folder / ".snakemake" / "incomplete" / name
@@ -213,7 +226,7 @@ class Soak:
     def _again(self, finished):
         """Run the same command once more; return what is wrong then, and mend it."""
         status = self._finish(self._start())
-        wrong = [f"the next run ends with {status}: {self._said()}"] if status else []
+        wrong = [f"the next run ends with {status}: {self._said()[-3000:]}"] if status else []
         found = contents(self.results)
         for name in sorted({*found, *self.expected}):
             if found.get(name) != self.expected.get(name):
