@@ -217,6 +217,36 @@ MISTAKES = {
     "half an option": (["point", "x", "--out", "output"], "are required: --output"),
     "no output": (["point", "x", "--parameters", "{}"], "are required: --output"),
     "no parameters": (["point", "x", "--output", "output"], "point needs --parameters"),
+    "a bundle of nothing": (
+        words("bundle", "dynamics.counting", {}, "--points", "p"), "parameters must have jobs, but"
+    ),
+    "a bundle of no block": (
+        words("bundle", "dynamics.counting", {"jobs": ["0.2"]}, "--points", "p"),
+        "jobs must be a block of blocks of parameters, not ['0.2']",
+    ),
+    "a plan for nothing": (
+        words("plan", "dynamics.counting", {"jobs": {}}, "--points", "p"),
+        "parameters must have keys, but have jobs",
+    ),
+    "no part": (
+        words("shard", "dynamics.counting", POINTS["dynamics"], "--cost", "c"),
+        "parameters must have part, but have",
+    ),
+    "another part": (
+        words(
+            "shard", "dynamics.counting",
+            POINTS["dynamics"] | {"part": "half", "first": 0, "stop": 1}, "--cost", "c",
+        ),
+        "part must be one of all, not 'half'",
+    ),
+    "a merge of nothing": (
+        words("merge", "dynamics.counting", POINTS["dynamics"], "--points", "p"),
+        "parameters must have keys, but have",
+    ),
+    "a merge of two": (
+        words("merge", "dynamics.counting", {"keys": {"0.1": [], "0.2": []}}, "--points", "p"),
+        "keys must name one point, not 2",
+    ),
     "a bundle of nowhere": (
         words("bundle", "dynamics.counting", {"jobs": {}}), "bundle needs --points, the folder"
     ),

@@ -23,6 +23,7 @@ from twodiscs.comparison.scene_tables import Forecast
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import whole
+from twodiscs.model.radii import key
 from twodiscs.pipeline.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.studies.catalogue import STUDIES
@@ -290,7 +291,7 @@ def row(scene, stage, cores, jobs, events=None, seconds=0.0, startup=0.0, radius
         "seconds": seconds,
         "startup": startup,
         "cores": cores,
-        "wall_clock": (seconds + startup) / min(cores, jobs),
+        "wall_clock": (seconds + startup) / min(cores, max(1, jobs)),
     }
 
 
@@ -308,8 +309,11 @@ def scene_rows(request, pilots, starts, cores):
     """Return the rows of one scene: every job, its stages and their total."""
     jobs, sums = [], []
     most = {s: request.shard_events if request.is_sharded(s) else math.inf for s in STAGES}
+    first = {s: {keys[0] for keys in request.bundles[s].values()} for s in STAGES}
     for (stage, job), pilot in zip(jobs_of(request), pilots, strict=True):
         count = max(1, math.ceil(pilot.events / most[stage]))
+        if request.bundles[stage]:  # the first point of a bundle starts the job of all of them
+            count = int(key(job["radius"]) in first[stage])
         seconds = count * starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
         startup = count * starts[stage].startup
         jobs.append(

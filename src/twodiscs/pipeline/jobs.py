@@ -36,8 +36,13 @@ SHAPES = {
     "areas": TEXTS,
     "box": ("a block of width, height and maybe effects", BOX),
     "events": ("a list of texts, or an integer", ([str], int)),
+    "first": ("an integer", int),
+    "jobs": ("a block of blocks of parameters", {str: {str: object}}),
     "keys": ("a block of lists of texts", {str: [str]}),
+    "part": ("a text", str),
     "radii": ("a list of numbers", [RADIUS]),
+    "shard_events": ("a number", int | float),
+    "stop": ("an integer", int),
     "scenes": ("a list or a block of scenes", ([CASE], {str: BOX})),
     "volume": ("true or false", bool),
     "watched": TEXTS,
@@ -105,16 +110,25 @@ def _has_shape(value, shape):
     return known and all(key in value and _has_shape(value[key], needed[key]) for key in needed)
 
 
+def checked(given, *needed):
+    """Return the parameters ``given``; raise ``InputError`` for a missing one or another shape."""
+    for name in needed:
+        if name not in given:
+            raise InputError(f"parameters must have {name}, but have {', '.join(given) or 'none'}")
+    for name in SHAPES.keys() & given.keys():
+        what, shape = SHAPES[name]
+        if not _has_shape(given[name], shape):
+            raise InputError(f"{name} must be {what}, not {shown(given[name])}")
+    return given
+
+
 def call(function, given, **more):
     """Call ``function`` with the parameters ``given``, a ``box`` made of those of that name.
 
     Arguments in ``more`` are passed if the function takes them. Raises ``InputError`` for
     parameters that it does not take, and for missing ones.
     """
-    for name in SHAPES.keys() & given.keys():
-        what, shape = SHAPES[name]
-        if not _has_shape(given[name], shape):
-            raise InputError(f"{name} must be {what}, not {shown(given[name])}")
+    given = checked(given)
     if "box" in given:
         given = given | {"box": Box(**given["box"])}
     signature = inspect.signature(function)
@@ -167,7 +181,8 @@ def bundle(options):
     record, found = module_of("pipeline.results.record"), {}
     if not options.points:
         raise InputError("bundle needs --points, the folder of the points")
-    folder, jobs = Path(options.points[0]), parameters(options.parameters)["jobs"]
+    jobs = checked(parameters(options.parameters), "jobs")["jobs"]
+    folder = Path(options.points[0])
     costs = folder.parent / "cost"
     costs.mkdir(parents=True, exist_ok=True)
     for key, given in jobs.items():
@@ -206,18 +221,22 @@ def _runs(options, given):
 
 def shard(options):
     """Write the sums of a piece of the work of a module at one radius, and what it took."""
-    given = parameters(options.parameters)
-    part, first, stop = (given.pop(name) for name in ("part", "first", "stop"))
+    piece = "part", "first", "stop"
+    given = checked(parameters(options.parameters), *piece)
+    part, first, stop = (given.pop(name) for name in piece)
     start = time.process_time()
-    run = _runs(options, given)[part]
+    runs = _runs(options, given)
+    if part not in runs:
+        raise InputError(f"part must be one of {', '.join(runs)}, not {part!r}")
+    run = runs[part]
     write_json(options.output[0], module_of("sampling.rounds").piece(run, first, stop))
     write_json(options.cost, {"seconds": time.process_time() - start})
 
 
 def plan(options):
     """Write {key: names of the shards} that points need: those of ``keys``, and what they miss."""
-    given, rounds = parameters(options.parameters), module_of("sampling.rounds")
-    needed = {}
+    given = checked(parameters(options.parameters), "jobs", "keys", "shard_events")
+    needed, rounds = {}, module_of("sampling.rounds")
     for key, job in given["jobs"].items():
         names = given["keys"].get(key, [])
         found = _pieces(options, key, names)
@@ -234,8 +253,10 @@ def plan(options):
 
 def merge(options):
     """Write what a module finds at one radius, given its shards, and what all of them took."""
-    given, rounds = _given(options), module_of("sampling.rounds")
-    ((key, names),) = given.pop("keys").items()
+    given, rounds = checked(_given(options), "keys"), module_of("sampling.rounds")
+    if len(keys := given.pop("keys")) != 1:
+        raise InputError(f"keys must name one point, not {len(keys)}")
+    ((key, names),) = keys.items()
     start = time.process_time()
     found, done = _pieces(options, key, names), {}
     for part, one in _runs(options, given).items():
@@ -284,7 +305,7 @@ def inputs_of(options):
         if path.is_file():
             found.setdefault("points", []).append(path)
             continue
-        for stage, keys in _given(options).get("keys", {}).items():
+        for stage, keys in checked(_given(options)).get("keys", {}).items():
             cost = options.function == "cost_rows"
             names = [f"cost/{stage}-{key}" if cost else f"{stage}/{key}" for key in keys]
             found[stage] = [path / f"{name}.json" for name in names]

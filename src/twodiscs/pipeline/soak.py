@@ -25,7 +25,15 @@ import yaml
 
 from twodiscs.pipeline.arguments import Parser, number, run, whole_number
 from twodiscs.pipeline.results.manifest import TIMED, is_reproducible
-from twodiscs.pipeline.results.record import FOLDER, UNRECORDED, audit, digest, name_of
+from twodiscs.pipeline.results.record import (
+    FOLDER,
+    UNRECORDED,
+    audit,
+    digest,
+    file_of,
+    name_of,
+    record_of,
+)
 
 #: What is built: points of both kinds, tables and figures.
 BUILD = {
@@ -82,9 +90,7 @@ def processes(folder):
 
 def _with_record(path):
     """Return (file, its record) of a path that is one of them."""
-    if path.parent.name == FOLDER:
-        return path.parents[1] / path.name.removesuffix(".json"), path
-    return path, path.parent / FOLDER / f"{path.name}.json"
+    return (file_of(path), path) if path.parent.name == FOLDER else (path, record_of(path))
 
 
 class Soak:
@@ -136,7 +142,7 @@ class Soak:
     def _files(self):
         """Return the files that a job wrote, and the records of them, sorted."""
         records = sorted(self.results.rglob(f"{FOLDER}/*.json"))
-        paths = [_with_record(record)[0] for record in records]
+        paths = [file_of(record) for record in records]
         return [path for path in (*records, *paths) if path.is_file()]
 
     def _finished(self, start):

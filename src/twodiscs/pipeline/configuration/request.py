@@ -202,7 +202,7 @@ class SceneRequest:
             "intervals": self.histogram["event_budget"] / EVENTS_PER_SECOND,
         }
         speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
-        points = len(self.bundles[stage].get(bundle, [bundle]))
+        points = len(self.bundles[stage].get(bundle, ())) or 1
         seconds = points * min(most[stage], self.shard_events / speed)
         return math.ceil(10 + seconds / 60 * (40 if self.effects else 4))
 

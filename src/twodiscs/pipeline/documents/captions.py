@@ -37,12 +37,12 @@ def said(entry, results, scene):
     effects = scene.get("effects", {})
     note = NOTES.get(entry.note)
     alike = "" if note is None else note.with_effects if effects else note.plain
-    own, rows = entry.own_caption(effects), list(_rows(entry, results, scene))
+    own = entry.own_caption(effects)
     for begins, calls_for_it in MARKS.items():
         sentence = re.compile(rf" ?{begins}[^.]*\.")
         found = sentence.search(f"{own} {alike}")
         own, alike = (sentence.sub("", text).strip() for text in (own, alike))
-        if found and any(map(calls_for_it, rows)):
+        if found and any(map(calls_for_it, _rows(entry, results, scene))):
             own += f" {found[0].strip()}"
     sides = scene["width"], scene["height"]
     longer = max(sides) / min(sides)

@@ -45,7 +45,8 @@ def short(text):
     return sha256(text.encode()).hexdigest()[:16]
 
 
-def _record_of(path):
+def record_of(path):
+    """Return where the record of a file is."""
     return path.parent / FOLDER / f"{path.name}.json"
 
 
@@ -60,7 +61,7 @@ def write(paths, inputs, **made):
             name: {"files": [os.path.relpath(one, path.parent) for one in found], "sha256": digits}
             for name, (found, digits) in hashes.items()
         }
-        record = _record_of(path)
+        record = record_of(path)
         record.parent.mkdir(exist_ok=True)
         content = {"inputs": read, "made_by": made, "sha256": digest(path)}
         content["seal"] = _seal(content)
@@ -81,7 +82,7 @@ def _seal(content):
 def read(path):
     """Return the record of a file, None if there is none or it is damaged."""
     with suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
-        content = json.loads(_record_of(Path(path)).read_text(encoding="utf-8"))
+        content = json.loads(record_of(Path(path)).read_text(encoding="utf-8"))
         if content.pop("seal") == _seal(content):
             return content
     return None
@@ -103,13 +104,18 @@ def is_made(paths, made):
     )
 
 
+def file_of(record):
+    """Return the file that a record is about."""
+    return record.parents[1] / record.name.removesuffix(".json")
+
+
 def _recorded(folder):
     """Yield (path, its record) of all files below ``folder`` that have one."""
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(set(folders) - {"logs", "benchmarks"})
         if os.path.basename(place) == FOLDER:
             for name in sorted(names):
-                yield Path(place).parent / name.removesuffix(".json"), Path(place, name)
+                yield file_of(Path(place, name)), Path(place, name)
 
 
 def touched(folder):
@@ -132,11 +138,13 @@ def touched(folder):
 def bereft(folder):
     """Return the files below ``folder`` that were made of others which are gone.
 
-    Of those beside points, which are made of nothing but shards.
+    Points are not looked at: there are many, and they are made of nothing but shards.
     """
     found = []
     for path, _ in _recorded(folder):
-        if "points" in path.parts or not path.exists() or (known := read(path)) is None:
+        if "points" in path.relative_to(folder).parts or not path.exists():
+            continue
+        if (known := read(path)) is None:
             continue
         files = (name for one in known["inputs"].values() for name in one["files"])
         if not all((path.parent / name).exists() for name in files):
@@ -147,9 +155,10 @@ def bereft(folder):
 def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
-    To Snakemake these files are incomplete, as those that a killed job has left, and so is the
-    bundle that a point was made in. What is gone comes back with the files that were made of it,
-    which Snakemake alone would not miss: if incomplete files are made ``AGAIN``, or it would stop.
+    To Snakemake these files are incomplete, as those that a killed job has left; of a point that
+    was made in a bundle that bundle is. With a file that is gone, which Snakemake does not miss,
+    what was made of it is incomplete, too; but only if incomplete files are made ``AGAIN``, for
+    else Snakemake would stop.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     if AGAIN:
@@ -158,21 +167,26 @@ def notice(folder, snakemake=".snakemake"):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
         found.append((path, "has lost its record" if known else None))
+    bundles = _bundles(folder) if found else {}
     for path, what in found:
         if what:
             print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
         Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
-        for output in (path, *_bundles_of(path)):
-            with suppress(OSError):  # a name may be too long
-                name = Path(snakemake, "incomplete", name_of(output))
-                name.write_text('{"external_jobid": null}')
+        name = name_of(bundles.get(path, path))
+        with suppress(OSError):  # a name may be too long
+            Path(snakemake, "incomplete", name).write_text('{"external_jobid": null}')
 
 
-def _bundles_of(path):
-    """Return the bundles that the point at ``path`` is in, or that it is what a job of took."""
-    stage, _, key = path.stem.partition("-") if path.parent.name == "cost" else ("", "", path.stem)
-    folder = path.parent.parent / stage if stage else path.parent
-    return [one for one in folder.glob("bundles/*.json") if f'"{key}"' in one.read_text("utf-8")]
+def _bundles(folder):
+    """Return {file: the bundle it was made in} of points, and of what they took."""
+    found = {}
+    for bundle in Path(folder).glob("*/points/*/bundles/*.json"):
+        stage = bundle.parents[1]
+        with suppress(ValueError, TypeError):  # it is damaged, and made again itself
+            for key in json.loads(bundle.read_text(encoding="utf-8")):
+                found[stage / f"{key}.json"] = bundle
+                found[stage.parent / "cost" / f"{stage.name}-{key}.json"] = bundle
+    return found
 
 
 def name_of(path):
@@ -186,7 +200,7 @@ def _unrecorded(folder):
     for place, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if name not in (FOLDER, *UNRECORDED)]
         paths = [Path(place, name) for name in names if name not in UNRECORDED]
-        found += [path for path in paths if not _record_of(path).exists()]
+        found += [path for path in paths if not record_of(path).exists()]
     return sorted(found)
 
 
