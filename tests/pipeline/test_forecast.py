@@ -203,3 +203,16 @@ def test_a_point_in_shards_is_as_many_jobs():
         assert row["seconds"] == 1000 + jobs * start.loading
         assert row["startup"] == jobs * start.startup
         assert row["wall_clock"] == (row["seconds"] + row["startup"]) / cores
+
+
+def test_a_bundle_is_one_job_that_starts_once():
+    scene = {"name": "a", "box": BOX, "watch": {"mean_times": ["top_wall"]}}
+    scene |= {"radii": [round(0.01 + i * 1e-4, 4) for i in range(1001)]}
+    (request,) = load({"scenes": [scene]}).scenes
+    pilots = [forecast.Pilot(10**6, 1.0) for _ in forecast.jobs_of(request)]
+    rows = forecast.scene_rows(request, pilots, STARTS, 4)
+    (whole,) = (row for row in rows if row["stage"] == "dynamics" and row["radius"] is None)
+    jobs, start = len(request.bundles["dynamics"]), STARTS["dynamics"]
+    assert whole["jobs"] == jobs < 100
+    assert whole["startup"] == pytest.approx(jobs * start.startup)
+    assert whole["seconds"] == pytest.approx(1001 + jobs * start.loading)
