@@ -144,6 +144,24 @@ def test_without_a_compiler_a_kernel_is_its_function(package):
     assert done.stdout == "3\n"
 
 
+def test_kernels_start_without_linear_algebra_which_is_there_for_others():
+    script = """
+import sys, numba
+from twodiscs.model.box import Box
+from twodiscs.dynamics import counting
+scene = Box(1.5, 1.0).scene(0.2)
+counting.run_blocks(scene, ("any_wall",), 1, 0, 0, 1.0)
+print("scipy.linalg" in sys.modules)
+import numpy as np
+import scipy.linalg.cython_blas
+a = np.arange(12.0).reshape(3, 4) ** 1.5
+product = lambda a: np.dot(a, a.T)
+print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
+"""
+    done = finished(os.environ, script)
+    assert done.stdout.split() == ["False", "True"], done.stderr
+
+
 def test_the_hash_knows_every_source_by_its_text_and_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(jit, "PACKAGE", tmp_path)
     sources = {"model/a.py": "x = 1", "dynamics/b.py": "y = 2", "figures/c.py": "z = 3"}

@@ -14,7 +14,7 @@ import shutil
 import sys
 import time
 import uuid
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
@@ -128,6 +128,23 @@ def _remove_old(home):
             shutil.rmtree(folder, ignore_errors=True)
 
 
+@contextmanager
+def _without_blas(module="scipy.linalg.cython_blas"):
+    """Let numba set itself up without BLAS, which takes SciPy a quarter of a process's start.
+
+    No kernel needs it. Numba looks for it once; its own functions for inner products then take
+    their place in what others compile in this process.
+    """
+    if module in sys.modules:
+        yield
+        return
+    sys.modules[module] = None  # so an import of it fails at once
+    try:
+        yield
+    finally:
+        del sys.modules[module]
+
+
 class _Reduction(CompileResultCacheImpl):
     """How numba turns a compiled function into what can be stored, whichever file has it."""
 
@@ -155,6 +172,10 @@ class KernelCache(FunctionCache):
         return self._cache_path / (
             f"{name.replace('>', ')')}-{blake2b(key, digest_size=16).hexdigest()}"
         )
+
+    def load_overload(self, sig, target_context):
+        with _without_blas():
+            return super().load_overload(sig, target_context)
 
     def _load_overload(self, sig, target_context):
         if not self._enabled:
