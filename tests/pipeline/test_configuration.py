@@ -302,7 +302,7 @@ def test_another_radius_is_one_more_job_of_each_method():
     assert changed == {"theory", "grid"}
 
 
-def test_many_radii_are_bundles_and_another_one_joins_one_of_them():
+def test_radii_are_bundled_and_another_one_joins_one_of_them():
     many = [round(0.01 + i * 1e-4, 6) for i in range(2001)]
     watch = {"volume": True, "mean_times": True, "hop_histogram": [0.1]}
     before, after = (one(radii=radii, watch=watch) for radii in (many[:-1], many))
@@ -318,12 +318,30 @@ def test_many_radii_are_bundles_and_another_one_joins_one_of_them():
         jobs = after.bundle_job(stage, joined)["jobs"]
         assert jobs[repr(many[-1])] == after.job(stage, repr(many[-1]))
         assert after.minutes(stage, joined) > after.minutes(stage)
-    # One radius a job: few, and what is in shards.
-    assert not before.bundles["intervals"]
-    assert not one(radii=many[:1000], watch=watch).bundles["dynamics"]
+    assert before.bundles["intervals"] == {"0000": ["0.1"]}
+    # What is in shards is not bundled.
     assert not one(radii=many, watch=watch, event_budget=1e13).bundles["dynamics"]
     with pytest.raises(InputError, match="bundle must be one of those of dynamics, not 'x'"):
         before.bundle_job("dynamics", "x")
+
+
+@pytest.mark.parametrize(
+    ("keys", "jobs"),
+    [
+        ({"accuracy": 1e-2}, 2),
+        ({"accuracy": 3e-4}, 16),  # 64 points of 2.2 seconds each
+        ({"accuracy": {"top_wall": 3e-4, "vertical_hop": 1e-2}}, 16),
+        ({"accuracy": 1e-4}, 64),
+        ({"accuracy": 1e-4, "event_budget": 1e6}, 2),
+        ({"accuracy": 1e-2, "effects": {"field": 1.0}}, 2),
+    ],
+)
+def test_a_job_does_as_many_points_as_are_worth_a_process(keys, jobs):
+    radii = [round(0.01 + i * 1e-3, 6) for i in range(64)]
+    bundles = one(radii=radii, watch={"mean_times": True}, **keys).bundles["dynamics"]
+    assert jobs / 2 < len(bundles) <= jobs
+    if jobs == len(radii):
+        assert bundles == {repr(radius): [repr(radius)] for radius in radii}
 
 
 def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():

@@ -59,7 +59,10 @@ def test_samples_and_intervals_come_in_blocks():
 CONFIGURATION = {
     "accuracy_cost": {"seconds": 7},
     "scenes": [
-        {"name": "a", "box": BOX, "radii": [0.1, 0.2], "watch": {"mean_times": True}},
+        {
+            **{"name": "a", "box": BOX, "radii": [0.1, 0.2], "watch": {"mean_times": True}},
+            "accuracy": 1e-4,  # worth a job for each radius
+        },
         {"name": "b", "box": BOX, "radii": [0.3], "watch": {"volume": True, "trajectory": 0.2}},
     ],
 }

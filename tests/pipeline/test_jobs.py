@@ -59,7 +59,7 @@ def test_parameters_may_be_in_a_file_and_say_all_that_counts(run, tmp_path):
     assert one == two != other
 
 
-def test_a_bundle_is_its_points_and_does_what_is_missing(run, tmp_path):
+def test_a_bundle_is_its_points_and_does_what_is_missing(run, tmp_path, monkeypatch):
     """The points of a bundle, their records too, are those of jobs of their own."""
     given = {repr(r): POINTS["dynamics"] | {"radius": r} for r in RADII}
     points = tmp_path / "points" / "dynamics"
@@ -85,6 +85,12 @@ def test_a_bundle_is_its_points_and_does_what_is_missing(run, tmp_path):
     assert (points.parent / "cost" / f"dynamics-{others[2]}.json").exists()
     assert bundle(given | {first: given[first] | {"seed": 2}}) != whole
     assert bundle(given) == whole
+    # Who forces a job wants all of it.
+    stamp = (points / f"{first}.json").stat().st_mtime_ns
+    monkeypatch.setenv("TWODISCS_ANEW", "1")
+    assert bundle(given) == whole
+    assert (points / f"{first}.json").stat().st_mtime_ns > stamp
+    monkeypatch.delenv("TWODISCS_ANEW")
 
     key = others[0]
     (points / f"{key}.json").unlink()

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from base64 import urlsafe_b64encode
 
 import pytest
@@ -75,7 +76,9 @@ def test_what_changed_is_made_again_and_named(results, capsys):
     ]
 
 
-def test_with_a_point_its_bundle_is_made_again(results, capsys):
+@pytest.fixture
+def bundled(results):
+    """The folder of points that were made in two bundles."""
     points = results / "paper" / "points"
     (points / "dynamics" / "bundles").mkdir(parents=True)
     (points / "cost").mkdir()
@@ -83,9 +86,14 @@ def test_with_a_point_its_bundle_is_made_again(results, capsys):
         path = points / "dynamics" / "bundles" / f"{name}.json"
         path.write_text(json.dumps(dict.fromkeys(keys, "hash"), indent=1))
         record.write([path], {})
-    for name in ("dynamics/0.1", "cost/dynamics-0.11", "dynamics/0.2"):
-        (points / f"{name}.json").write_text("{}")
-        record.write([points / f"{name}.json"], {})
+        for point in (f"{kind}{key}" for key in keys for kind in ("dynamics/", "cost/dynamics-")):
+            (points / f"{point}.json").write_text("{}")
+            record.write([points / f"{point}.json"], {})
+    return points
+
+
+def test_with_a_point_its_bundle_is_made_again(results, bundled, capsys):
+    points = bundled
     rewrite(points / "dynamics" / "0.1.json", b"[]")
     folder = results.parent / ".snakemake/incomplete"
     bundle = "results/paper/points/dynamics/bundles/000{}.json".format
@@ -95,6 +103,26 @@ def test_with_a_point_its_bundle_is_made_again(results, capsys):
     rewrite(points / "cost" / "dynamics-0.11.json", b"[]")
     record.notice("results")
     assert record.name_of(bundle(2)) in {path.name for path in folder.iterdir()}
+    # Points may have been bundled otherwise before.
+    former = points / "dynamics" / "bundles" / "0.2.json"
+    former.write_text('{"0.2": "hash"}')
+    record.write([former], {})
+    rewrite(points / "dynamics" / "0.2.json", b"[]")
+    shutil.rmtree(folder)
+    record.notice("results")
+    both = {record.name_of(bundle(1)), record.name_of("results" / former.relative_to(results))}
+    assert both <= {path.name for path in folder.iterdir()}
+
+
+def test_a_bundle_goes_with_a_point_of_it(bundled):
+    points, dynamics = bundled, bundled / "dynamics"
+    record.notice("results")
+    assert {path.name for path in (dynamics / "bundles").glob("*.json")} == {
+        *("0001.json", "0002.json"),
+    }
+    (points / "cost" / "dynamics-0.11.json").unlink()
+    record.notice("results")
+    assert {path.name for path in (dynamics / "bundles").glob("*.json")} == {"0001.json"}
 
 
 def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):

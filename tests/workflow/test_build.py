@@ -83,8 +83,8 @@ def test_what_is_deleted_comes_back(built, lost):
 def test_a_deleted_point_comes_back_with_what_was_made_of_it(built):
     (built.path / "results/six/points/monte_carlo/0.2.json").unlink()
     (built.path / "results/six/points/cost/dynamics-0.3.json").unlink()
-    rules = {("monte_carlo", ("scene=six", "key=0.2")), ("dynamics", ("scene=six", "key=0.3"))}
-    assert rules <= {*built.jobs()}
+    bundle = ("scene=six", "bundle=0000")
+    assert {("monte_carlo", bundle), ("dynamics", bundle)} <= {*built.jobs()}
 
 
 def test_what_is_damaged_is_made_again(built):
@@ -93,7 +93,7 @@ def test_what_is_damaged_is_made_again(built):
     drawn = built.path / "results/six/figures/volume.pdf"
     drawn.write_bytes(drawn.read_bytes()[:1000])
     jobs = built.jobs("check", "results/six/figures/volume.pdf")
-    assert ("dynamics", ("scene=six", "key=0.2")) in jobs
+    assert ("dynamics", ("scene=six", "bundle=0000")) in jobs
     assert ("figure", ("scene=six", "figure=volume")) in jobs
 
 

@@ -1,6 +1,7 @@
 """Many radii: a job does a bundle of points, and of those what is missing."""
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 import yaml
@@ -48,9 +49,9 @@ def test_jobs_are_few(place):
     jobs = place.jobs("--cores", "2", *snakefile, "--", *TABLES)
     rules = Counter(rule for rule, _ in jobs)
     assert rules.keys() == {
-        "compile", "dynamics_bundle", "monte_carlo_bundle", "table", "theory",
+        "compile", "dynamics", "monte_carlo", "table", "theory",
     }  # fmt: skip
-    assert len(RADII) / 100 < rules["dynamics_bundle"] == rules["monte_carlo_bundle"] < 100
+    assert len(RADII) / 100 < rules["dynamics"] == rules["monte_carlo"] < 100
 
 
 @pytest.mark.slow
@@ -73,11 +74,13 @@ def test_what_is_there_stays(place):
     assert more.keys() - many.keys() == {"dynamics/0.3.json", "monte_carlo/0.3.json"}
     assert many.items() <= more.items()
     write(place, RADII)
-    (place.path / "results/many/points/dynamics/0.1.json").write_text("{}")
-    mended, same = build()
-    assert same == tables
-    assert {name for name in many if mended[name] != many[name]} == {"dynamics/0.1.json"}
-    assert mended["dynamics/0.1.json"][1] == many["dynamics/0.1.json"][1]
+    for harm in (lambda path: path.write_text("{}"), Path.unlink):
+        before = files(place)
+        harm(place.path / "results/many/points/dynamics/0.1.json")
+        mended, same = build()
+        assert same == tables
+        assert {name for name in many if mended[name] != before[name]} == {"dynamics/0.1.json"}
+        assert mended["dynamics/0.1.json"][1] == many["dynamics/0.1.json"][1]
     write(place, RADII, accuracy=0.4)
     _, tighter = build()
     assert b",0.4," in tighter[0]

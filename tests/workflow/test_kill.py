@@ -10,7 +10,7 @@ import pytest
 import yaml
 from checkout import fresh
 
-JOB = "results/one/points/monte_carlo/0.2.json"
+JOB = "results/one/points/monte_carlo/bundles/0.2.json"
 ENDLESS = {
     "name": "one",
     "box": {"width": 1.5, "height": 1},
@@ -47,7 +47,7 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
     command = [sys.executable, "-m", "snakemake", "--cores", "1", JOB]
     run = subprocess.Popen(command, cwd=checkout.path, env=environment, stderr=subprocess.DEVNULL)
-    wait_until(lambda: any("point" in line for line in processes(checkout.path).values()))
+    wait_until(lambda: any("bundle" in line for line in processes(checkout.path).values()))
     # A second run while the first one lives is refused as ever.
     assert "LockException" in checkout.snakemake("--cores", "1", JOB, passes=False).stderr
     run.send_signal(signal.SIGKILL)
@@ -57,6 +57,6 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path):
     (checkout.path / JOB).write_text("{")
     again = checkout.snakemake("--cores", "1", "results/.compiled/montecarlo")
     assert "The lock of a run that was killed is removed." in again.stderr
-    assert ("monte_carlo", ("key=0.2", "scene=one")) in [
+    assert ("monte_carlo", ("bundle=0.2", "scene=one")) in [
         (rule, tuple(sorted(wildcards))) for rule, wildcards in checkout.jobs(JOB)
     ]

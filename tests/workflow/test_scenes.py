@@ -116,9 +116,9 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
         }
         assert tables == {*request.tables} - {"grid", "theory", "trajectory"}
         for stage in STAGES:
-            keys = [w for r, w in found if r == stage and f"scene={request.name}" in w]
-            expected = request.keys[stage]
-            assert {(f"scene={request.name}", f"key={key}") for key in expected} == set(keys)
+            bundles = [w for r, w in found if r == stage and f"scene={request.name}" in w]
+            expected = request.bundles[stage]
+            assert {(f"scene={request.name}", f"bundle={one}") for one in expected} == {*bundles}
 
 
 @pytest.mark.parametrize("name", BLOCKS)

@@ -34,12 +34,19 @@ GATHERED = {
     "cost": [*STAGES],
 }
 
-# The Python that runs Snakemake also runs the jobs, which end when it does.
+# The Python that runs Snakemake also runs the jobs, which end when it does. Whoever forces a job wants no point
+# of it kept.
+FORCED = workflow.dag_settings and (
+    workflow.dag_settings.forceall
+    or workflow.dag_settings.forcetargets
+    or workflow.dag_settings.forcerun
+)
 os.environ.update(
     TWODISCS_WORKFLOW=str(os.getpid()),
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
     ),
+    **{"TWODISCS_ANEW": "1"} if FORCED and workflow.is_main_process else {},
 )
 
 
@@ -50,6 +57,7 @@ LONG = 30_000
 wildcard_constraints:
     scene="|".join(SCENES),
     key=r"[0-9][0-9.e+-]*",
+    bundle=r"[0-9][0-9.e+-]*",
 
 
 def one_of(names):

@@ -75,6 +75,10 @@ rule compile_effects:
         " --output {output.stamp:q} > {log:q} 2>&1"
 
 
+# A job does a bundle of points, or a single one. Points are no outputs, which Snakemake would remove before the
+# job starts: those that are there stay.
+
+
 for stage, module in STAGES.items():
 
     rule:
@@ -83,50 +87,11 @@ for stage, module in STAGES.items():
         input:
             compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
         output:
-            point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
-            cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",
-        log:
-            log_of(f"{{scene}}/{stage}-{{key}}"),
-        benchmark:
-            benchmark_of(f"{{scene}}/{stage}-{{key}}")
-        wildcard_constraints:
-            scene=one_of(
-                s.name
-                for s in SCENES.values()
-                if not s.is_sharded(stage) and not s.bundles[stage]
-            ),
-        resources:
-            runtime=minutes(stage),
-        params:
-            about=lambda w: about(w.scene),
-            job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),
-            module=module,
-            code=code(module),
-        shell:
-            "python -m twodiscs.pipeline.jobs point {params.module} --parameters {params.job:q}"
-            " --output {output.point:q} --cost {output.cost:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
-
-# Of many radii a job does a bundle. Its points are no outputs, which Snakemake would remove before the job starts:
-# those that are there stay.
-
-
-for stage, module in STAGES.items():
-
-    rule:
-        name:
-            f"{stage}_bundle"
-        input:
-            compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
-        output:
             bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
         log:
-            log_of(f"{{scene}}/{stage}_bundle-{{bundle}}"),
+            log_of(f"{{scene}}/{stage}-{{bundle}}"),
         benchmark:
-            benchmark_of(f"{{scene}}/{stage}_bundle-{{bundle}}")
-        wildcard_constraints:
-            bundle="[0-9]+",
+            benchmark_of(f"{{scene}}/{stage}-{{bundle}}")
         resources:
             runtime=minutes(stage),
         params:

@@ -16,6 +16,7 @@ file that holds it; their entry ``box`` becomes a ``Box``.
 import argparse
 import inspect
 import json
+import os
 import sys
 import time
 from importlib import import_module
@@ -175,8 +176,8 @@ def point(options):
 def bundle(options):
     """Write the points of a module at several radii to a folder, each as a job of its own would.
 
-    Those that are there already, made of the same, stay: only what is missing is done. The output
-    holds {key: SHA-256 of the point}.
+    Those that are there already, made of the same, stay: only what is missing is done, unless the
+    variable TWODISCS_ANEW is set. The output holds {key: SHA-256 of the point}.
     """
     record, found = module_of("pipeline.results.record"), {}
     if not options.points:
@@ -190,7 +191,7 @@ def bundle(options):
         own = {"job": "point", "parameters": json.dumps(given), "points": []}
         own |= {"output": [paths[0]], "cost": paths[1]}
         one = argparse.Namespace(**vars(options) | own)
-        if not record.is_made(paths, made_by(one)):
+        if os.environ.get("TWODISCS_ANEW") or not record.is_made(paths, made_by(one)):
             point(one)
             keep_record(one, {})
         found[key] = record.digest(paths[0])

@@ -21,9 +21,14 @@ STAGES = {
 #: What a core does in a second, roughly, and the seconds of a day.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, DAY = 1e8, 3e7, 86400
 
-#: With more radii than this a job does a bundle of some of them, for every job costs Snakemake
-#: milliseconds; and how many those are, about.
-MANY, BUNDLE = 1000, 40
+#: How many times slower effects make it, and how many events must be simulated, roughly, for one
+#: of those that are waited for to be counted.
+SLOWER, EVENTS_EACH = 10, 20
+
+#: A job does a bundle of points, as many as are worth a process, whose start takes a second: so
+#: many seconds of work. Of more radii than ``MANY`` it does about ``BUNDLE``, the most there may
+#: be: every job costs Snakemake milliseconds.
+WORTH, MANY, BUNDLE = 10.0, 1000, 40
 
 #: So many radii tell what many of them will take.
 SOME = 100
@@ -105,19 +110,32 @@ class SceneRequest:
 
     @cached_property
     def bundles(self):
-        """{stage: {name: keys}} of the bundles of points that are one job; none of a few radii.
+        """{stage: {name: keys}} of the bundles of points that are one job; but of shards.
 
-        Another radius joins one of them, and leaves all others as they are.
+        Another radius joins one of them, and leaves all others as they are. What takes a job of its
+        own is called by its key.
         """
         found = {stage: defaultdict(list) for stage in STAGES}
         for stage, keys in self.keys.items():
-            if len(keys) <= MANY or self.is_sharded(stage):
+            if not keys or self.is_sharded(stage):
                 continue
-            number = 1 << round(math.log2(len(keys) / BUNDLE))
+            size = BUNDLE if len(keys) > MANY else min(BUNDLE, WORTH / self._seconds(stage))
+            number = 1 << max(0, round(math.log2(len(keys) / size)))
             for name in keys:
                 digits = blake2b(name.encode(), digest_size=4).digest()
-                found[stage][f"{int.from_bytes(digits) % number:04d}"].append(name)
+                place = f"{int.from_bytes(digits) % number:04d}" if size > 1 else name
+                found[stage][place].append(name)
         return {stage: dict(some) for stage, some in found.items()}
+
+    def _seconds(self, stage):
+        """Return what a point of a ``stage`` takes, roughly, for no theory is asked."""
+        worst = min(self.dynamics["accuracy"].values(), default=1.0)
+        work = {
+            "monte_carlo": self.monte_carlo["samples"] / SAMPLES_PER_SECOND,
+            "dynamics": min(self.event_budget, EVENTS_EACH / worst**2) / EVENTS_PER_SECOND,
+            "intervals": EVENTS_EACH * self.histogram["intervals"] / EVENTS_PER_SECOND,
+        }
+        return work[stage] * (SLOWER if self.effects else 1)
 
     @property
     def days(self):
@@ -204,7 +222,7 @@ class SceneRequest:
         speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
         points = len(self.bundles[stage].get(bundle, ())) or 1
         seconds = points * min(most[stage], self.shard_events / speed)
-        return math.ceil(10 + seconds / 60 * (40 if self.effects else 4))
+        return math.ceil(10 + seconds / 60 * 4 * (SLOWER if self.effects else 1))
 
     def bundle_job(self, stage, name):
         """Return what each job of a bundle depends on; raise ``InputError`` if there is none."""

@@ -11,6 +11,7 @@ import json
 import os
 import sys
 from base64 import urlsafe_b64encode
+from collections import defaultdict
 from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
@@ -156,9 +157,9 @@ def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
     To Snakemake these files are incomplete, as those that a killed job has left; of a point that
-    was made in a bundle that bundle is. With a file that is gone, which Snakemake does not miss,
-    what was made of it is incomplete, too; but only if incomplete files are made ``AGAIN``, for
-    else Snakemake would stop.
+    was made in a bundle that bundle is. A bundle is removed with a point of it that is gone. With
+    any file that is gone, which Snakemake does not miss, what was made of it is incomplete, too;
+    but only if incomplete files are made ``AGAIN``, for else Snakemake would stop.
     """
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     if AGAIN:
@@ -167,25 +168,32 @@ def notice(folder, snakemake=".snakemake"):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
         found.append((path, "has lost its record" if known else None))
-    bundles = _bundles(folder) if found else {}
+    bundles = _bundles(folder)
+    for one in {one for path, some in bundles.items() if not path.exists() for one in some}:
+        with suppress(OSError):  # results may be read only
+            one.unlink()
     for path, what in found:
         if what:
             print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
         Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
-        name = name_of(bundles.get(path, path))
-        with suppress(OSError):  # a name may be too long
-            Path(snakemake, "incomplete", name).write_text('{"external_jobid": null}')
+        for one in bundles.get(path, [path]):
+            with suppress(OSError):  # a name may be too long
+                mark = Path(snakemake, "incomplete", name_of(one))
+                mark.write_text('{"external_jobid": null}')
 
 
 def _bundles(folder):
-    """Return {file: the bundle it was made in} of points, and of what they took."""
-    found = {}
+    """Return {file: the bundles that hold it} of points, and of what they took.
+
+    Those may be several: with another accuracy points are bundled otherwise.
+    """
+    found = defaultdict(list)
     for bundle in Path(folder).glob("*/points/*/bundles/*.json"):
         stage = bundle.parents[1]
         with suppress(ValueError, TypeError):  # it is damaged, and made again itself
             for key in json.loads(bundle.read_text(encoding="utf-8")):
-                found[stage / f"{key}.json"] = bundle
-                found[stage.parent / "cost" / f"{stage.name}-{key}.json"] = bundle
+                found[stage / f"{key}.json"].append(bundle)
+                found[stage.parent / "cost" / f"{stage.name}-{key}.json"].append(bundle)
     return found
 
 
