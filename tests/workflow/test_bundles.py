@@ -56,9 +56,9 @@ def test_jobs_are_few(place):
 
 @pytest.mark.slow
 def test_what_is_there_stays(place):
-    def build():
+    def build(*forced):
         snakefile = str(place.home.path / "Snakefile")
-        place.snakemake("--snakefile", snakefile, "--cores", "2", "--", *TABLES)
+        place.snakemake("--snakefile", snakefile, "--cores", "2", *forced, "--", *TABLES)
         return files(place), [(place.path / table).read_bytes() for table in TABLES]
 
     write(place, RADII[:3])
@@ -81,6 +81,12 @@ def test_what_is_there_stays(place):
         assert same == tables
         assert {name for name in many if mended[name] != before[name]} == {"dynamics/0.1.json"}
         assert mended["dynamics/0.1.json"][1] == many["dynamics/0.1.json"][1]
+    # Who forces the jobs has every point made again.
+    forced, same = build("--forcerun", "dynamics")
+    assert same == tables
+    again = {name for name in many if forced[name] != mended[name]}
+    assert again == {name for name in many if name.startswith("dynamics/")}
+    assert all(forced[name][1] == many[name][1] for name in many)
     write(place, RADII, accuracy=0.4)
     _, tighter = build()
     assert b",0.4," in tighter[0]

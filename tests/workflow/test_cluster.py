@@ -8,7 +8,7 @@ import yaml
 from checkout import REPOSITORY, Checkout
 from slurm import lose_node, missing, running
 
-#: Points that are small enough for one job, in a group of two; and one with effects, in shards.
+#: Points that are small enough for one job, a bundle of two; and one with effects, in shards.
 SCENES = {
     "walls": {"radii": [0.1, 0.2], "watch": {"mean_times": ["top_wall"]}, "accuracy": 0.1},
     "field": {
@@ -69,7 +69,7 @@ def test_a_queue_of_scripts(local, unbuilt, tmp_path):
     settings = {"latency-wait": 5, "seconds-between-status-checks": 1}
     settings["cluster-generic-submit-cmd"] = f"sh {submit}"
     assert build(place, *profile(tmp_path, "queue", **settings)) == local
-    # Kernels with effects and without, one group of two points, one shard.
+    # Kernels with effects and without, one bundle of two points, one shard.
     assert len((tmp_path / "submitted").read_text().splitlines()) == 4
 
 

@@ -34,19 +34,12 @@ GATHERED = {
     "cost": [*STAGES],
 }
 
-# The Python that runs Snakemake also runs the jobs, which end when it does. Whoever forces a job wants no point
-# of it kept.
-FORCED = workflow.dag_settings and (
-    workflow.dag_settings.forceall
-    or workflow.dag_settings.forcetargets
-    or workflow.dag_settings.forcerun
-)
+# The Python that runs Snakemake also runs the jobs, which end when it does.
 os.environ.update(
     TWODISCS_WORKFLOW=str(os.getpid()),
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
     ),
-    **{"TWODISCS_ANEW": "1"} if FORCED and workflow.is_main_process else {},
 )
 
 

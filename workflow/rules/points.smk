@@ -76,7 +76,16 @@ rule compile_effects:
 
 
 # A job does a bundle of points, or a single one. Points are no outputs, which Snakemake would remove before the
-# job starts: those that are there stay.
+# job starts: those that are there stay, unless the job is forced.
+
+
+onstart:
+    if (
+        workflow.dag_settings.forceall
+        or workflow.dag_settings.forcetargets
+        or workflow.dag_settings.forcerun
+    ):
+        os.environ["TWODISCS_ANEW"] = "1"
 
 
 for stage, module in STAGES.items():
