@@ -9,6 +9,9 @@ PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
 PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
+# Packages come as sources. Where Python is told to keep no bytecode, as in many containers, each of some hundred
+# processes would compile them anew: a second or two.
+export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: all test test-all
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from scipy.special import ndtri
 
 from twodiscs.model.checks import InputError, length, proportion, whole
 from twodiscs.theory import virial
@@ -83,6 +82,8 @@ class Estimate:
 
 def normal_quantile(confidence):
     """Return the half-width, in standard errors, of a two-sided normal interval; 0 < level < 1."""
+    from scipy.special import ndtri  # takes long, and few jobs need it
+
     return float(-ndtri((1 - proportion("confidence", confidence)) / 2))
 
 

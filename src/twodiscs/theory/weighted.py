@@ -26,7 +26,7 @@ import math
 from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import product
 from typing import NamedTuple
 
@@ -320,6 +320,8 @@ class _Space:
         self.scene, self.power = scene, power
         self.sigma = scene.exact_contact
         self.order = sorted(scene.axes, key="yxz".index)
+        # Many integrals share them.
+        self.axis, self.wall = cache(self.axis), cache(self.wall)
 
     def intervals(self, axis):
         """Return the ``Interval``s of both discs between the walls of ``axis``."""
