@@ -23,17 +23,16 @@ all: .venv/ready
 	@echo "The paper    results/paper.pdf"
 	@echo "The report   results/report.html"
 
-BUT = and not slow
-test-all: BUT =
+test-all: WHICH = -m "slow or not slow"
 test-all: test
 
 test: .venv/ready
 	$(IN_VENV) ruff check src tests
 	$(IN_VENV) ruff format --check src tests
 	$(IN_VENV) snakefmt --check Snakefile workflow
-	@# Those that need a whole build take a core of their own; what they say follows when both are done.
-	$(IN_VENV) sh -c 'pytest -m "whole $(BUT)" tests/workflow > .workflow-tests.log 2>&1 & other=$$!; \
-	  pytest -m "not whole $(BUT)"; status=$$?; \
+	@# Those of the workflow take a core of their own; what they say follows when both are done.
+	$(IN_VENV) sh -c 'pytest $(WHICH) tests/workflow > .workflow-tests.log 2>&1 & other=$$!; \
+	  pytest $(WHICH) --ignore=tests/workflow; status=$$?; \
 	  wait $$other || status=1; cat .workflow-tests.log; exit $$status'
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them

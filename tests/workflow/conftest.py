@@ -9,14 +9,6 @@ from checkout import Checkout, fresh
 EFFECTS = ("torus", "unequal")
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """Mark the tests that wait for a build of everything: they run beside the others."""
-    for item in items:
-        if "complete" in getattr(item, "fixturenames", ()):
-            item.add_marker("whole")
-
-
 @pytest.fixture(scope="session")
 def unbuilt(tmp_path_factory):
     """A checkout without results, for dry runs only."""

@@ -85,7 +85,7 @@ onstart:
         or workflow.dag_settings.forcetargets
         or workflow.dag_settings.forcerun
     ):
-        os.environ["TWODISCS_ANEW"] = "1"
+        os.environ.update(TWODISCS_ANEW="1")
 
 
 for stage, module in STAGES.items():

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import matplotlib
 import pytest
@@ -28,6 +29,20 @@ def words_of(folder, name, outputs):
     outputs = [str(folder / output) for output in outputs]
     words = ["figure", entry.module, "--parameters", given, "--table", *tables]
     return [*words, "--output", *outputs]
+
+
+def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
+    """The list is kept at home, and may stem from an installation that was half removed."""
+    fonts, families = style.fontManager, ("cmr10", "cmmi10", "STIXGeneral")
+    others = [font for font in fonts.ttflist if not re.match("cm|STIX", font.name)]
+    monkeypatch.setattr(fonts, "ttflist", others)
+    fonts._findfont_cached.cache_clear()
+    with pytest.raises(ValueError, match="Failed to find font"):
+        style.findfont(families[0], fallback_to_default=False)
+    with style.context():
+        found = [style.findfont(name, fallback_to_default=False) for name in families]
+    folder = Path(matplotlib.get_data_path(), "fonts", "ttf")
+    assert [Path(path) for path in found] == [folder / f"{name}.ttf" for name in families]
 
 
 @pytest.mark.slow

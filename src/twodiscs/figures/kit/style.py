@@ -6,10 +6,12 @@ machine has. pyplot is not used: nothing here needs windows, and importing it ta
 
 import logging
 from contextlib import contextmanager
+from pathlib import Path
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, fontManager
 
 from twodiscs.model.checks import InputError
 
@@ -76,9 +78,23 @@ SETTINGS = {
 logging.getLogger("fontTools").setLevel(logging.ERROR)
 
 
+def _have_fonts():
+    """Add the fonts that come with matplotlib where its list, kept at home, does not have them.
+
+    Another installation that was half removed leaves such a list, and texts would have other sizes.
+    """
+    try:
+        for family in SETTINGS["font.family"]:
+            findfont(family, fallback_to_default=False)
+    except ValueError:
+        for path in sorted(Path(matplotlib.get_data_path(), "fonts", "ttf").glob("*.ttf")):
+            fontManager.addfont(path)
+
+
 @contextmanager
 def context():
     """Draw and save in the style of this package, and restore matplotlib's settings afterwards."""
+    _have_fonts()
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(SETTINGS)
