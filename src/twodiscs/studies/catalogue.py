@@ -69,12 +69,12 @@ def _errata_reads(configuration):
     return {name: (main.name, name) for name in wanted if name in main.tables}
 
 
-def _stability_parameters(ordinary, hard):
-    return lambda configuration: {
-        **_main_box(configuration),
-        "hard": hard,
-        "ordinary": ordinary,
-    }
+def _stability_parameters(times):
+    def parameters(configuration):
+        ordinary = times * _scaled(configuration.main.event_budget, 2, 10**7, 10**9)
+        return {**_main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
+
+    return parameters
 
 
 def _tails_parameters(configuration):
@@ -202,7 +202,7 @@ STUDIES = {
                     tables=("stability",),
                 ),
             },
-            parameters=_stability_parameters(ordinary=10**9, hard=10**8),
+            parameters=_stability_parameters(1),
             kernels=("montecarlo", "dynamics"),
         ),
         Study(
@@ -326,7 +326,7 @@ STUDIES = {
             200.0,
             module="studies.stability.measure",
             function="dynamics_rows",
-            parameters=_stability_parameters(ordinary=10**10, hard=10**9),
+            parameters=_stability_parameters(10),
             kernels=("montecarlo", "dynamics"),
             shared=False,
         ),
