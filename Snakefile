@@ -7,7 +7,7 @@ from snakemake.utils import min_version
 
 from twodiscs.pipeline.configuration.load import check_results, load
 from twodiscs.pipeline.configuration.reading import check, or_exit
-from twodiscs.pipeline.results.locks import release
+from twodiscs.pipeline.results.locks import end_aside, release
 from twodiscs.pipeline.results.record import notice
 
 min_version("9.27")
@@ -77,6 +77,17 @@ localrules:
     verify,
     forecast,
     benchmark,
+
+
+onstart:
+    end_aside()
+    # Whoever forces jobs wants no point of them kept.
+    if (
+        workflow.dag_settings.forceall
+        or workflow.dag_settings.forcetargets
+        or workflow.dag_settings.forcerun
+    ):
+        os.environ.update(TWODISCS_ANEW="1")
 
 
 rule all:

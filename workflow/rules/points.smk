@@ -79,15 +79,6 @@ rule compile_effects:
 # job starts: those that are there stay, unless the job is forced.
 
 
-onstart:
-    if (
-        workflow.dag_settings.forceall
-        or workflow.dag_settings.forcetargets
-        or workflow.dag_settings.forcerun
-    ):
-        os.environ.update(TWODISCS_ANEW="1")
-
-
 for stage, module in STAGES.items():
 
     rule:

@@ -56,7 +56,7 @@ VICTIMS = ("session", "parent", "job")
 DAMAGES = ("truncated", "edited", "deleted")
 
 #: How long a run may take, and processes of a killed one to end, in seconds.
-PATIENCE = 1800
+PATIENCE = 300
 
 
 def contents(results):

@@ -1,11 +1,13 @@
-"""What Snakemake needs to begin: no lock of a run that was killed, a user's name, a cache."""
+"""What Snakemake needs to begin: no lock of a run that was killed, a name, a cache; and to end."""
 
 import fcntl
 import getpass
 import os
+import signal
 import socket
 import sys
 from pathlib import Path
+from threading import Thread, current_thread, main_thread
 
 #: The open file by which this process says, for as long as it lives, that it uses a folder.
 _held = []
@@ -61,3 +63,18 @@ def release(folder=".snakemake"):
     except OSError:
         return False
     return alone
+
+
+def end_aside():
+    """Have the handler of SIGTERM run in a thread of its own.
+
+    That of Snakemake waits for a lock. Where the signal interrupts the very code that holds it, the
+    run would wait for ever.
+    """
+    handler = signal.getsignal(signal.SIGTERM)
+
+    def aside(*received):
+        Thread(target=handler, args=received).start()
+
+    if callable(handler) and current_thread() is main_thread():
+        signal.signal(signal.SIGTERM, aside)
