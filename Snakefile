@@ -81,12 +81,10 @@ localrules:
 
 onstart:
     end_aside()
-    # Whoever forces jobs wants no point of them kept.
-    if (
-        workflow.dag_settings.forceall
-        or workflow.dag_settings.forcetargets
-        or workflow.dag_settings.forcerun
-    ):
+    # Whoever forces the jobs of points wants none of them kept.
+    if workflow.dag_settings.forceall or {*STAGES} & {
+        *workflow.dag_settings.forcerun
+    }:
         os.environ.update(TWODISCS_ANEW="1")
 
 

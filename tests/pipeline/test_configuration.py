@@ -319,8 +319,9 @@ def test_radii_are_bundled_and_another_one_joins_one_of_them():
         assert jobs[repr(many[-1])] == after.job(stage, repr(many[-1]))
         assert after.minutes(stage, joined) > after.minutes(stage)
     assert before.bundles["intervals"] == {"0000": ["0.1"]}
-    # What is in shards is not bundled.
-    assert not one(radii=many, watch=watch, event_budget=1e13).bundles["dynamics"]
+    # What is in shards is merged radius by radius.
+    merged = one(radii=many, watch=watch, event_budget=1e13).bundles["dynamics"]
+    assert merged == {repr(radius): [repr(radius)] for radius in many}
     with pytest.raises(InputError, match="bundle must be one of those of dynamics, not 'x'"):
         before.bundle_job("dynamics", "x")
 
@@ -332,6 +333,7 @@ def test_radii_are_bundled_and_another_one_joins_one_of_them():
         ({"accuracy": 3e-4}, 16),  # 64 points of 2.2 seconds each
         ({"accuracy": {"top_wall": 3e-4, "vertical_hop": 1e-2}}, 16),
         ({"accuracy": 1e-4}, 64),
+        ({"accuracy": 1e-200}, 64),
         ({"accuracy": 1e-4, "event_budget": 1e6}, 2),
         ({"accuracy": 1e-2, "effects": {"field": 1.0}}, 2),
     ],

@@ -54,40 +54,56 @@ def test_jobs_are_few(place):
     assert len(RADII) / 100 < rules["dynamics"] == rules["monte_carlo"] < 100
 
 
+def build(place, *more):
+    """Build the tables and return the bytes of them."""
+    snakefile = ("--snakefile", str(place.home.path / "Snakefile"))
+    place.snakemake(*snakefile, "--cores", "2", *more, "--", *TABLES)
+    return [(place.path / table).read_bytes() for table in TABLES]
+
+
+def test_who_goes_back_to_former_settings_has_their_results_again(place):
+    """Points are bundled otherwise in between, and those of a bundle that is left are others."""
+    write(place, RADII[:100])
+    former = build(place)
+    write(place, RADII[:3], accuracy=0.4, monte_carlo={"samples": 1 << 22})
+    build(place)
+    write(place, RADII[:100])
+    assert build(place) == former
+
+
 @pytest.mark.slow
 def test_what_is_there_stays(place):
-    def build(*forced):
-        snakefile = str(place.home.path / "Snakefile")
-        place.snakemake("--snakefile", snakefile, "--cores", "2", *forced, "--", *TABLES)
-        return files(place), [(place.path / table).read_bytes() for table in TABLES]
+    def built(*forced):
+        tables = build(place, *forced)
+        return files(place), tables
 
     write(place, RADII[:3])
-    few, _ = build()
+    few, _ = built()
     write(place, RADII)
-    many, tables = build()
+    many, tables = built()
     assert len(many) == 2 * len(RADII)
     assert few.items() <= many.items()
 
     # Another radius; a damaged point; a tighter accuracy, which the tables must not miss.
     write(place, [*RADII, 0.3])
-    more, _ = build()
+    more, _ = built()
     assert more.keys() - many.keys() == {"dynamics/0.3.json", "monte_carlo/0.3.json"}
     assert many.items() <= more.items()
     write(place, RADII)
     for harm in (lambda path: path.write_text("{}"), Path.unlink):
         before = files(place)
         harm(place.path / "results/many/points/dynamics/0.1.json")
-        mended, same = build()
+        mended, same = built()
         assert same == tables
         assert {name for name in many if mended[name] != before[name]} == {"dynamics/0.1.json"}
         assert mended["dynamics/0.1.json"][1] == many["dynamics/0.1.json"][1]
     # Who forces the jobs has every point made again.
-    forced, same = build("--forcerun", "dynamics")
+    forced, same = built("--forcerun", "dynamics")
     assert same == tables
     again = {name for name in many if forced[name] != mended[name]}
     assert again == {name for name in many if name.startswith("dynamics/")}
     assert all(forced[name][1] == many[name][1] for name in many)
     write(place, RADII, accuracy=0.4)
-    _, tighter = build()
+    _, tighter = built()
     assert b",0.4," in tighter[0]
     assert tighter[1] == tables[1]

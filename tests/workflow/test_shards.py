@@ -63,11 +63,11 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
     assert {name.split("/")[-1].split("-")[0] for name in first} == {"all", "horizontal_hop"}
 
     # A tighter accuracy takes more shards, however its build was interrupted.
-    change(place, accuracy=0.005)
+    change(place, accuracy=0.002)
     build(place, "--until", "plan")
     assert (place.path / TABLE).read_bytes() == table
     tighter = build(place)[0]
-    assert tighter.count(b",0.005,reached,") == 2
+    assert tighter.count(b",0.002,reached,") == 2
     assert all(written(place)[name] == stamp for name, stamp in first.items())
     more = shards(written(place)).keys() - first.keys()
     assert more
@@ -78,3 +78,17 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
     assert all("0.3" in name for name in new if "/plan-" not in name and "0.24.json" not in name)
     assert not {name for name in shards(new) if "/0.24/" in name}
     assert rows.startswith(table)
+
+
+@pytest.mark.slow
+def test_points_go_from_shards_to_bundles_and_back(unbuilt, tmp_path):
+    place = Checkout(tmp_path, unbuilt)
+    change(place)
+    sharded = build(place)[0]
+    change(place, shard_events=1e9, accuracy=0.02)
+    bundled = build(place)[0]
+    assert b",0.02,reached," in bundled
+    change(place)
+    assert build(place)[0] == sharded
+    change(place, shard_events=1e9, accuracy=0.02)
+    assert build(place)[0] == bundled

@@ -125,23 +125,13 @@ def contents(*paths):
     return blake2b(texts, digest_size=8).hexdigest()
 
 
-def point_files(scene, stages=STAGES, folder="points/{stage}/{key}.json"):
-    """Return what the jobs of these stages found, a file for each stage and radius or bundle."""
+def point_files(scene, stages=STAGES):
+    """Return the files of the bundles of points that the jobs of these stages found."""
     return [
-        f"{RESULTS}/{scene.name}/{path.format(stage=stage, key=key)}"
+        f"{RESULTS}/{scene.name}/points/{stage}/bundles/{name}.json"
         for stage in stages
-        for path, keys in (
-            [("points/{stage}/bundles/{key}.json", scene.bundles[stage])]
-            if scene.bundles[stage]
-            else [(folder, scene.keys[stage])]
-        )
-        for key in keys
+        for name in scene.bundles[stage]
     ]
-
-
-def cost_files(scene):
-    """Return what the jobs of a scene took, a file for each stage and radius."""
-    return point_files(scene, folder="points/cost/{stage}-{key}.json")
 
 
 def compiled(scene, stage):
@@ -198,8 +188,6 @@ def named_tables(names, paths):
 
 def gathered_points(scene, table):
     """Return the files that a table of a scene is gathered from."""
-    if table == "cost":
-        return cost_files(scene)
     return point_files(scene, GATHERED[table])
 
 

@@ -92,6 +92,8 @@ for stage, module in STAGES.items():
             log_of(f"{{scene}}/{stage}-{{bundle}}"),
         benchmark:
             benchmark_of(f"{{scene}}/{stage}-{{bundle}}")
+        wildcard_constraints:
+            scene=one_of(s.name for s in SCENES.values() if not s.is_sharded(stage)),
         resources:
             runtime=minutes(stage),
         params:
@@ -99,12 +101,11 @@ for stage, module in STAGES.items():
             job=lambda w, stage=stage: as_json(
                 SCENES[w.scene].bundle_job(stage, w.bundle)
             ),
-            points=lambda w, output: str(Path(output.bundle).parents[1]),
             module=module,
             code=code(module),
         shell:
             "python -m twodiscs.pipeline.jobs bundle {params.module} --parameters {params.job:q}"
-            " --points {params.points:q} --output {output.bundle:q}"
+            " --output {output.bundle:q}"
             " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 

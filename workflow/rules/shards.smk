@@ -85,8 +85,7 @@ for stage, module in STAGES.items():
         input:
             names=ancient(lambda w, stage=stage: names_of(w.scene, stage, w.key)),
         output:
-            point=f"{RESULTS}/{{scene}}/points/{stage}/{{key}}.json",
-            cost=f"{RESULTS}/{{scene}}/points/cost/{stage}-{{key}}.json",
+            bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{key}}.json",
         log:
             log_of(f"{{scene}}/{stage}_merge-{{key}}"),
         benchmark:
@@ -102,5 +101,5 @@ for stage, module in STAGES.items():
         shell:
             "python -m twodiscs.pipeline.jobs merge {params.module} --parameters {params.job:q}"
             " --keys {input.names:q} --points {params.points:q}"
-            " --output {output.point:q} --cost {output.cost:q}"
+            " --output {output.bundle:q}"
             " --about {params.about:q} --code {params.code} > {log:q} 2>&1"

@@ -174,28 +174,32 @@ def point(options):
 
 
 def bundle(options):
-    """Write the points of a module at several radii to a folder, each as a job of its own would.
+    """Write the points of a module at several radii, each as a job of its own would.
 
-    Those that are there already, made of the same, stay: only what is missing is done, unless the
-    variable TWODISCS_ANEW is set. The output holds {key: SHA-256 of the point}.
+    They go to the folder above that of the output, which holds {key: SHA-256 of the point}. Those
+    that are there already, made of the same, stay: only what is missing is done, unless the
+    variable TWODISCS_ANEW is set.
     """
     record, found = module_of("pipeline.results.record"), {}
-    if not options.points:
-        raise InputError("bundle needs --points, the folder of the points")
     jobs = checked(parameters(options.parameters), "jobs")["jobs"]
-    folder = Path(options.points[0])
-    costs = folder.parent / "cost"
-    costs.mkdir(parents=True, exist_ok=True)
+    record.claim(options.output[0], jobs)
     for key, given in jobs.items():
-        paths = folder / f"{key}.json", costs / f"{folder.name}-{key}.json"
-        own = {"job": "point", "parameters": json.dumps(given), "points": []}
-        own |= {"output": [paths[0]], "cost": paths[1]}
-        one = argparse.Namespace(**vars(options) | own)
-        if os.environ.get("TWODISCS_ANEW") or not record.is_made(paths, made_by(one)):
+        one = point_of(options, key, job="point", parameters=json.dumps(given))
+        anew = os.environ.get("TWODISCS_ANEW")
+        if anew or not record.is_made([*one.output, one.cost], made_by(one)):
             point(one)
             keep_record(one, {})
-        found[key] = record.digest(paths[0])
+        found[key] = record.digest(*one.output)
     write_json(options.output[0], found)
+
+
+def point_of(options, key, **changes):
+    """Return the options of a job of one point, given those of the job of its bundle."""
+    folder = Path(options.output[0]).absolute().parents[1]
+    costs = folder.parent / "cost"
+    costs.mkdir(parents=True, exist_ok=True)
+    paths = {"output": [folder / f"{key}.json"], "cost": costs / f"{folder.name}-{key}.json"}
+    return argparse.Namespace(**vars(options) | paths | changes)
 
 
 # A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan
@@ -253,7 +257,10 @@ def plan(options):
 
 
 def merge(options):
-    """Write what a module finds at one radius, given its shards, and what all of them took."""
+    """Write what a module finds at one radius, given its shards, and what all of them took.
+
+    The output is a bundle of that point alone.
+    """
     given, rounds = checked(_given(options), "keys"), module_of("sampling.rounds")
     if len(keys := given.pop("keys")) != 1:
         raise InputError(f"keys must name one point, not {len(keys)}")
@@ -265,12 +272,16 @@ def merge(options):
         if needed > done[part].blocks:
             raise InputError(f"the shards of {part} at radius {key} end too early")
     result = call(function_of(options.module, "merged"), given, done=done)
-    write_json(options.output[0], result)
+    record, one = module_of("pipeline.results.record"), point_of(options, key)
+    record.claim(options.output[0], [key])
+    write_json(one.output[0], result)
     costs = [Path(options.points[0], key, "cost", f"{name}.json") for name in names]
     seconds = time.process_time() - start
     seconds += sum(json.loads(path.read_text(encoding="utf-8"))["seconds"] for path in costs)
     events = result[module_of(options.module).WORK]
-    write_json(options.cost, {"events": events, "seconds": seconds})
+    write_json(one.cost, {"events": events, "seconds": seconds})
+    keep_record(one, inputs_of(options))
+    write_json(options.output[0], {key: record.digest(*one.output)})
 
 
 def table(options):

@@ -110,16 +110,18 @@ class SceneRequest:
 
     @cached_property
     def bundles(self):
-        """{stage: {name: keys}} of the bundles of points that are one job; but of shards.
+        """{stage: {name: keys}} of the bundles of points: a job finds one, or merges its shards.
 
         Another radius joins one of them, and leaves all others as they are. What takes a job of its
-        own is called by its key.
+        own, or is in shards, is called by its key.
         """
         found = {stage: defaultdict(list) for stage in STAGES}
         for stage, keys in self.keys.items():
-            if not keys or self.is_sharded(stage):
+            if not keys:
                 continue
             size = BUNDLE if len(keys) > MANY else min(BUNDLE, WORTH / self._seconds(stage))
+            if self.is_sharded(stage):
+                size = 1
             number = 1 << max(0, round(math.log2(len(keys) / size)))
             for name in keys:
                 digits = blake2b(name.encode(), digest_size=4).digest()
@@ -132,8 +134,11 @@ class SceneRequest:
         worst = min(self.dynamics["accuracy"].values(), default=1.0)
         work = {
             "monte_carlo": self.monte_carlo["samples"] / SAMPLES_PER_SECOND,
-            "dynamics": min(self.event_budget, EVENTS_EACH / worst**2) / EVENTS_PER_SECOND,
-            "intervals": EVENTS_EACH * self.histogram["intervals"] / EVENTS_PER_SECOND,
+            "dynamics": min(self.event_budget, EVENTS_EACH / worst / worst) / EVENTS_PER_SECOND,
+            "intervals": min(
+                self.histogram["event_budget"], EVENTS_EACH * self.histogram["intervals"]
+            )
+            / EVENTS_PER_SECOND,
         }
         return work[stage] * (SLOWER if self.effects else 1)
 

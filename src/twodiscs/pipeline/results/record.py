@@ -170,8 +170,7 @@ def notice(folder, snakemake=".snakemake"):
         found.append((path, "has lost its record" if known else None))
     bundles = _bundles(folder)
     for one in {one for path, some in bundles.items() if not path.exists() for one in some}:
-        with suppress(OSError):  # results may be read only
-            one.unlink()
+        _remove(one)  # it holds no longer what it says
     for path, what in found:
         if what:
             print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
@@ -195,6 +194,25 @@ def _bundles(folder):
                 found[stage / f"{key}.json"].append(bundle)
                 found[stage.parent / "cost" / f"{stage.name}-{key}.json"].append(bundle)
     return found
+
+
+def claim(bundle, keys):
+    """Remove all bundles beside ``bundle`` that have a point of these ``keys``.
+
+    With another accuracy points are bundled otherwise. Who goes back to the former one must not
+    find a bundle of it whose points are no longer those it was made with.
+    """
+    for other in Path(bundle).parent.glob("*.json"):
+        with suppress(OSError, ValueError):  # it may just be written
+            found = json.loads(other.read_text(encoding="utf-8"))
+            if other != Path(bundle) and not found.keys().isdisjoint(keys):
+                _remove(other)
+
+
+def _remove(bundle):
+    with suppress(OSError):  # results may be read only
+        bundle.unlink()
+        record_of(bundle).unlink()
 
 
 def name_of(path):
