@@ -35,7 +35,9 @@ CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
 if workflow.is_main_process:
     if release():
-        notice(CONFIGURATION.results)
+        # As a module of another workflow it may have a prefix.
+        paths = workflow.modifier.path_modifier
+        notice(str(paths.replace_prefix(CONFIGURATION.results)))
     if CONFIGURATION.days > 1:
         logger.warning(
             f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"

@@ -150,6 +150,10 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     place.snakemake("--cores", "2", "--", "discs_all", "mine.txt")
     assert manifest(place, "below/results") == manifest(own)
     assert {*place.results("below/results")} == {*own.results()}
+    for name in ("points/dynamics/0.1.json", "mean_times.csv"):
+        (tmp_path / "below" / "results" / "tiny" / name).unlink()
+    place.snakemake("--cores", "2", "--", "discs_all")
+    assert manifest(place, "below/results") == manifest(own)
     kept = json.loads((tmp_path / "below" / "results" / "configuration.json").read_text())
     assert kept == TINY | {"results": "below/results"}
     assert {path.name for path in tmp_path.iterdir()} == {
