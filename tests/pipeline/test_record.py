@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 from base64 import urlsafe_b64encode
+from pathlib import Path
 
 import pytest
 from fabricated import BOX, command
@@ -123,6 +124,15 @@ def test_a_bundle_goes_with_a_point_of_it(bundled):
     (points / "cost" / "dynamics-0.11.json").unlink()
     record.notice("results")
     assert {path.name for path in (dynamics / "bundles").glob("*.json")} == {"0001.json"}
+
+
+def test_what_was_made_of_a_point_is_bereft_with_its_bundle(bundled):
+    table = bundled.parent / "mean_times.csv"
+    table.write_text("radius\n")
+    record.write([table], {"dynamics": [bundled / "dynamics" / "0.1.json"]})
+    assert record.bereft("results") == []
+    (bundled / "dynamics" / "bundles" / "0001.json").unlink()
+    assert record.bereft("results") == [Path("results/paper/mean_times.csv")]
 
 
 def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):

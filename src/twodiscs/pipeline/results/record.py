@@ -139,16 +139,21 @@ def touched(folder):
 def bereft(folder):
     """Return the files below ``folder`` that were made of others which are gone.
 
-    Points are not looked at: there are many, and they are made of nothing but shards.
+    A point is gone with its bundle, too. Points are not looked at: there are many, and they are
+    made of nothing but shards.
     """
-    found = []
+    found, held = [], _bundles(folder)
+
+    def is_there(file):
+        return file.exists() and (file in held or not (file.parent / "bundles").is_dir())
+
     for path, _ in _recorded(folder):
         if "points" in path.relative_to(folder).parts or not path.exists():
             continue
         if (known := read(path)) is None:
             continue
         files = (name for one in known["inputs"].values() for name in one["files"])
-        if not all((path.parent / name).exists() for name in files):
+        if not all(is_there(Path(os.path.normpath(path.parent / name))) for name in files):
             found.append(path)
     return found
 
