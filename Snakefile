@@ -36,8 +36,9 @@ or_exit(check_results, CONFIGURATION.results, HERE)
 if workflow.is_main_process:
     if release():
         # As a module of another workflow it may have a prefix.
-        paths = workflow.modifier.path_modifier
-        notice(str(paths.replace_prefix(CONFIGURATION.results)))
+        notice(
+            str(workflow.modifier.path_modifier.replace_prefix(CONFIGURATION.results))
+        )
     if CONFIGURATION.days > 1:
         logger.warning(
             f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"

@@ -225,10 +225,10 @@ MISTAKES = {
     "no output": (["point", "x", "--parameters", "{}"], "are required: --output"),
     "no parameters": (["point", "x", "--output", "output"], "point needs --parameters"),
     "a bundle of nothing": (
-        words("bundle", "dynamics.counting", {}, "--points", "p"), "parameters must have jobs, but"
+        words("bundle", "dynamics.counting", {}), "parameters must have jobs, but"
     ),
     "a bundle of no block": (
-        words("bundle", "dynamics.counting", {"jobs": ["0.2"]}, "--points", "p"),
+        words("bundle", "dynamics.counting", {"jobs": ["0.2"]}),
         "jobs must be a block of blocks of parameters, not ['0.2']",
     ),
     "a plan for nothing": (

@@ -116,23 +116,36 @@ def test_with_a_point_its_bundle_is_made_again(results, bundled, capsys):
 
 
 def test_a_bundle_goes_with_a_point_of_it(bundled):
-    points, dynamics = bundled, bundled / "dynamics"
+    folder = bundled / "dynamics" / "bundles"
     record.notice("results")
-    assert {path.name for path in (dynamics / "bundles").glob("*.json")} == {
-        *("0001.json", "0002.json"),
+    assert {path.name for path in folder.glob("*.json")} == {"0001.json", "0002.json"}
+    (bundled / "cost" / "dynamics-0.11.json").unlink()
+    record.notice("results")
+    assert {path.name for path in folder.glob("*.json")} == {"0001.json"}
+
+
+@pytest.mark.parametrize("damaged", ["", "{", "3", "[[]]", "[]"])
+def test_a_bundle_takes_its_points_from_others_and_damaged_ones_have_none(bundled, damaged):
+    folder = bundled / "dynamics" / "bundles"
+    (folder / "0003.json").write_text(damaged)
+    record.claim(folder / "0002.json", ["0.11"])
+    assert {path.name for path in folder.glob("*.json")} == {
+        *("0001.json", "0002.json", "0003.json"),
     }
-    (points / "cost" / "dynamics-0.11.json").unlink()
-    record.notice("results")
-    assert {path.name for path in (dynamics / "bundles").glob("*.json")} == {"0001.json"}
+    record.claim(folder / "0002.json", ["0.11", "0.2"])
+    assert {path.name for path in folder.glob("*.json")} == {"0002.json", "0003.json"}
+    assert not record.record_of(folder / "0001.json").exists()
 
 
 def test_what_was_made_of_a_point_is_bereft_with_its_bundle(bundled):
     table = bundled.parent / "mean_times.csv"
     table.write_text("radius\n")
     record.write([table], {"dynamics": [bundled / "dynamics" / "0.1.json"]})
-    assert record.bereft("results") == []
+    assert record.bereft("results", record.bundles("results")) == []
     (bundled / "dynamics" / "bundles" / "0001.json").unlink()
-    assert record.bereft("results") == [Path("results/paper/mean_times.csv")]
+    assert record.bereft("results", record.bundles("results")) == [
+        Path("results/paper/mean_times.csv")
+    ]
 
 
 def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):
@@ -186,7 +199,7 @@ def test_a_folder_above_may_have_any_name(results):
     home.mkdir()
     results.rename(home / "results")
     (home / "results" / "theory.csv").unlink()
-    found = record.bereft("points/results")
+    found = record.bereft("points/results", {})
     assert sorted(path.name for path in found) == ["m.pdf", "m.png"]
 
 

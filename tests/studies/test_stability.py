@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from fabricated import command
+from matplotlib.text import Text
 from mpmath import mpf
 
 from twodiscs.comparison import scores
@@ -279,6 +280,18 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
         drawn = figure.draw(PAPER, {"stability": rows})
         style.save(drawn, tmp_path / "figure.png")
     assert len(drawn.axes) == 8
+
+
+def test_the_figure_says_how_long_runs_are():
+    runs = [("ordinary", 0.2, 50_000_000), ("tiny", 1e-9, 1_000_000)]
+    rows = [
+        stability.row("dynamics", "energy_error", case, 0.0, radius=radius, count=count, high=1e-12)
+        for case, radius, count in runs
+    ]
+    with style.context():
+        drawn = figure.draw(PAPER, {"stability": rows})
+    said = {text.get_text() for text in drawn.findobj(Text)}
+    assert {r"$5\times10^{7}$", "$10^{6}$", "$r=10^{-9}$"} <= said
 
 
 def test_a_table_without_rows_is_drawn_empty(tmp_path):

@@ -1,4 +1,4 @@
-"""Many radii: a job does a bundle of points, and of those what is missing."""
+"""A job does a bundle of points, and of those what is missing or has other parameters."""
 
 from collections import Counter
 from pathlib import Path
@@ -48,9 +48,7 @@ def test_jobs_are_few(place):
     snakefile = ("--snakefile", str(place.home.path / "Snakefile"))
     jobs = place.jobs("--cores", "2", *snakefile, "--", *TABLES)
     rules = Counter(rule for rule, _ in jobs)
-    assert rules.keys() == {
-        "compile", "dynamics", "monte_carlo", "table", "theory",
-    }  # fmt: skip
+    assert rules.keys() == {"compile", "dynamics", "monte_carlo", "table", "theory"}
     assert len(RADII) / 100 < rules["dynamics"] == rules["monte_carlo"] < 100
 
 

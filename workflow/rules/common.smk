@@ -47,10 +47,14 @@ os.environ.update(
 LONG = 30_000
 
 
+# A radius, or the number of a bundle of them.
+KEY = r"[0-9][0-9.e+-]*"
+
+
 wildcard_constraints:
     scene="|".join(SCENES),
-    key=r"[0-9][0-9.e+-]*",
-    bundle=r"[0-9][0-9.e+-]*",
+    key=KEY,
+    bundle=KEY,
 
 
 def one_of(names):
@@ -125,15 +129,6 @@ def contents(*paths):
     return blake2b(texts, digest_size=8).hexdigest()
 
 
-def point_files(scene, stages=STAGES):
-    """Return the files of the bundles of points that the jobs of these stages found."""
-    return [
-        f"{RESULTS}/{scene.name}/points/{stage}/bundles/{name}.json"
-        for stage in stages
-        for name in scene.bundles[stage]
-    ]
-
-
 def compiled(scene, stage):
     """Return the stamp that says that the kernels of a stage are compiled for a scene."""
     if scene.effects:
@@ -187,8 +182,12 @@ def named_tables(names, paths):
 
 
 def gathered_points(scene, table):
-    """Return the files that a table of a scene is gathered from."""
-    return point_files(scene, GATHERED[table])
+    """Return the bundles of points that a table of a scene is gathered from."""
+    return [
+        f"{RESULTS}/{scene.name}/points/{stage}/bundles/{name}.json"
+        for stage in GATHERED[table]
+        for name in scene.bundles[stage]
+    ]
 
 
 def points_folder(path):

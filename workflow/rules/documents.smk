@@ -98,11 +98,10 @@ rule report:
         "{{ cp {params.configuration:q} {output.configuration:q}; mapfile -t files < {params.files:q};"
         " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
         ' "$@" --configfile {output.configuration:q} -- "${{files[@]}}"; }};'
-        " again --report {output.workflow:q} --report-stylesheet {input.style:q} & other=$!; trap 'kill $other' INT TERM;"
+        " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
         ' again --rulegraph dot | python -m twodiscs.pipeline.documents.report "${{files[@]}}"'
         " --template {input.front:q} --parameters {params.scenes:q}"
-        " --workflow report-workflow.html --output {output.html:q} && drawn=yes;"
-        ' wait $other; [ "${{drawn-}}" ]; }} > {log:q} 2>&1'
+        " --workflow report-workflow.html --output {output.html:q}; }} > {log:q} 2>&1"
 
 
 rule manifest:

@@ -311,11 +311,9 @@ def scene_rows(request, pilots, starts, cores):
     most = {s: request.shard_events if request.is_sharded(s) else math.inf for s in STAGES}
     first = {s: {keys[0] for keys in request.bundles[s].values()} for s in STAGES}
     for (stage, job), pilot in zip(jobs_of(request), pilots, strict=True):
-        count = max(1, math.ceil(pilot.events / most[stage]))
-        if not request.is_sharded(
-            stage
-        ):  # the first point of a bundle starts the job of all of them
-            count = int(key(job["radius"]) in first[stage])
+        # The first point of a bundle starts the job of all of them.
+        starting = key(job["radius"]) in first[stage]
+        count = max(1, math.ceil(pilot.events / most[stage])) if starting else 0
         seconds = count * starts[stage].loading + pilot.events * pilot.seconds_per_million / 1e6
         startup = count * starts[stage].startup
         jobs.append(

@@ -42,9 +42,9 @@ SHAPES = {
     "keys": ("a block of lists of texts", {str: [str]}),
     "part": ("a text", str),
     "radii": ("a list of numbers", [RADIUS]),
+    "scenes": ("a list or a block of scenes", ([CASE], {str: BOX})),
     "shard_events": ("a number", int | float),
     "stop": ("an integer", int),
-    "scenes": ("a list or a block of scenes", ([CASE], {str: BOX})),
     "volume": ("true or false", bool),
     "watched": TEXTS,
 }
@@ -182,10 +182,10 @@ def bundle(options):
     """
     record, found = module_of("pipeline.results.record"), {}
     jobs = checked(parameters(options.parameters), "jobs")["jobs"]
-    record.claim(options.output[0], jobs)
+    record.claim(Path(options.output[0]).absolute(), jobs)
+    anew = os.environ.get("TWODISCS_ANEW")
     for key, given in jobs.items():
         one = point_of(options, key, job="point", parameters=json.dumps(given))
-        anew = os.environ.get("TWODISCS_ANEW")
         if anew or not record.is_made([*one.output, one.cost], made_by(one)):
             point(one)
             keep_record(one, {})
@@ -195,11 +195,10 @@ def bundle(options):
 
 def point_of(options, key, **changes):
     """Return the options of a job of one point, given those of the job of its bundle."""
-    folder = Path(options.output[0]).absolute().parents[1]
-    costs = folder.parent / "cost"
-    costs.mkdir(parents=True, exist_ok=True)
-    paths = {"output": [folder / f"{key}.json"], "cost": costs / f"{folder.name}-{key}.json"}
-    return argparse.Namespace(**vars(options) | paths | changes)
+    bundle = Path(options.output[0]).absolute()
+    found, cost = module_of("pipeline.results.record").points_of(bundle, key)
+    cost.parent.mkdir(parents=True, exist_ok=True)
+    return argparse.Namespace(**vars(options) | {"output": [found], "cost": cost} | changes)
 
 
 # A point in shards: its work in pieces that are jobs of their own, see ``sampling.rounds``. A plan
@@ -273,7 +272,7 @@ def merge(options):
             raise InputError(f"the shards of {part} at radius {key} end too early")
     result = call(function_of(options.module, "merged"), given, done=done)
     record, one = module_of("pipeline.results.record"), point_of(options, key)
-    record.claim(options.output[0], [key])
+    record.claim(Path(options.output[0]).absolute(), [key])
     write_json(one.output[0], result)
     costs = [Path(options.points[0], key, "cost", f"{name}.json") for name in names]
     seconds = time.process_time() - start

@@ -129,12 +129,13 @@ def _remove_old(home):
 
 
 @contextmanager
-def _without_blas(module="scipy.linalg.cython_blas"):
-    """Let numba set itself up without BLAS, which takes SciPy a quarter of a process's start.
+def _without_blas():
+    """Let numba set itself up without BLAS: the import of SciPy's takes a quarter of the start.
 
     No kernel needs it. Numba looks for it once; its own functions for inner products then take
     their place in what others compile in this process.
     """
+    module = "scipy.linalg.cython_blas"
     if module in sys.modules:
         yield
         return

@@ -117,27 +117,24 @@ class SceneRequest:
         """
         found = {stage: defaultdict(list) for stage in STAGES}
         for stage, keys in self.keys.items():
-            if not keys:
-                continue
             size = BUNDLE if len(keys) > MANY else min(BUNDLE, WORTH / self._seconds(stage))
-            if self.is_sharded(stage):
-                size = 1
-            number = 1 << max(0, round(math.log2(len(keys) / size)))
+            if size <= 1 or self.is_sharded(stage):
+                found[stage] = {name: [name] for name in keys}
+                continue
+            number = 1 << max(0, round(math.log2(max(1, len(keys)) / size)))
             for name in keys:
                 digits = blake2b(name.encode(), digest_size=4).digest()
-                place = f"{int.from_bytes(digits) % number:04d}" if size > 1 else name
-                found[stage][place].append(name)
+                found[stage][f"{int.from_bytes(digits) % number:04d}"].append(name)
         return {stage: dict(some) for stage, some in found.items()}
 
     def _seconds(self, stage):
-        """Return what a point of a ``stage`` takes, roughly, for no theory is asked."""
+        """Return the seconds that a point of a ``stage`` takes, roughly, for no theory is asked."""
         worst = min(self.dynamics["accuracy"].values(), default=1.0)
+        counted, drawn = 1 / worst / worst, self.histogram["intervals"]
         work = {
             "monte_carlo": self.monte_carlo["samples"] / SAMPLES_PER_SECOND,
-            "dynamics": min(self.event_budget, EVENTS_EACH / worst / worst) / EVENTS_PER_SECOND,
-            "intervals": min(
-                self.histogram["event_budget"], EVENTS_EACH * self.histogram["intervals"]
-            )
+            "dynamics": min(self.event_budget, EVENTS_EACH * counted) / EVENTS_PER_SECOND,
+            "intervals": min(self.histogram["event_budget"], EVENTS_EACH * drawn)
             / EVENTS_PER_SECOND,
         }
         return work[stage] * (SLOWER if self.effects else 1)

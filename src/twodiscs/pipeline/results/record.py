@@ -136,16 +136,16 @@ def touched(folder):
     return found
 
 
-def bereft(folder):
+def bereft(folder, bundled):
     """Return the files below ``folder`` that were made of others which are gone.
 
-    A point is gone with its bundle, too. Points are not looked at: there are many, and they are
-    made of nothing but shards.
+    A point is gone with its bundle, too; ``bundled`` is what ``bundles`` returns. Points are not
+    looked at: there are many, and they are made of nothing but shards.
     """
-    found, held = [], _bundles(folder)
+    found = []
 
     def is_there(file):
-        return file.exists() and (file in held or not (file.parent / "bundles").is_dir())
+        return file.exists() and (file in bundled or not (file.parent / "bundles").is_dir())
 
     for path, _ in _recorded(folder):
         if "points" in path.relative_to(folder).parts or not path.exists():
@@ -166,39 +166,50 @@ def notice(folder, snakemake=".snakemake"):
     any file that is gone, which Snakemake does not miss, what was made of it is incomplete, too;
     but only if incomplete files are made ``AGAIN``, for else Snakemake would stop.
     """
+    bundled = bundles(folder)
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     if AGAIN:
-        found += [(path, "was made of a file that is gone") for path in bereft(folder)]
+        found += [(path, "was made of a file that is gone") for path in bereft(folder, bundled)]
     for path in _unrecorded(folder):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
         found.append((path, "has lost its record" if known else None))
-    bundles = _bundles(folder)
-    for one in {one for path, some in bundles.items() if not path.exists() for one in some}:
+    for one in {one for path, some in bundled.items() if not path.exists() for one in some}:
         _remove(one)  # it holds no longer what it says
     for path, what in found:
         if what:
             print(f"{path} {what}; it is made again when needed.", file=sys.stderr)
         Path(snakemake, "incomplete").mkdir(parents=True, exist_ok=True)
-        for one in bundles.get(path, [path]):
+        for one in bundled.get(path, [path]):
             with suppress(OSError):  # a name may be too long
                 mark = Path(snakemake, "incomplete", name_of(one))
                 mark.write_text('{"external_jobid": null}')
 
 
-def _bundles(folder):
-    """Return {file: the bundles that hold it} of points, and of what they took.
+def points_of(bundle, key):
+    """Return the two files of a point of a bundle: what was found, and what that took."""
+    stage = bundle.parents[1]
+    return stage / f"{key}.json", stage.parent / "cost" / f"{stage.name}-{key}.json"
+
+
+def bundles(folder):
+    """Return {file: the bundles that hold it} of the points below ``folder``.
 
     Those may be several: with another accuracy points are bundled otherwise.
     """
     found = defaultdict(list)
     for bundle in Path(folder).glob("*/points/*/bundles/*.json"):
-        stage = bundle.parents[1]
-        with suppress(ValueError, TypeError):  # it is damaged, and made again itself
-            for key in json.loads(bundle.read_text(encoding="utf-8")):
-                found[stage / f"{key}.json"].append(bundle)
-                found[stage.parent / "cost" / f"{stage.name}-{key}.json"].append(bundle)
+        for key in _keys(bundle):
+            for path in points_of(bundle, key):
+                found[path].append(bundle)
     return found
+
+
+def _keys(bundle):
+    """Return the keys of the points in a bundle, as a set; none if it is damaged."""
+    with suppress(OSError, ValueError, TypeError):
+        return set(json.loads(bundle.read_text(encoding="utf-8")))
+    return set()
 
 
 def claim(bundle, keys):
@@ -207,11 +218,9 @@ def claim(bundle, keys):
     With another accuracy points are bundled otherwise. Who goes back to the former one must not
     find a bundle of it whose points are no longer those it was made with.
     """
-    for other in Path(bundle).parent.glob("*.json"):
-        with suppress(OSError, ValueError):  # it may just be written
-            found = json.loads(other.read_text(encoding="utf-8"))
-            if other != Path(bundle) and not found.keys().isdisjoint(keys):
-                _remove(other)
+    for other in bundle.parent.glob("*.json"):
+        if other != bundle and not _keys(other).isdisjoint(keys):
+            _remove(other)
 
 
 def _remove(bundle):

@@ -143,10 +143,16 @@ def _shares(axes, rows):
 # One line a radius --------------------------------------------------------------------------------
 
 
+def _rounded(number):
+    """Return a positive ``number`` to one digit, "10⁻⁹" or "5 × 10⁷", in mathtext."""
+    mantissa, exponent = f"{number:.0e}".split("e")
+    times = "" if mantissa == "1" else rf"{mantissa}\times"
+    return rf"{times}10^{{{int(exponent)}}}"
+
+
 def _power(distance):
     """Return "(1 − 10⁻⁹)" or the like in mathtext."""
-    sign = "+" if distance > 0 else "-"
-    return rf"(1{sign}10^{{{round(math.log10(abs(distance)))}}})"
+    return f"(1{'+' if distance > 0 else '-'}{_rounded(abs(distance))})"
 
 
 def _radii(rows):
@@ -158,8 +164,7 @@ def _radii(rows):
         if row["case"] in names:
             found[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
-            mantissa, exponent = f"{row['radius']:.0e}".split("e")
-            tiny = rf"$r={mantissa}\times 10^{{{int(exponent)}}}$"
+            tiny = f"$r={_rounded(row['radius'])}$"
             found[key] = f"$r={row['radius']:g}$" if row["case"] == "ordinary" else tiny
     return found
 
@@ -217,7 +222,7 @@ def _runs(axes, rows, radii):
     _heading(axes)
     beside = {"xycoords": blended_transform_factory(axes.transAxes, axes.transData), "ha": "left"}
     for row in _select(rows, quantity="energy_error"):
-        events = rf"$10^{{{round(math.log10(row['count']))}}}$"
+        events = f"${_rounded(row['count'])}$"
         at = 1, places[row["case"], row["radius"]]
         drawing.label(axes, events, at, (4, 0), fontsize=6.5, **beside)
     drawing.label(axes, "events", (1, -0.6), (4, 5), fontsize=6.5, **beside)
