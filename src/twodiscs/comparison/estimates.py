@@ -201,17 +201,21 @@ def is_honest(total, squares, replicas):
     return effective_count(total, squares, replicas) >= HONEST and replicas >= HONEST
 
 
-def mean_time(total, squares, replicas, duration):
+def mean_time(total, squares, replicas, duration, mean=None):
     """Return T/⟨N⟩ with its error by the delta method, or ``None`` when nothing was counted.
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can see the event, each of
-    length ``duration`` = T. The relative error of the time is that of the mean count. When
-    ``is_honest`` says no, the error is not to be shown.
+    length ``duration`` = T. The relative error of the time is that of the mean count; ``mean``, if
+    given, is that count and its error as known better than from these sums. When ``is_honest`` says
+    no, the error is not to be shown.
     """
     total, squares, replicas = moments_of(total, squares, whole("replicas", replicas, 2))
     duration = real("duration", duration)
     if not total:
         return None
+    if mean is not None:
+        time, relative = duration / mean[0], mean[1] / mean[0]
+        return Estimate(time, time * relative, replicas)
     time = duration * replicas / total
     relative = math.sqrt((replicas * squares - total**2) / (total**2 * (replicas - 1)))
     return Estimate(time, time * relative, replicas)

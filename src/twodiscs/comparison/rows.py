@@ -9,6 +9,7 @@ from itertools import groupby, pairwise
 from twodiscs.comparison import estimates, scores
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
+from twodiscs.sampling.strata import mean_of
 from twodiscs.theory.exact import shell_expectation
 
 
@@ -141,23 +142,25 @@ def area_rows(scene, exact, points, watched=EVENTS):
 
 def _mean_time_row(scene, event, point, exact, strip=None):
     """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
+    mean = None
     if strip is None:
         count, squares = point["counts"][event], point["products"][f"{event}*{event}"]
         status = point["status"][event] if event not in point["strips"] else "counted"
         strip = point | {"share": 1.0}
     else:
         count, squares, status = strip["count"], strip["squares"], strip["status"]
+        mean = mean_of(**strip["strata"])
     replicas, duration, copies = strip["replicas"], strip["duration"], scene.copies(event)
     # So long a time would see as many, were starts anywhere, and each wall its own event.
     whole = duration * copies / strip["share"]
     estimate = bound = None
-    z, test = scores.mean_time_z(count, squares, replicas, whole, exact)
+    z, test = scores.mean_time_z(count, squares, replicas, whole, exact, mean)
     if exact is None:
         status = "impossible"
     elif not count:
         status, bound = "none-seen", estimates.mean_time_bound(replicas, whole / copies)
     else:
-        estimate = estimates.mean_time(count, squares, replicas, whole)
+        estimate = estimates.mean_time(count, squares, replicas, whole, mean)
         status = status if estimates.is_honest(count, squares, replicas) else "too-few"
     shown = estimate if status != "too-few" else None
     return {

@@ -119,14 +119,15 @@ def union_z(parts, sign):
     return _signed(_deviate(log_p), sign)
 
 
-def mean_time_z(total, squares, replicas, duration, exact):
+def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     """Return (z, test) of a measured mean time against the ``exact`` one.
 
     The count is tested, for ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased; the sign is turned,
     so that positive still means a time that is too long. ``test`` is
 
     - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
-      as a normal deviate.
+      as a normal deviate. ``mean``, if given, is that count and its error as known better than from
+      these sums.
     - "cluster-bound" below: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ)) with
       h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds where a replica that sees
       the event sees at most K; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be false,
@@ -140,7 +141,8 @@ def mean_time_z(total, squares, replicas, duration, exact):
     expected = duration / real("exact", exact)
     if replicas >= HONEST and effective_count(total, squares, replicas) >= NORMAL:
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
-        return student_deviate((expected - total / replicas) / error, replicas - 1), "normal"
+        count, error = mean or (total / replicas, error)
+        return student_deviate((expected - count) / error, replicas - 1), "normal"
     cluster = max(CLUSTER, squares / total) if total else CLUSTER
     exponent = _entropy(total / cluster, expected * replicas / cluster)
     size = _deviate(math.log(2) - exponent)

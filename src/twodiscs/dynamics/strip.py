@@ -10,6 +10,9 @@ with the exact share P of configuration space that is in the strip, and the mean
 crossings in [−T, T] over starts of the invariant measure there. No start is left out that counts,
 so that holds for every T. The past of a start is the future of the one with reversed velocities.
 For the same reason a path ends as soon as |Δ| exceeds β times the time that is left.
+
+How far a start is from the surface and how fast it comes says most of whether it will cross, and
+their laws are exact: ⟨N⟩ is a mean over strata of both (``sampling.strata``).
 """
 
 import math
@@ -23,7 +26,6 @@ from twodiscs.dynamics.ensemble import (
     across,
     new_rows,
     put_state,
-    relative_errors,
     state_at,
 )
 from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
@@ -33,20 +35,21 @@ from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import strip_of as place_of
 from twodiscs.sampling.rounds import Run
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_share_at, origins
+from twodiscs.sampling.strata import PARTS, mean_of, shares_of_speeds
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Hops that come more often than once in so many events are counted from starts anywhere.
-RARE = 40
+#: Hops that come more often than once in so many events are counted from starts anywhere, and so
+#: are those whose paths would have fewer events than this: nothing but straight flights.
+RARE = 25
+LEAST_EVENTS = 1
 
 #: Passes between two looks at which lanes have ended: paths are short.
 PASSES = 2
 
 #: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
-#: Where that holds for the widest strip, too, there is no neck, and no gain.
 FILL = 0.75
-NO_NECK = 0.97
 
 #: Wall and disc events in the time 2T, about: at most so many.
 MOST_EVENTS = 32
@@ -115,31 +118,43 @@ def strip_of(scene, hop):
         time /= 2
 
 
+def shares_of(scene, hop, place):
+    """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``PARTS``, m)."""
+    ends = [place.within * part / PARTS for part in range(1, PARTS + 1)]
+    near = [exact.share_near(scene, hop, end) for end in ends]
+    distances = np.diff([0.0, *near]) / near[-1]
+    return np.outer(distances, shares_of_speeds(scene.velocity_components))
+
+
 def rare_hops(scene):
-    """Return the hops that are counted from strips: those that are rare because of a neck."""
+    """Return the hops that are counted from strips."""
     return tuple(
         hop
         for hop in HOPS
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
-        and _fill(scene, hop, strip(scene, hop, widest(scene, hop))) < NO_NECK
+        and expected_events(scene, hop, strip_of(scene, hop)) >= LEAST_EVENTS
     )
 
 
 @compiled
-def count_hops(seed, first, stop, replicas, lanes, time, fastest, law, draw, prism, horizontal):
+def count_hops(
+    seed, first, stop, replicas, lanes, time, fastest, sizes, law, draw, prism, horizontal
+):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
 
-    A path ends where its discs would have to be faster than ``fastest`` to hop once more. Returns
-    (Σ N (1), Σ N² (1, 1), wall and disc events), int64. The hops are vertical ones, or horizontal
-    ones if ``horizontal`` is True instead of None.
+    A path ends where its discs would have to be faster than ``fastest`` to hop once more. ``sizes``
+    are those of a stratum: the |Δ| and the |Δ̇| of a start, at its full kinetic energy. Returns
+    (starts, Σ N, Σ N², wall and disc events), int64, all but the last one by strata
+    (``PARTS``, m). The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead
+    of None.
     """
     rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    packed = np.zeros(lanes)
-    sums, squares, events = np.zeros(1, np.int64), np.zeros((1, 1), np.int64), 0
-    block, used, running = first, replicas, 0
+    packed, near, slow = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
+    found = np.zeros((3, PARTS, sizes[2]), np.int64)
+    block, used, running, events = first, replicas, 0, 0
 
     while True:
         for i in range(lanes):
@@ -153,8 +168,9 @@ def count_hops(seed, first, stop, replicas, lanes, time, fastest, law, draw, pri
             if legs[i] == 2:
                 count = np.int64(packed[i] * (1.0 / HOP))
                 events += np.int64(packed[i] - count * HOP)
-                sums[0] += count
-                squares[0, 0] += count * count
+                found[0, near[i], slow[i]] += 1
+                found[1, near[i], slow[i]] += count
+                found[2, near[i], slow[i]] += count * count
                 legs[i] = 0
                 running -= 1
             if used == replicas and block < stop:
@@ -162,13 +178,17 @@ def count_hops(seed, first, stop, replicas, lanes, time, fastest, law, draw, pri
                 block, used = block + 1, 0
             if used < replicas:
                 put_state(rows, i, starts[:, used], law)
+                separation, speed = across(starts[:, used], horizontal)
+                speed /= math.sqrt(kinetic_share_at(starts, used, prism))
+                near[i] = min(np.int64(abs(separation) / sizes[0]), PARTS - 1)
+                slow[i] = min(np.int64(abs(speed) / sizes[1]), sizes[2] - 1)
                 for k in range(COMPONENTS):
                     origin[k, i] = -starts[k, used] if law_reverses(k, law) else starts[k, used]
                 remaining[i], packed[i], legs[i] = time, 0.0, 1
                 used += 1
                 running += 1
         if running == 0:
-            return sums, squares, events
+            return found[0], found[1], found[2], events
 
         for _ in range(PASSES):
             for i in range(lanes):
@@ -193,14 +213,16 @@ def law_reverses(k, law):
 def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
     """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
 
-    Returns (Σ N, Σ N², events) as ``count_hops`` does. They are integers: two shards add up.
+    Returns (starts, Σ N, Σ N², events) as ``count_hops`` does. They are integers: shards add up.
     """
     horizontal = True if hop == "horizontal_hop" else None
+    speeds = shares_of_speeds(scene.velocity_components).size
+    sizes = place.within / PARTS, scene.fastest / PARTS, speeds
     if not scene.has_effects and not horizontal:
         # That is a horizontal hop of the box on its side.
         scene, hop, horizontal = Box.of(scene).turned().scene(scene.radius), "horizontal_hop", True
     return count_hops(
-        np.uint64(seed), first, stop, replicas, lanes, place.time, place.fastest,
+        np.uint64(seed), first, stop, replicas, lanes, place.time, place.fastest, sizes,
         law_of(scene), *origins(scene, hop, place.within), horizontal,
     )  # fmt: skip
 
@@ -228,30 +250,46 @@ def run_of(scene, hop, target, budget, seed):
     Its streams are its own.
     """
     place = strip_of(scene, hop)
-    seed = stream_seed(seed, hop, "strip", key(scene.radius))
+    seed, shares = stream_seed(seed, hop, "strip", key(scene.radius)), shares_of(scene, hop, place)
     return Run(
         lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
-        lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS) / target,
-        lambda sums: int(sums[2]),
+        lambda sums, blocks: np.array([relative_error(shares, sums) / target]),
+        lambda sums: int(sums[3]),
         REPLICAS * max(1.0, LASTING * expected_events(scene, hop, place)),
         budget,
     )
+
+
+def relative_error(shares, sums):
+    """Return the relative standard error of ⟨N⟩, inf where nothing was counted.
+
+    ``shares`` are those of ``shares_of``, ``sums`` what ``run_blocks`` returns.
+    """
+    mean, error = mean_of(shares, *sums[:3])
+    return error / mean if mean else math.inf
 
 
 def summary(scene, hop, done):
     """Return what was found of a rare ``hop``, for a JSON file.
 
     That is the duration 2T and the share P of configuration space, numbers of replicas, rounds,
-    wall and disc events, ΣN, ΣN² and the status.
+    wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
+    ΣN and ΣN².
     """
-    place, (count, squares, events) = strip_of(scene, hop), done.sums
+    place, (starts, counts, squares, events) = strip_of(scene, hop), done.sums
     return {
         "duration": 2 * place.time,
         "share": place.share,
         "replicas": done.blocks * REPLICAS,
         "rounds": done.rounds,
         "events": int(events),
-        "count": int(count[0]),
-        "squares": int(squares[0, 0]),
+        "count": int(counts.sum()),
+        "squares": int(squares.sum()),
         "status": "reached" if done.excess[0] <= 1 else "budget",
+        "strata": {
+            "shares": shares_of(scene, hop, place).tolist(),
+            "starts": starts.tolist(),
+            "counts": counts.tolist(),
+            "squares": squares.tolist(),
+        },
     }

@@ -152,7 +152,7 @@ def pilot_dynamics(job):
 
 def pilot_strip(scene, hop, job):
     """Return the ``Pilot`` of a rare ``hop`` of a job."""
-    from twodiscs.dynamics import ensemble, strip
+    from twodiscs.dynamics import strip
     from twodiscs.sampling.rounds import FIRST_ROUND
 
     place = strip.strip_of(scene, hop)
@@ -161,10 +161,10 @@ def pilot_strip(scene, hop, job):
         return strip.run_blocks(scene, hop, place, SEED, 0, blocks)
 
     count(1)
-    counted, cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[2])
-    replicas = FIRST_ROUND * ensemble.REPLICAS
-    excess = ensemble.relative_errors(*counted[:2], replicas)[0] / job["accuracy"][hop]
-    needed = min(max(1.0, MARGIN * excess**2) * counted[2], job["event_budget"])
+    counted, cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[3])
+    error = strip.relative_error(strip.shares_of(scene, hop, place), counted)
+    excess = error / job["accuracy"][hop]
+    needed = min(max(1.0, MARGIN * excess**2) * counted[3], job["event_budget"])
     return Pilot(round(needed), cost)
 
 

@@ -11,7 +11,13 @@ import numpy as np
 
 from twodiscs.model.checks import InputError
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.prism import draw_in_prism, draw_on_surface, draw_velocities, prism_of
+from twodiscs.sampling.prism import (
+    draw_in_prism,
+    draw_on_surface,
+    draw_velocities,
+    kinetic_share,
+    prism_of,
+)
 from twodiscs.sampling.separations import (
     draw_configuration,
     draw_constants,
@@ -130,6 +136,13 @@ def draw_any_starts(state, draw, sides, starts, prism):
     """Fill ``starts`` with states of the invariant measure, from ``prism`` unless it is None."""
     for i in range(starts.shape[1]):
         fill_start(state, prism, None, starts, i)
+
+
+@optional(lambda starts, i, prism: 1.0)
+def kinetic_share_at(starts, i, prism):
+    """Return the share of the energy that is kinetic in the state in column ``i`` of ``starts``."""
+    half_1, half_2 = prism.half_1[1], prism.half_2[1]
+    return kinetic_share(starts[1, i], starts[3, i], half_1, half_2, prism.weights)
 
 
 def _plain_start(state, draw, surface, start, prism):

@@ -24,6 +24,7 @@ import numpy as np
 from mpmath import mp
 
 from twodiscs.comparison.estimates import Line
+from twodiscs.comparison.rows import mean_time_rows
 from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.box import Box
@@ -492,12 +493,12 @@ def strip_rows(scene, blocks):
         place = strip.strip_of(scene, hop)
         strip.run_blocks(scene, hop, place, 0, 0, 1)
         start = time.process_time()
-        sums, squares, events = strip.run_blocks(scene, hop, place, 1, 0, blocks)
+        sums = strip.run_blocks(scene, hop, place, 1, 0, blocks)
         seconds = time.process_time() - start
-        more = (float(relative_errors(sums, squares, blocks * REPLICAS)[0]) / TARGET) ** 2
+        more = (strip.relative_error(strip.shares_of(scene, hop, place), sums) / TARGET) ** 2
         yield row(
             "radius", f"{hop}_time", scene.radius, "strip",
-            setting=place.time, work=round(events * more), seconds=seconds * more, error=TARGET,
+            setting=place.time, work=round(sums[3] * more), seconds=seconds * more, error=TARGET,
             repetitions=blocks * REPLICAS,
         )  # fmt: skip
 
@@ -554,9 +555,9 @@ def by_radius(scale=1.0):
             start = time.process_time()
             point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
-            found = point["strips"].get(event) or point | {"count": point["counts"][event]}
-            mean = found["duration"] * found["replicas"] / found["count"] / found.get("share", 1)
-            bias = mean / exact.mean_times(scene)[event] - 1
+            true = exact.mean_times(scene)[event]
+            (found,) = mean_time_rows(scene, {(radius, f"{event}_time"): true}, [point])
+            bias = found["estimate"] / true - 1
             rows.append(
                 row(
                     "radius", f"{event}_time", radius, "paid",
