@@ -216,12 +216,26 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     tau = law.times["horizontal_hop"]
     strip = {"duration": 0.125, "share": 0.004, "replicas": 10**7, "count": 0, "status": "reached"}
     strip["count"] = round(0.125 * 10**7 / 0.004 / tau)
+    # Of two strata the first one had a few starts too many.
+    n = strip["replicas"] // 2
+    slow, fast = strip["count"] // 4, strip["count"] // 4 * 3
+    strip["count"] = slow + fast
+    strip["strata"] = {
+        "shares": [[0.499, 0.501]], "starts": [[n, n]], "counts": [[slow, fast]],
+        "squares": [[slow, fast]],
+    }  # fmt: skip
     point["strips"] = {"horizontal_hop": strip | {"squares": strip["count"]}}
     found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, strip["count"])
-    assert row["estimate"] == pytest.approx(tau, rel=1e-6)
+    # ⟨N⟩ is 0.499 · q/2 + 0.501 · 3 q/2 with q that of all starts alike.
+    assert row["estimate"] == pytest.approx(tau / 1.001, rel=1e-6)
+    rates = np.array([slow, fast]) / n
+    error = math.sqrt(np.sum(np.array([0.499, 0.501]) ** 2 * rates * (1 - rates)) / (n - 1))
+    mean = [0.499, 0.501] @ rates
+    assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
+    assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=0.01)
     (other,) = rows.seen_anyway(SCENE, theory, [point])
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point["counts"]["horizontal_hop"]

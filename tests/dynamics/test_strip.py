@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from twodiscs.comparison import estimates
+from twodiscs.comparison import estimates, scores
 from twodiscs.dynamics import counting, strip
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import states
+from twodiscs.sampling.strata import mean_of
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -44,11 +45,11 @@ class Endless(strip.Strip):
 
 def check_rate(scene, hop, place, blocks=24, seed=1):
     """Five sigma."""
-    sums, squares, events = strip.run_blocks(scene, hop, place, seed, 0, blocks)
-    (error,) = relative_errors(sums, squares, blocks * REPLICAS)
-    assert error < 0.05
-    rate = sums[0] / (blocks * REPLICAS) * place.share / (2 * place.time)
-    assert abs(rate / exact.rate(scene, hop) - 1) < 5 * error
+    *sums, events = strip.run_blocks(scene, hop, place, seed, 0, blocks)
+    mean, error = mean_of(strip.shares_of(scene, hop, place), *sums)
+    assert error / mean < 0.05
+    true = exact.rate(scene, hop) * 2 * place.time / place.share
+    assert abs(mean - true) < 5 * error
     return events / (blocks * REPLICAS)
 
 
@@ -69,6 +70,32 @@ def test_strips_of_effects_have_the_exact_rate(name):
     place = strip.strip_of(scene, hop)
     check_rate(scene, hop, place)
     check_rate(scene, hop, strip.strip(scene, hop, place.time / 4), seed=2)
+
+
+@pytest.mark.parametrize("name", ["plain", *NECKS])
+def test_starts_fill_the_strata_as_their_exact_shares_say(name):
+    """χ² of the numbers of starts in all strata; one false alarm in 10⁶."""
+    scene, hop = NECKS.get(name, (PAPER, "vertical_hop"))
+    place = strip.strip_of(scene, hop)
+    shares, (starts, *_) = (
+        strip.shares_of(scene, hop, place),
+        strip.run_blocks(scene, hop, place, 4, 0, 100),
+    )
+    assert starts.sum() == 100 * REPLICAS
+    expected = starts.sum() * shares
+    assert shares.shape == starts.shape
+    assert expected.min() > 100
+    chi2 = np.sum((starts - expected) ** 2 / expected)
+    assert scores.chi2_p(chi2, starts.size - 1) > 1e-6
+
+
+@pytest.mark.parametrize(("radius", "hop"), PLACES)
+def test_strata_take_most_of_the_scatter(radius, hop):
+    scene = PAPER.with_radius(radius)
+    place = strip.strip_of(scene, hop)
+    *sums, _ = strip.run_blocks(scene, hop, place, 2, 0, 100)
+    alike = mean_of([[1.0]], *(part.sum(keepdims=True) for part in sums))
+    assert mean_of(strip.shares_of(scene, hop, place), *sums)[1] ** 2 < alike[1] ** 2 / 3
 
 
 @pytest.mark.parametrize(("radius", "hop"), PLACES)
@@ -132,9 +159,9 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(name):
 )
 def test_paths_end_only_where_no_hop_can_follow(scene, hop):
     place = strip.strip_of(scene, hop)
-    sums, squares, events = strip.run_blocks(scene, hop, place, 3, 0, 8)
-    all_sums, all_squares, all_events = strip.run_blocks(scene, hop, Endless(*place), 3, 0, 8)
-    assert (sums, squares) == (all_sums, all_squares)
+    *sums, events = strip.run_blocks(scene, hop, place, 3, 0, 8)
+    *all_sums, all_events = strip.run_blocks(scene, hop, Endless(*place), 3, 0, 8)
+    assert np.array_equal(sums, all_sums)
     assert events < all_events
 
 
@@ -142,7 +169,7 @@ def test_paths_end_only_where_no_hop_can_follow(scene, hop):
 def test_events_are_about_as_many_as_expected(radius, hop):
     scene = PAPER.with_radius(radius)
     place = Endless(*strip.strip_of(scene, hop))
-    events = strip.run_blocks(scene, hop, place, 1, 0, 24)[2] / (24 * REPLICAS)
+    events = strip.run_blocks(scene, hop, place, 1, 0, 24)[3] / (24 * REPLICAS)
     # The choice of T needs no more than that.
     assert events == pytest.approx(strip.expected_events(scene, hop, place), rel=0.2)
 
@@ -166,11 +193,12 @@ def test_intervals_cover_as_they_say(radius, hop):
     """95 % intervals of 800 blocks: between 92 and 98 %, which is four standard errors."""
     scene = PAPER.with_radius(radius)
     place, true = strip.strip_of(scene, hop), exact.mean_times(scene)[hop]
-    covered = []
+    shares, covered = strip.shares_of(scene, hop, place), []
     for block in range(800):
-        sums, squares, _ = strip.run_blocks(scene, hop, place, 9, block, block + 1)
+        *sums, _ = strip.run_blocks(scene, hop, place, 9, block, block + 1)
+        total, squares = int(sums[1].sum()), int(sums[2].sum())
         time = estimates.mean_time(
-            int(sums[0]), int(squares[0, 0]), REPLICAS, 2 * place.time / place.share
+            total, squares, REPLICAS, 2 * place.time / place.share, mean_of(shares, *sums)
         )
         covered.append(time.covers(true))
     assert 0.92 <= np.mean(covered) <= 0.98
@@ -181,7 +209,7 @@ def test_only_rare_hops_of_a_neck_have_strips():
     assert strip.rare_hops(PAPER.with_radius(0.24)) == ("horizontal_hop",)
     assert strip.rare_hops(PAPER.with_radius(0.3)) == ()
     assert strip.rare_hops(PAPER.with_radius(0.374)) == ("vertical_hop",)
-    # Walls are hit often in a low box, but its discs pass freely.
+    # Walls are hit often in a low box, but its discs pass freely: in a straight flight.
     assert strip.rare_hops(Scene(100.0, 1.0, 0.01)) == ()
     for scene, hop in NECKS.values():
         assert set(strip.rare_hops(scene)) <= {hop}
@@ -195,7 +223,9 @@ def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     found = point["strips"][hop]
     assert point["status"] == {hop: found["status"]} == {hop: "reached"}
     assert found["events"] < 100 * found["replicas"]
-    time = found["duration"] / found["share"] * found["replicas"] / found["count"]
+    mean, error = mean_of(**found["strata"])
+    assert error / mean <= 0.01
+    time = found["duration"] / found["share"] / mean
     assert abs(time / exact.mean_times(scene)[hop] - 1) < 5 * 0.01
     assert point == counting.count_events(scene, {hop: 0.01}, 10**8, 1)
 

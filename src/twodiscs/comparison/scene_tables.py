@@ -119,7 +119,10 @@ class MeanTimes(Table):
     exact: TIME
     """exact mean time; empty where the event is impossible"""
     estimate: TIME
-    """copies · T · replicas/(share · count); empty where none was seen"""
+    """
+    copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip with its mean over strata of the
+    starts; empty where none was seen
+    """
     stderr: TIME
     """standard error from the spread between replicas; empty when too few to be honest"""
     z: NUMBER

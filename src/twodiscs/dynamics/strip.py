@@ -40,16 +40,16 @@ from twodiscs.sampling.strata import PARTS, mean_of, shares_of_speeds
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Hops that come more often than once in so many events are counted from starts anywhere, and so
-#: are those whose paths would have fewer events than this: nothing but straight flights.
-RARE = 25
-LEAST_EVENTS = 1
+#: Hops that come more often than once in so many events are counted from starts anywhere.
+RARE = 40
 
 #: Passes between two looks at which lanes have ended: paths are short.
 PASSES = 2
 
 #: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
+#: Where that holds for the widest strip, too, there is no neck.
 FILL = 0.75
+NO_NECK = 0.97
 
 #: Wall and disc events in the time 2T, about: at most so many.
 MOST_EVENTS = 32
@@ -127,13 +127,13 @@ def shares_of(scene, hop, place):
 
 
 def rare_hops(scene):
-    """Return the hops that are counted from strips."""
+    """Return the hops that are counted from strips: those that are rare because of a neck."""
     return tuple(
         hop
         for hop in HOPS
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
-        and expected_events(scene, hop, strip_of(scene, hop)) >= LEAST_EVENTS
+        and _fill(scene, hop, strip(scene, hop, widest(scene, hop))) < NO_NECK
     )
 
 
