@@ -166,6 +166,38 @@ def test_a_file_that_is_no_point_is_named(tmp_path, text, message):
         gather.read_points(tmp_path, {"monte_carlo": ["0.1"]})
 
 
+STRATA = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares": [[1, 4]]}
+STRIP = {
+    "duration": 0.1, "share": 0.5, "replicas": 18, "count": 3, "squares": 5, "status": "reached",
+    "strata": STRATA,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("strip", "message"),
+    [
+        (STRIP, None),
+        ({name: STRIP[name] for name in STRIP if name != "strata"}, "has no strata"),
+        (STRIP | {"strata": None}, "has wrong strata: "),
+        (STRIP | {"strata": {}}, "has wrong strata: "),
+        (STRIP | {"strata": STRATA | {"starts": [[9]]}}, "has wrong strata: strata must be"),
+        (STRIP | {"strata": STRATA | {"shares": [[0.5, 0.6]]}}, "has wrong strata: shares"),
+        (STRIP | {"replicas": 19}, "has strata of 18 replicas, and not 19"),
+        (STRIP | {"count": 4}, "has strata of 3 count, and not 4"),
+    ],
+)
+def test_a_damaged_strip_is_named(tmp_path, points, strip, message):
+    point = points["dynamics"][1] | {"strips": {"vertical_hop": strip}}
+    store(tmp_path / "dynamics", {"0.1": point})
+    keys = {"dynamics": ["0.1"]}
+    if message is None:
+        assert gather.read_points(tmp_path, keys)["dynamics"] == [point]
+        return
+    said = rf"dynamics/0\.1\.json is not a file of dynamics: its strip of vertical_hop {message}"
+    with pytest.raises(ValueError, match=said):
+        gather.read_points(tmp_path, keys)
+
+
 @pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
 def test_the_point_of_another_stage_is_named(tmp_path, points, stage):
     for other, some in points.items():

@@ -36,33 +36,47 @@ def test_only_the_fastest_starts_are_taken_together(components):
         assert 1 - share_below(shares.size / PARTS, components) < LEAST_SHARE
 
 
-def drawn(rng, shares, means, starts):
-    """Return (starts, Σ N, Σ N²) by strata; N has Poisson's law with the mean of its stratum."""
-    filled = rng.multinomial(starts, shares.ravel()).reshape(shares.shape)
-    counts, squares = np.zeros_like(filled), np.zeros_like(filled)
-    for at, n in np.ndenumerate(filled):
-        found = rng.poisson(means[at], n)
-        counts[at], squares[at] = found.sum(), (found**2).sum()
-    return filled, counts, squares
+SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])
+MEANS = np.outer([3.0, 2.0, 1.0, 0.5, 0.0], [0.2, 1.0, 2.0])
+TRUE = float(np.sum(SHARES * MEANS))
 
 
-@pytest.mark.parametrize("starts", [60, 300, 3000])
-def test_means_have_no_bias_and_errors_are_honest(starts):
-    """Five sigma on the mean of 2000 means and on their spread; few starts share their strata."""
+def filled(rng, starts):
+    """Return numbers of starts by strata, as chance fills them."""
+    return rng.multinomial(starts, SHARES.ravel()).reshape(SHARES.shape)
+
+
+@pytest.mark.parametrize("starts", [60, 400, 3000])
+def test_means_have_no_bias(starts):
+    """Five sigma; without scatter within strata a bias of a hundredth of the error shows."""
     rng = np.random.default_rng(starts)
-    shares = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])
-    means = np.outer([3.0, 2.0, 1.0, 0.5, 0.0], [0.2, 1.0, 2.0])
-    true = float(np.sum(shares * means))
-    found = np.array([mean_of(shares, *drawn(rng, shares, means, starts)) for _ in range(2000)])
-    off, variances = found[:, 0] - true, found[:, 1] ** 2
-    assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size)
-    spread = off**2 - variances
+    fillings = [filled(rng, starts) for _ in range(20_000)]
+    off = np.array([mean_of(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
+    # Where there are enough starts to keep all strata nothing scatters.
+    assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size) + 1e-15
+
+
+@pytest.mark.parametrize("starts", [60, 400, 3000])
+def test_errors_are_honest(starts):
+    """Five sigma on the spread of 2000 means of Poisson counts."""
+    rng = np.random.default_rng(starts)
+    off, variances = [], []
+    for _ in range(2000):
+        n = filled(rng, starts)
+        values = [rng.poisson(mean, k) for mean, k in zip(MEANS.flat, n.flat, strict=True)]
+        counts, squares = (
+            np.reshape([int((v**power).sum()) for v in values], n.shape) for power in (1, 2)
+        )
+        mean, error = mean_of(SHARES, n, counts, squares)
+        off.append(mean - TRUE)
+        variances.append(error**2)
+    spread = np.array(off) ** 2 - variances
     assert abs(spread.mean()) <= 5 * spread.std() / math.sqrt(spread.size)
     # Of all scatter, that within strata is left as soon as there are enough starts.
-    within = math.sqrt(true / starts)
-    between = math.sqrt(float(np.sum(shares * (means - true) ** 2)) / starts)
+    within = math.sqrt(TRUE / starts)
+    between = math.sqrt(float(np.sum(SHARES * (MEANS - TRUE) ** 2)) / starts)
     if starts == 3000:
-        assert off.std() < 1.1 * within < 0.9 * math.hypot(within, between)
+        assert np.std(off) < 1.1 * within < 0.9 * math.hypot(within, between)
 
 
 def test_one_stratum_is_the_plain_mean():
@@ -74,12 +88,39 @@ def test_one_stratum_is_the_plain_mean():
 
 
 def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
-    shares = np.full((2, 3), 1 / 6)
-    starts, counts = np.array([[7, 9, 9], [9, 9, 9]]), np.arange(6).reshape(2, 3)
-    # Two and two of either axis: three columns are a pair and a single one.
-    assert mean_of(shares, starts, counts, counts)[0] == pytest.approx(
-        2 / 3 * 8 / 34 + 1 / 3 * 7 / 18
-    )
+    shares, counts = np.full((2, 3), 1 / 6), np.arange(6).reshape(2, 3)
+    # 16 are expected in each of 6 strata as soon as there are 96 starts, whatever there were.
+    for last, parts in ((21, 6), (20, 2)):
+        starts = np.array([[15, 15, 15], [15, 15, last]])
+        mean, _ = mean_of(shares, starts, counts, counts)
+        pairs = 2 / 3 * 8 / 60 + 1 / 3 * 7 / (15 + last)
+        assert mean == pytest.approx(pairs if parts == 2 else np.mean(counts / starts))
+    # A stratum that stayed all but empty has no mean of its own.
+    starts = np.array([[99, 99, 99], [99, 99, 1]])
+    mean, _ = mean_of(shares, starts, counts, counts)
+    assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
     assert mean_of(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
+
+
+GOOD = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares": [[1, 2]]}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"shares": [[0.5, 0.4]]}, "shares of strata must add up to 1, not to 0.9"),
+        ({"shares": [[float("nan"), 0.5]]}, "must add up to 1, not to nan"),
+        ({"starts": [[0, 0]]}, "strata must be starts in arrays of one shape"),
+        ({"starts": [[9], [9]]}, "strata must be starts in arrays of one shape"),
+        ({"counts": [1, 2]}, "strata must be starts in arrays of one shape"),
+        ({"counts": [[1, 2], [3]]}, "strata must be arrays of numbers"),
+        ({"squares": "many"}, "strata must be arrays of numbers"),
+        ({"squares": None}, "strata must be"),
+    ],
+)
+def test_what_are_no_strata_is_refused(wrong, said):
+    mean_of(**GOOD)
+    with pytest.raises(ValueError, match=said):
+        mean_of(**GOOD | wrong)

@@ -3,9 +3,17 @@
 import json
 from pathlib import Path
 
+import numpy as np
+
 from twodiscs.comparison import check, rows
 from twodiscs.model.checks import InputError, one_of
 from twodiscs.model.events import EVENTS
+from twodiscs.sampling.strata import mean_of
+
+#: What a strip of a point of dynamics has.
+STRIP = ("duration", "share", "replicas", "count", "squares", "status", "strata")
+#: What the strata of a strip add up to, and which part of theirs does.
+STRATA = {"replicas": "starts", "count": "counts", "squares": "squares"}
 
 STAGES = ("monte_carlo", "dynamics", "intervals")
 
@@ -37,7 +45,24 @@ def _read(path, kind):
     missing = [name for name in FIELDS[kind] if name not in point]
     if missing:
         raise InputError(f"{path} is not a file of {kind}: it has no {', '.join(missing)}")
+    for hop, found in point.get("strips", {}).items():
+        _check_strip(f"{path} is not a file of {kind}: its strip of {hop}", found)
     return point
+
+
+def _check_strip(text, found):
+    """Raise ``InputError`` that begins with ``text`` unless a strip holds what it should."""
+    missing = [name for name in STRIP if name not in found]
+    if missing:
+        raise InputError(f"{text} has no {', '.join(missing)}")
+    try:
+        mean_of(**found["strata"])
+        sums = {name: np.sum(found["strata"][part]) for name, part in STRATA.items()}
+    except (InputError, TypeError) as error:
+        raise InputError(f"{text} has wrong strata: {error}") from None
+    for name, total in sums.items():
+        if total != found[name]:
+            raise InputError(f"{text} has strata of {total} {name}, and not {found[name]!r}")
 
 
 def read_points(folder, keys):

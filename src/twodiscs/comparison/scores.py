@@ -127,7 +127,7 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
 
     - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
       as a normal deviate. ``mean``, if given, is that count and its error as known better than from
-      these sums.
+      these sums; the other tests do without it.
     - "cluster-bound" below: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ)) with
       h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds where a replica that sees
       the event sees at most K; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be false,

@@ -144,10 +144,10 @@ def count_hops(
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
 
     A path ends where its discs would have to be faster than ``fastest`` to hop once more. ``sizes``
-    are those of a stratum: the |Δ| and the |Δ̇| of a start, at its full kinetic energy. Returns
-    (starts, Σ N, Σ N², wall and disc events), int64, all but the last one by strata
-    (``PARTS``, m). The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead
-    of None.
+    are those of a stratum in |Δ| and in |Δ̇|, were all energy kinetic, and how many of the latter
+    there are, m. Returns starts, Σ N and Σ N² by strata (3, ``PARTS``, m), and the wall and disc
+    events, all int64. The hops are vertical ones, or horizontal ones if ``horizontal`` is True
+    instead of None.
     """
     rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
@@ -188,7 +188,7 @@ def count_hops(
                 used += 1
                 running += 1
         if running == 0:
-            return found[0], found[1], found[2], events
+            return found, events
 
         for _ in range(PASSES):
             for i in range(lanes):
@@ -213,7 +213,7 @@ def law_reverses(k, law):
 def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
     """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
 
-    Returns (starts, Σ N, Σ N², events) as ``count_hops`` does. They are integers: shards add up.
+    Returns (found, events) as ``count_hops`` does. They are integers: two shards add up.
     """
     horizontal = True if hop == "horizontal_hop" else None
     speeds = shares_of_speeds(scene.velocity_components).size
@@ -253,19 +253,19 @@ def run_of(scene, hop, target, budget, seed):
     seed, shares = stream_seed(seed, hop, "strip", key(scene.radius)), shares_of(scene, hop, place)
     return Run(
         lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
-        lambda sums, blocks: np.array([relative_error(shares, sums) / target]),
-        lambda sums: int(sums[3]),
+        lambda sums, blocks: np.array([relative_error(shares, sums[0]) / target]),
+        lambda sums: int(sums[1]),
         REPLICAS * max(1.0, LASTING * expected_events(scene, hop, place)),
         budget,
     )
 
 
-def relative_error(shares, sums):
+def relative_error(shares, found):
     """Return the relative standard error of ⟨N⟩, inf where nothing was counted.
 
-    ``shares`` are those of ``shares_of``, ``sums`` what ``run_blocks`` returns.
+    ``shares`` are those of ``shares_of``, ``found`` is what ``run_blocks`` found by strata.
     """
-    mean, error = mean_of(shares, *sums[:3])
+    mean, error = mean_of(shares, *found)
     return error / mean if mean else math.inf
 
 
@@ -276,7 +276,8 @@ def summary(scene, hop, done):
     wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
     ΣN and ΣN².
     """
-    place, (starts, counts, squares, events) = strip_of(scene, hop), done.sums
+    place, (found, events) = strip_of(scene, hop), done.sums
+    starts, counts, squares = found
     return {
         "duration": 2 * place.time,
         "share": place.share,

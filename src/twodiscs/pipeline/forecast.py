@@ -161,10 +161,10 @@ def pilot_strip(scene, hop, job):
         return strip.run_blocks(scene, hop, place, SEED, 0, blocks)
 
     count(1)
-    counted, cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[3])
-    error = strip.relative_error(strip.shares_of(scene, hop, place), counted)
+    (found, events), cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[1])
+    error = strip.relative_error(strip.shares_of(scene, hop, place), found)
     excess = error / job["accuracy"][hop]
-    needed = min(max(1.0, MARGIN * excess**2) * counted[3], job["event_budget"])
+    needed = min(max(1.0, MARGIN * excess**2) * events, job["event_budget"])
     return Pilot(round(needed), cost)
 
 

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from twodiscs.model.checks import InputError
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: Strata of each quantity.
@@ -18,12 +19,12 @@ PARTS = 8
 #: The fastest starts are one stratum, of at least such a share.
 LEAST_SHARE = 1 / 64
 
-#: Where a stratum has fewer starts than so many, neighbours are taken together.
-FEWEST = 8
+#: Where the smallest stratum expects fewer starts than so many, neighbours are taken together.
+FEWEST = 16
 
 
 def share_below(cosine, components):
-    """Return the share of directions with a component of at most ``cosine``, positive or negative.
+    """Return the share of directions with a component between −``cosine`` and ``cosine``.
 
     They are uniform on the unit sphere in so many dimensions, ``components`` ≥ 2; 0 ≤ cosine ≤ 1.
     The component is sin t with density ∝ cosⁿ⁻² t.
@@ -38,7 +39,7 @@ def share_below(cosine, components):
 
 
 def shares_of_speeds(components):
-    """Return the shares of starts whose component along an axis is within 0, 1/8, 2/8 … of speed.
+    """Return the shares of directions by the size of one component: up to 1/8, to 2/8 and so on.
 
     The last ones are taken together: they have a share of ``LEAST_SHARE`` at least.
     """
@@ -48,7 +49,7 @@ def shares_of_speeds(components):
 
 
 def _merged(sums):
-    """Return ``sums`` (n, m) of strata with their neighbours, two by two."""
+    """Return ``sums`` (n, m) of strata and their neighbours, two by two; an odd one stays alone."""
     for axis, size in enumerate(sums.shape):
         sums = np.add.reduceat(sums, np.arange(0, size, 2), axis=axis)
     return sums
@@ -58,12 +59,22 @@ def mean_of(shares, starts, counts, squares):
     """Return the mean of N and its standard error, from what is known of the strata.
 
     That is their exact ``shares``, which add up to 1, the numbers of ``starts``, Σ N and Σ N²,
-    arrays (n, m). Which strata are taken together depends on the numbers of starts alone; so the
-    mean has no bias. The error is infinite for a single start.
+    arrays (n, m). Which strata are taken together depends on the number of all starts, so that the
+    mean has no bias but for the rare case of a stratum with fewer than two of them. The error is
+    infinite for a single start. Raises ``InputError`` for arrays that are no such numbers.
     """
-    found = [np.asarray(part) for part in (shares, starts, counts, squares)]
-    while found[1].min() < FEWEST and found[1].size > 1:
-        found = [_merged(part) for part in found]
+    try:
+        found = [np.array(part, float) for part in (shares, starts, counts, squares)]
+    except (TypeError, ValueError):
+        raise InputError("strata must be arrays of numbers") from None
+    shapes = {part.shape for part in found}
+    if len(shapes) > 1 or found[0].ndim != 2 or not found[1].sum() >= 1:
+        raise InputError(f"strata must be starts in arrays of one shape (n, m), not of {shapes}")
+    if not abs(found[0].sum() - 1) < 1e-9:
+        raise InputError(f"shares of strata must add up to 1, not to {found[0].sum():g}")
+    expected = found[1].sum() * found[0]
+    while found[0].size > 1 and (expected.min() < FEWEST or found[1].min() < 2):
+        *found, expected = [_merged(part) for part in (*found, expected)]
     shares, starts, counts, squares = found
     means = counts / starts
     if starts.min() < 2:

@@ -157,10 +157,10 @@ STUDIES = {
                     that error (full symbols), and predicted from the exact rates and one speed
                     for the noise of a Poisson process (lines). Below its line an event comes more
                     evenly than at random, above it in clusters. Hops near the radius where they
-                    are blocked are counted from starts next to their surface (grey), at a price
-                    that stays flat, here up to a relative distance of 1e-6. (b) Error of the mean
-                    time between disc collisions where there is little room left, in double and in
-                    single precision: lengths rounded to 24 bits make another room (dashed).
+                    are blocked are counted from starts in a strip next to their surface (grey), at
+                    a price that stays flat, here up to a relative distance of 1e-6. (b) Error of
+                    the mean time between disc collisions where there is little room left, in double
+                    and in single precision: lengths rounded to 24 bits make another room (dashed).
                     """,
                     "studies.accuracy_cost.figure_by_radius",
                     tables=("accuracy_cost",),

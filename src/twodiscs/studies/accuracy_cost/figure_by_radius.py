@@ -59,7 +59,8 @@ def _times(axes, rows):
                     mfc=inside, ms=SIZES[marker],
                     label=name_of(event) if method == "lockstep" else None,
                 )  # fmt: skip
-    axes.plot([], [], ls="", marker="o", color=BLACK, ms=SIZES["o"], label="at this error")
+    for inside, name in (("0.7", "from strips"), (BLACK, "at this error")):
+        axes.plot([], [], ls="", marker="o", color=BLACK, mfc=inside, ms=SIZES["o"], label=name)
     axes.plot([], [], color=BLACK, label="Poisson process")
     for radius, _ in found:
         axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)

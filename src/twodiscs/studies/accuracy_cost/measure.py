@@ -493,12 +493,12 @@ def strip_rows(scene, blocks):
         place = strip.strip_of(scene, hop)
         strip.run_blocks(scene, hop, place, 0, 0, 1)
         start = time.process_time()
-        sums = strip.run_blocks(scene, hop, place, 1, 0, blocks)
+        found, events = strip.run_blocks(scene, hop, place, 1, 0, blocks)
         seconds = time.process_time() - start
-        more = (strip.relative_error(strip.shares_of(scene, hop, place), sums) / TARGET) ** 2
+        more = (strip.relative_error(strip.shares_of(scene, hop, place), found) / TARGET) ** 2
         yield row(
             "radius", f"{hop}_time", scene.radius, "strip",
-            setting=place.time, work=round(sums[3] * more), seconds=seconds * more, error=TARGET,
+            setting=place.time, work=round(events * more), seconds=seconds * more, error=TARGET,
             repetitions=blocks * REPLICAS,
         )  # fmt: skip
 

@@ -112,6 +112,12 @@ def _unmet_points(name, scenes, seed, blocks):
 
 # The table ----------------------------------------------------------------------------------------
 
+#: What effects.csv has of a row of mean_times.csv.
+KEPT = (
+    "radius", "exact", "estimate", "stderr", "z", "count", "replicas", "duration", "status", "test",
+    "starts", "share", "copies",
+)  # fmt: skip
+
 
 def rows(points):
     """Yield the rows of effects.csv, from the files of what ``job`` returned for each scene."""
@@ -144,12 +150,10 @@ def _plain(box, radius):
 
 def _mean_time_row(box, row):
     plain = _plain(box, row["radius"])
-    kept = ("radius", "exact", "estimate", "stderr", "z", "count", "replicas", "duration", "status")
-    return {name: row[name] for name in kept} | {
+    return {name: row[name] for name in KEPT} | {
         "effects": repr(box.effects),
         "quantity": f"{row['event']}_time",
         "plain": exact.mean_times(plain)[row["event"]] if plain else None,
-        "test": row["test"],
     }
 
 
@@ -181,4 +185,7 @@ def _unmet_row(box, point, time, count):
         "duration": time,
         "status": "sampled" if honest else "too-few" if count else "none-seen",
         "test": None,
+        "starts": "invariant",
+        "share": 1.0,
+        "copies": 1,
     }

@@ -29,7 +29,7 @@ class Effects(Table):
     never_met_share 2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), to which that of plain discs tends
     """
     estimate: AS_EXACT
-    """T · replicas/count, or count/replicas for the share"""
+    """as in mean_times.csv; for never_met_share count/replicas"""
     stderr: AS_EXACT
     """its standard error; empty when too few to be honest"""
     z: NUMBER
@@ -45,6 +45,12 @@ class Effects(Table):
     error
     """
     test: TEXT
+    starts: TEXT
+    """where they come from, as in mean_times.csv"""
+    share: NUMBER
+    """share of configuration space that starts come from"""
+    copies: COUNT
+    """events that count as one, as in mean_times.csv"""
 
 
 class EffectsCost(Table):
