@@ -63,11 +63,11 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
     assert {name.split("/")[-1].split("-")[0] for name in first} == {"all", "horizontal_hop"}
 
     # A tighter accuracy takes more shards, however its build was interrupted.
-    change(place, accuracy=0.002)
+    change(place, accuracy=0.001)
     build(place, "--until", "plan")
     assert (place.path / TABLE).read_bytes() == table
     tighter = build(place)[0]
-    assert tighter.count(b",0.002,reached,") == 2
+    assert tighter.count(b",0.001,reached,") == 2
     assert all(written(place)[name] == stamp for name, stamp in first.items())
     more = shards(written(place)).keys() - first.keys()
     assert more
