@@ -182,8 +182,8 @@ STRIP = {
         (STRIP | {"strata": {}}, "has wrong strata: "),
         (STRIP | {"strata": STRATA | {"starts": [[9]]}}, "has wrong strata: strata must be"),
         (STRIP | {"strata": STRATA | {"shares": [[0.5, 0.6]]}}, "has wrong strata: shares"),
-        (STRIP | {"replicas": 19}, "has strata of 18 replicas, and not 19"),
-        (STRIP | {"count": 4}, "has strata of 3 count, and not 4"),
+        (STRIP | {"replicas": 19}, "has replicas 19, but in its strata 18"),
+        (STRIP | {"count": 4}, "has count 4, but in its strata 3"),
     ],
 )
 def test_a_damaged_strip_is_named(tmp_path, points, strip, message):

@@ -32,8 +32,8 @@ def test_only_the_fastest_starts_are_taken_together(components):
     assert below == pytest.approx(
         [share_below((part + 1) / PARTS, components) for part in range(below.size)], rel=1e-13
     )
-    if shares.size < PARTS:
-        assert 1 - share_below(shares.size / PARTS, components) < LEAST_SHARE
+    if len(shares) < PARTS:
+        assert 1 - share_below(len(shares) / PARTS, components) < LEAST_SHARE
 
 
 SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])
@@ -48,7 +48,7 @@ def filled(rng, starts):
 
 @pytest.mark.parametrize("starts", [60, 400, 3000])
 def test_means_have_no_bias(starts):
-    """Five sigma; without scatter within strata a bias of a hundredth of the error shows."""
+    """Five sigma of 20,000 means, without scatter within strata: 1/28 of what scatter is left."""
     rng = np.random.default_rng(starts)
     fillings = [filled(rng, starts) for _ in range(20_000)]
     off = np.array([mean_of(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
@@ -72,7 +72,8 @@ def test_errors_are_honest(starts):
         variances.append(error**2)
     spread = np.array(off) ** 2 - variances
     assert abs(spread.mean()) <= 5 * spread.std() / math.sqrt(spread.size)
-    # Of all scatter, that within strata is left as soon as there are enough starts.
+    # Of all scatter, that within strata is left as soon as there are enough starts; the spread of
+    # 2000 means is known to 1.6 %, so that a tenth is six standard errors.
     within = math.sqrt(TRUE / starts)
     between = math.sqrt(float(np.sum(SHARES * (MEANS - TRUE) ** 2)) / starts)
     if starts == 3000:

@@ -12,7 +12,7 @@ from twodiscs.sampling.strata import mean_of
 
 #: What a strip of a point of dynamics has.
 STRIP = ("duration", "share", "replicas", "count", "squares", "status", "strata")
-#: What the strata of a strip add up to, and which part of theirs does.
+#: What is the sum of a part of the strata, and of which one.
 STRATA = {"replicas": "starts", "count": "counts", "squares": "squares"}
 
 STAGES = ("monte_carlo", "dynamics", "intervals")
@@ -62,7 +62,7 @@ def _check_strip(text, found):
         raise InputError(f"{text} has wrong strata: {error}") from None
     for name, total in sums.items():
         if total != found[name]:
-            raise InputError(f"{text} has strata of {total} {name}, and not {found[name]!r}")
+            raise InputError(f"{text} has {name} {found[name]!r}, but in its strata {total}")
 
 
 def read_points(folder, keys):

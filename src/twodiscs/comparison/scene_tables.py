@@ -124,7 +124,10 @@ class MeanTimes(Table):
     starts; empty where none was seen
     """
     stderr: TIME
-    """standard error from the spread between replicas; empty when too few to be honest"""
+    """
+    standard error from the spread between replicas, in a strip from that within strata; empty when
+    too few to be honest
+    """
     z: NUMBER
     """
     standard normal deviate, positive when the time is too long; of the mean count, which is

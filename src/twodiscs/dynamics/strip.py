@@ -216,7 +216,7 @@ def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes
     Returns (found, events) as ``count_hops`` does. They are integers: two shards add up.
     """
     horizontal = True if hop == "horizontal_hop" else None
-    speeds = shares_of_speeds(scene.velocity_components).size
+    speeds = len(shares_of_speeds(scene.velocity_components))
     sizes = place.within / PARTS, scene.fastest / PARTS, speeds
     if not scene.has_effects and not horizontal:
         # That is a horizontal hop of the box on its side.

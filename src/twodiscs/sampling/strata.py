@@ -1,17 +1,18 @@
 """Strata: what is known exactly of random starts takes scatter out of a mean over them.
 
 Starts are sorted by quantities whose law is exact, into strata of exact probability p. Then Σ p ⟨N⟩
-with the mean of N in each stratum scatters less than the mean over all starts: by how chance filled
-the strata it does not scatter (Cochran, Sampling Techniques, 1977, section 5A.9). The starts
-stay those of the invariant measure, all independent.
+with the mean of N in each stratum scatters less than the mean over all starts: how chance filled
+the strata matters to second order only (Cochran, Sampling Techniques, 1977, section 5A.9). The
+starts stay those of the invariant measure, all independent.
 """
 
 import math
+from functools import cache
 
 import numpy as np
 
 from twodiscs.model.checks import InputError
-from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.plain import RULE
 
 #: Strata of each quantity.
 PARTS = 8
@@ -32,12 +33,13 @@ def share_below(cosine, components):
 
     def integral(end):
         return end * math.fsum(
-            weight * math.cos(end * t) ** (components - 2) for t, _, weight in gauss_legendre(16)
+            weight * math.cos(end * t) ** (components - 2) for t, _, weight in RULE
         )
 
     return integral(math.asin(cosine)) / integral(math.pi / 2)
 
 
+@cache
 def shares_of_speeds(components):
     """Return the shares of directions by the size of one component: up to 1/8, to 2/8 and so on.
 
@@ -45,7 +47,7 @@ def shares_of_speeds(components):
     """
     below = [share_below(part / PARTS, components) for part in range(PARTS)]
     below = [share for share in below if share <= 1 - LEAST_SHARE]
-    return np.diff([*below, 1.0])
+    return tuple(np.diff([*below, 1.0]))
 
 
 def _merged(sums):
