@@ -11,6 +11,7 @@ from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
     REPLICAS,
+    find_events,
     nearest_power_of_two,
     new_rows,
     put_state,
@@ -27,7 +28,6 @@ from twodiscs.dynamics.law import (
     after_event,
     crosses,
     law_of,
-    next_event,
 )
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
@@ -183,8 +183,7 @@ def count_blocks(
             return sums, products
 
         for _ in range(PASSES):
-            for i in range(lanes):
-                times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
+            find_events(rows, remaining, times, codes, law)
             for i in range(lanes):
                 # Everything is loaded before anything is stored.
                 before, code, first_count = state_at(rows, i, law), codes[i], packed[i]

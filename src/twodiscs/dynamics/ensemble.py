@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from twodiscs.dynamics.law import first_event, meeting
 from twodiscs.sampling.jit import inlined, optional
 
 LANES = 64
@@ -85,6 +86,21 @@ def put_state(rows, i, state, law):
     put_pair(rows, 8, i, state, law.depth)
     put_pair(rows, 10, i, state, law.depth)
     put_pair(rows, 8, i, state, law.rough)
+
+
+@inlined
+def find_events(rows, remaining, times, codes, law):
+    """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time.
+
+    Two loops, so that more of a processor's instructions do not wait for one another. Between them
+    ``times`` and ``codes`` hold the quotients of the discs' meetings.
+    """
+    for i in range(times.size):
+        times[i], codes[i] = meeting(state_at(rows, i, law), law)
+    for i in range(times.size):
+        times[i], codes[i] = first_event(
+            state_at(rows, i, law), remaining[i], times[i], codes[i], law
+        )
 
 
 @inlined

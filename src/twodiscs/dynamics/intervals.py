@@ -12,12 +12,13 @@ from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
     across,
+    find_events,
     nearest_power_of_two,
     new_rows,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of, next_event
+from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
@@ -71,6 +72,7 @@ def record_returns(
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    endless = np.full(lanes, np.inf)
     age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     chain, found, finder = np.full(lanes, -1), np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
     totals, counts = np.zeros((stop - first) * chains), np.zeros((lanes, sums.shape[1]), np.int64)
@@ -108,8 +110,7 @@ def record_returns(
             return totals
 
         for _ in range(PASSES):
-            for i in range(lanes):
-                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
+            find_events(rows, endless, times, codes, law)
             for i in range(lanes):
                 before, time, waited = state_at(rows, i, law), times[i], age[i]
                 after = after_event(before, time, codes[i], law)

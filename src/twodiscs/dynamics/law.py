@@ -33,6 +33,9 @@ RESTING_SPEED = 4 * 2.0**-52
 #: do. Below this square of their distance there is no line of centres, and they go on as they are.
 VANISHING = 1e-280
 
+#: The gap of discs that part.
+NEVER = math.inf
+
 
 class Law(NamedTuple):
     """What the motion of a scene depends on; None for what is absent, lengths otherwise.
@@ -326,22 +329,36 @@ def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
 
 
 @inlined
+def meeting(state, law):
+    """Return (gap, speed) of the discs, as towards a wall; the gap is infinite if they part."""
+    x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
+    z1, z2, w1, w2 = depth_part(state, law.depth)
+    gap, speed, approach = contact_quotient(
+        x1 - x2, y1 - y2, difference(z1, z2), u1 - u2, v1 - v2, difference(w1, w2), law.sigma
+    )
+    return gap if approach else NEVER, speed
+
+
+@inlined
 def next_event(state, remaining, law):
-    """Return (time, code) of the first event within the ``remaining`` time.
+    """Return (time, code) of the first event within the ``remaining`` time."""
+    gap, speed = meeting(state, law)
+    return first_event(state, remaining, gap, speed, law)
+
+
+@inlined
+def first_event(state, remaining, gap_d, speed_d, law):
+    """Return (time, code) of the first event, given the ``meeting`` of the discs.
 
     A wall wins over a disc that is tied with it, and of several tied walls one comes now and the
     others after a time of zero: the outcome is the same, and none is lost.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
-    z1, z2, w1, w2 = depth_part(state, law.depth)
     gap_x, speed_x, code_x = axis_quotient(
         x1, x2, u1, u2, law.half_x1, law.half_x2, None, WALL_X1, WALL_X2, WRAP_X, law.wrap_x
     )
     gap_y, speed_y, code_y = axis_quotient(
         y1, y2, v1, v2, law.half_y1, law.half_y2, law.gravity, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
-    )
-    gap_d, speed_d, approach = contact_quotient(
-        x1 - x2, y1 - y2, difference(z1, z2), u1 - u2, v1 - v2, difference(w1, w2), law.sigma
     )
 
     # A tree of comparisons rather than a chain: shorter for the processor to wait for.
@@ -357,7 +374,7 @@ def next_event(state, remaining, law):
 
     gap, speed, code = deep_event(gap, speed, code, state, law, law.depth)
 
-    sooner = approach & (gap_d * speed < gap * speed_d)
+    sooner = gap_d * speed < gap * speed_d
     gap = gap_d if sooner else gap
     speed = speed_d if sooner else speed
     code = DISC if sooner else code

@@ -17,7 +17,7 @@ from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.estimates import Line, mean_of
 from twodiscs.comparison.rows import area_rows, volume_rows
 from twodiscs.dynamics import counting
-from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
+from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import (
     after_event,
     contact_quotient,
@@ -369,14 +369,13 @@ def audit(starts, windows, window, law, shortest):
     for i in range(lanes):
         put_state(rows, i, starts[:, i], law)
     times, codes, elapsed = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    nearest, energy = np.full(lanes, np.inf), np.zeros(lanes)
+    endless, nearest, energy = np.full(lanes, np.inf), np.full(lanes, np.inf), np.zeros(lanes)
     far_x, far_y = np.zeros(lanes), np.zeros(lanes)
     lost = np.zeros(lanes, np.bool_)
     for _ in range(windows):
         elapsed[:] = 0.0
         for _ in range(window):
-            for i in range(lanes):
-                times[i], codes[i] = next_event(state_at(rows, i, law), np.inf, law)
+            find_events(rows, endless, times, codes, law)
             for i in range(lanes):
                 elapsed[i] += times[i]
                 state = after_event(state_at(rows, i, law), times[i], codes[i], law)
