@@ -157,6 +157,10 @@ def test_cost_is_set_against_the_forecast_of_its_scene(monkeypatch, costs, tmp_p
             json.dumps({"radius": 0.1, "method": "monte_carlo", "quantities": {}}),
             "is not a file of monte_carlo: it has no samples",
         ),
+        (
+            json.dumps({"radius": 0.1, "method": "", "samples": 1, "quantities": [1]}),
+            "is not a file of monte_carlo: quantities is not an object",
+        ),
     ],
 )
 def test_a_file_that_is_no_point_is_named(tmp_path, text, message):
@@ -177,6 +181,7 @@ STRIP = {
     ("strip", "message"),
     [
         (STRIP, None),
+        (1, "is not an object"),
         ({name: STRIP[name] for name in STRIP if name != "strata"}, "has no strata"),
         (STRIP | {"strata": None}, "has wrong strata: "),
         (STRIP | {"strata": {}}, "has wrong strata: "),

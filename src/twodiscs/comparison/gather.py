@@ -29,6 +29,12 @@ FIELDS = {
     "cost": ("events", "seconds"),
 }  # fmt: skip
 
+#: Which of them are objects, by name.
+OBJECTS = {
+    "monte_carlo": ("quantities",),
+    "dynamics": ("counts", "products", "target", "status", "strips"),
+}
+
 
 def _no_number(text):
     raise InputError(f"{text} is no number")
@@ -45,6 +51,9 @@ def _read(path, kind):
     missing = [name for name in FIELDS[kind] if name not in point]
     if missing:
         raise InputError(f"{path} is not a file of {kind}: it has no {', '.join(missing)}")
+    for name in OBJECTS.get(kind, ()):
+        if not isinstance(point[name], dict):
+            raise InputError(f"{path} is not a file of {kind}: {name} is not an object")
     for hop, found in point.get("strips", {}).items():
         _check_strip(f"{path} is not a file of {kind}: its strip of {hop}", found)
     return point
@@ -52,6 +61,8 @@ def _read(path, kind):
 
 def _check_strip(text, found):
     """Raise ``InputError`` that begins with ``text`` unless a strip holds what it should."""
+    if not isinstance(found, dict):
+        raise InputError(f"{text} is not an object")
     missing = [name for name in STRIP if name not in found]
     if missing:
         raise InputError(f"{text} has no {', '.join(missing)}")
