@@ -5,8 +5,9 @@ import pytest
 from effect_scenes import SCENES
 
 from twodiscs.dynamics import ensemble
-from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.law import law_of, next_event
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.starts import components, states
 
 
 @pytest.mark.parametrize(
@@ -28,3 +29,18 @@ def test_a_lane_holds_the_whole_state_and_nothing_else(scene, components):
     ensemble.put_state(rows, 1, state, law)
     assert ensemble.state_at(rows, 1, law) == state
     assert ensemble.state_at(rows, 0, law) == ensemble.state_at(rows, 2, law) == (0.0,) * components
+
+
+@pytest.mark.parametrize("scene", [Scene(1.5, 1.0, 0.2), *SCENES.values()], ids=["plain", *SCENES])
+@pytest.mark.parametrize("remaining", [0.05, 1.0, np.inf])
+def test_lanes_together_find_the_event_that_each_would_find_alone(scene, remaining):
+    lanes, law = 37, law_of(scene)  # no multiple of the width of a vector
+    rows = ensemble.new_rows(lanes, law)
+    starts = states(scene, lanes, 3)[: len(components(scene))]
+    for lane in range(lanes):
+        ensemble.put_state(rows, lane, tuple(starts[:, lane]), law)
+    times, codes = np.zeros(lanes), np.zeros(lanes)
+    ensemble.find_events(rows, np.full(lanes, remaining), times, codes, law)
+    alone = [next_event(tuple(start), remaining, law) for start in starts.T]
+    assert [*zip(times.tolist(), codes.tolist(), strict=True)] == alone
+    assert len(set(codes)) > (1 if remaining < 1 else 2)
