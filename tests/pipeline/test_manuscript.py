@@ -149,8 +149,10 @@ OF_SCENE = {
     "mean_times": rows("mean_times", {"event": "vertical_hop", "status": "reached"}),
     "check": rows(
         "check",
-        {"method": "monte_carlo", "z": -1.25, "passed": True, "independent": True},
-        {"method": "dynamics", "z": 2.5, "passed": True, "independent": True},
+        *(
+            {"method": method, "z": z, "passed": True, "independent": True, "bound": 4.75}
+            for method, z in (("monte_carlo", -1.25), ("dynamics", 2.5))
+        ),
     ),
     "cost": rows(
         "cost",
@@ -209,13 +211,20 @@ OF_STUDIES = {
                 ("trend", -0.7, 0.5),
             )
         ),
+        *(
+            {"scene": scene, "radius": 0.4, "event": "vertical_hop", "exact_mean": 0.5}
+            | {"width": 3.0, "height": 1.0, "quantity": quantity, "estimate": 0.5, "stderr": 0.01}
+            | {"first": first, "last": 10.0, "count": 900, "p": p, "z": -9.0}
+            for scene in ("scene0", "other")
+            for quantity, first, p in (("rate", 2.0, 1e-6), ("hazard", 9.0, None))
+        ),
     ),
     "thresholds": rows(
         "thresholds",
         *(
             {"scene": "scene0", "event": event, "quantity": "mean_time", "points": 9, "law": law}
             | {"form": form, "parameter": parameter, "z": 0.3, "curve": law}
-            | {"estimate": 0.99 * law, "stderr": 0.01}
+            | {"estimate": 0.99 * law, "stderr": 0.01, "limit_radius": 0.25, "farthest": 0.04}
             for event in ("vertical_hop", "horizontal_hop")
             for form, parameter, law in (
                 ("plain", "exponent", -2.0),
@@ -351,6 +360,8 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
     ("cell", "value"),
     [
         (("check", 1, "z"), 4.5),
+        (("check", 0, "bound"), 4.25),
+        (("check", 0, "status"), "none-seen"),
         (("check", 0, "passed"), False),
         (("check", 0, "independent"), False),
         (("errata", 1, "severity"), "slip"),
@@ -369,6 +380,9 @@ def test_it_compiles_without_figures_without_fits_and_with_many_scenes(paper):
         (("distributions", 3, "estimate"), 0.7),
         (("distributions", 4, "p"), 1e-5),
         (("distributions", 5, "p"), 1e-5),
+        (("distributions", 7, "estimate"), 0.6),
+        (("distributions", 9, "estimate"), 0.6),
+        (("thresholds", 0, "farthest"), 0.05),
         (("thresholds", 0, "estimate"), -1.5),
         (("thresholds", 7, "z"), 3.5),
         (("effects", 0, "z"), 4.5),
@@ -435,6 +449,14 @@ def query(call, folder, **contents):
         ("with-error(0.9996, 0.00096)", "0.9996(10)"),
         ("with-error(0.03, 0.0098)", "0.030(10)"),
         ("with-error(120.0, 30.0)", "120(30)"),
+        ("largest((0.3, 3.013))", "3.1"),
+        ("largest((3.1, 0.0))", "3.1"),
+        ("largest((1.525e-15,))", "1.6×10^−15"),
+        ("largest((9.96,))", "10"),
+        ("smallest((3.19, 9.98))", "3.1"),
+        ("percent((0.39689, 0.5), calc.min)", "39.6"),
+        ("percent((0.39689, 0.9412), calc.max)", "94.2"),
+        ("above(0.0926, 1)", "0.1"),
         ("count(2)", "two"),
         ("count(12)", "12"),
     ],
