@@ -143,7 +143,7 @@ def _rest(panels, rows, part):
     (exact,) = _of(rows, part, "exact").values()
     colour, digits = LOOK["quadrature"][0], abs(nodes[0]["slope"])
     for axes, (high, low) in zip(panels, ((1, SPLIT), (SPLIT, 0)), strict=True):
-        _points(axes, nodes, "quadrature", f"quadrature, {digits:.1f} digits a node")
+        _points(axes, nodes, "quadrature", f"quadrature, {digits:.1f} digits/node")
         _points(axes, exact, "exact", "exact evaluation")
         for row in nodes:
             if row["work"] in (2, 4, 6, 8) and low < max(row["error"], ROUNDING) < high:
@@ -168,15 +168,17 @@ def _volume(panels, rows):
 
 def _area(panels, rows):
     shells = _of(rows, "area", "shell")
+    (nodes,) = _of(rows, "area", "quadrature").values()
+    beside = 1.3 * max(row["seconds"] for row in nodes if row["error"] > SPLIT)
     for i, (shade, (thickness, found)) in enumerate(zip(SHADES, shells.items(), strict=False)):
         for axes in panels:
             _points(axes, found, "shell", None if i else "shells", shade)
             axes.axhline(found[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
         text = rf"$\varepsilon={thickness:.2g}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
-        drawing.label(panels[0], text, (7.5e-7, found[0]["floor"]), (0, 0.5), **style)
+        drawing.label(panels[0], text, (beside, found[0]["floor"]), (0, 0.5), **style)
     best = [row for found in _of(rows, "area", "balanced_shell").values() for row in found]
-    names = {"surface": "on the surface", "sobol": "the same, Sobol points"}
+    names = {"surface": "on the surface", "sobol": "same, Sobol"}
     for axes in panels:
         _points(axes, best, "balanced_shell", rf"best $\varepsilon$: {_slope(best[0])}")
         for method, name in names.items():
@@ -235,7 +237,8 @@ def _gain(axes, rows, quantity):
     start, end = price / LEVEL**2, np.interp(-LEVEL, -error, seconds)
     drawing.arrow(axes, (start, LEVEL), (end, LEVEL), "<|-|>", width=0.6, size=6)
     middle = math.sqrt(start * end), LEVEL
-    drawing.label(axes, rf"$\times{end / start:.0f}$", middle, (0, 5), fontsize=7.5)
+    times = float(f"{end / start:.2g}")
+    drawing.label(axes, rf"$\times{times:g}$", middle, (0, 5), fontsize=7.5)
 
 
 def _title(axes, text):
