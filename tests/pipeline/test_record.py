@@ -137,15 +137,45 @@ def test_a_bundle_takes_its_points_from_others_and_damaged_ones_have_none(bundle
     assert not record.record_of(folder / "0001.json").exists()
 
 
-def test_what_was_made_of_a_point_is_bereft_with_its_bundle(bundled):
-    table = bundled.parent / "mean_times.csv"
+def made_of(points, point):
+    table = points.parent / "made.csv"
     table.write_text("radius\n")
-    record.write([table], {"dynamics": [bundled / "dynamics" / "0.1.json"]})
-    assert record.bereft("results", record.bundles("results")) == []
+    record.write([table], {"dynamics": [points / point]})
+    return table
+
+
+def stale():
+    return record.stale("results", record.bundles("results"))
+
+
+def test_what_was_made_of_a_point_is_stale_without_its_bundle(bundled):
+    made_of(bundled, "dynamics/0.1.json")
+    assert stale() == []
     (bundled / "dynamics" / "bundles" / "0001.json").unlink()
-    assert record.bereft("results", record.bundles("results")) == [
-        Path("results/paper/mean_times.csv")
-    ]
+    assert stale() == [(Path("results/paper/made.csv"), "was made of a file that is gone")]
+
+
+def test_what_was_made_of_a_point_is_stale_when_that_was_made_again(bundled):
+    table, cost = made_of(bundled, "cost/dynamics-0.1.json"), bundled / "cost/dynamics-0.1.json"
+    later = table.stat().st_mtime_ns + 10**9
+    os.utime(cost, ns=(later, later))
+    assert stale() == []  # the same bytes
+    cost.write_text('{"seconds": 2}')
+    os.utime(cost, ns=(later, later))
+    why = "was made of other points than are there now"
+    assert stale() == [(Path("results/paper/made.csv"), why)]
+
+
+def test_results_below_others_are_as_whole_as_those(results, bundled, capsys, monkeypatch):
+    monkeypatch.setattr(record, "AGAIN", True)
+    made_of(bundled, "dynamics/0.1.json")
+    (results / "draft").mkdir()
+    (results / "paper").rename(results / "draft" / "paper")
+    record.notice("results")
+    assert not capsys.readouterr().err
+    (results / "draft/paper/points/dynamics/0.1.json").unlink()
+    record.notice("results")
+    assert not (results / "draft/paper/points/dynamics/bundles/0001.json").exists()
 
 
 def test_an_edit_that_keeps_the_time_stamp_is_named_by_the_audit_and_never_certified(results):
@@ -199,8 +229,8 @@ def test_a_folder_above_may_have_any_name(results):
     home.mkdir()
     results.rename(home / "results")
     (home / "results" / "theory.csv").unlink()
-    found = record.bereft("points/results", {})
-    assert sorted(path.name for path in found) == ["m.pdf", "m.png"]
+    found = record.stale("points/results", {})
+    assert sorted(path.name for path, _ in found) == ["m.pdf", "m.png"]
 
 
 def test_with_what_is_gone_everything_made_of_it_is_made_again(results, capsys, monkeypatch):

@@ -136,11 +136,13 @@ def touched(folder):
     return found
 
 
-def bereft(folder, bundled):
-    """Return the files below ``folder`` that were made of others which are gone.
+def stale(folder, bundled):
+    """Return pairs of a file below ``folder`` and why it is stale, for what Snakemake cannot see.
 
-    A point is gone with its bundle, too; ``bundled`` is what ``bundles`` returns. Points are not
-    looked at: there are many, and they are made of nothing but shards.
+    That is what was made of a file that is gone, or of a point that was made again since, of which
+    the time that it took is another one. A point is gone with its bundle, too; ``bundled`` is what
+    ``bundles`` returns. Points are not looked at: there are many, and they are made of nothing but
+    shards.
     """
     found = []
 
@@ -152,9 +154,19 @@ def bereft(folder, bundled):
             continue
         if (known := read(path)) is None:
             continue
-        files = (name for one in known["inputs"].values() for name in one["files"])
-        if not all(is_there(Path(os.path.normpath(path.parent / name))) for name in files):
-            found.append(path)
+        made_of = [
+            ([Path(os.path.normpath(path.parent / name)) for name in one["files"]], one["sha256"])
+            for one in known["inputs"].values()
+        ]
+        if not all(is_there(file) for files, _ in made_of for file in files):
+            found.append((path, "was made of a file that is gone"))
+            continue
+        written = path.stat().st_mtime_ns
+        for files, digits in made_of:
+            newer = (f for f in files if "points" in f.parts and f.stat().st_mtime_ns > written)
+            if any(newer) and digest(*files) != digits:
+                found.append((path, "was made of other points than are there now"))
+                break
     return found
 
 
@@ -162,14 +174,14 @@ def notice(folder, snakemake=".snakemake"):
     """Have Snakemake make again what its jobs did not write like this, with a word for each file.
 
     To Snakemake these files are incomplete, as those that a killed job has left; of a point that
-    was made in a bundle that bundle is. A bundle is removed with a point of it that is gone. With
-    any file that is gone, which Snakemake does not miss, what was made of it is incomplete, too;
-    but only if incomplete files are made ``AGAIN``, for else Snakemake would stop.
+    was made in a bundle that bundle is. A bundle is removed with a point of it that is gone. What
+    is ``stale`` is incomplete, too; but only if incomplete files are made ``AGAIN``, for else
+    Snakemake would stop.
     """
     bundled = bundles(folder)
     found = [(path, "is not what its job wrote") for path in touched(folder)]
     if AGAIN:
-        found += [(path, "was made of a file that is gone") for path in bereft(folder, bundled)]
+        found += stale(folder, bundled)
     for path in _unrecorded(folder):
         # Else it is somebody's own, or of a job that went on writing after its shell was killed.
         known = os.path.exists(os.path.join(snakemake, "metadata", name_of(path)))
@@ -195,10 +207,11 @@ def points_of(bundle, key):
 def bundles(folder):
     """Return {file: the bundles that hold it} of the points below ``folder``.
 
-    Those may be several: with another accuracy points are bundled otherwise.
+    Those may be several: with another accuracy points are bundled otherwise. Results of another
+    configuration may lie deeper.
     """
     found = defaultdict(list)
-    for bundle in Path(folder).glob("*/points/*/bundles/*.json"):
+    for bundle in Path(folder).glob("**/points/*/bundles/*.json"):
         for key in _keys(bundle):
             for path in points_of(bundle, key):
                 found[path].append(bundle)
