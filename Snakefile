@@ -71,7 +71,6 @@ localrules:
     figure,
     shared_figure,
     animate,
-    paper,
     report,
     manifest,
     provenance,
@@ -80,6 +79,12 @@ localrules:
     verify,
     forecast,
     benchmark,
+
+
+if MAIN:
+
+    localrules:
+        paper,
 
 
 onstart:

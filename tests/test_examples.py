@@ -54,7 +54,7 @@ def blocks(name):
     found = [(language, body) for language, body in FENCED.findall(text)]
     for body in INDENTED.findall(FENCED.sub("", text)):
         body = re.sub(r"^ {4}", "", body, flags=re.MULTILINE)
-        found.append(("yaml" if body.startswith("- name:") else "shell", body))
+        found.append(("yaml" if body.lstrip().startswith("- name:") else "shell", body))
     return found
 
 
@@ -276,6 +276,14 @@ def test_table_of_agreement_is_that_of_the_expected_results():
 
 
 # Configurations -----------------------------------------------------------------------------------
+
+
+def test_a_block_can_be_pasted_below_its_neighbours():
+    for name in ("README.md", "docs/add-a-box.md", "docs/reading-check.md"):
+        for kind, body in blocks(name):
+            if kind == "yaml":
+                pasted = yaml.safe_load(page("config/config.yaml").rstrip() + "\n\n" + body)
+                assert len(pasted["scenes"]) == len(read(DEFAULT)["scenes"]) + 1
 
 
 def test_scenes_are_understood():

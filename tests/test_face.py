@@ -272,9 +272,13 @@ def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_p
     [
         (lambda some: td.plot(some, figure="volume"), "figure must be one of mean_hop_time, "),
         (lambda some: td.plot([some, 1]), "found must be a scene, a trajectory, or results"),
-        (lambda some: td.plot(some, "a.txt"), "output must be a .pdf, .png or .svg file"),
+        (lambda some: td.plot(some, "a.txt"), "path must be a .pdf, .png or .svg file"),
         (lambda some: td.plot(SCENES["field"]), "scene must be plain to be drawn"),
         (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
+        (lambda some: td.simulate(SCENES["field"], seed=-1), "seed must be an integer from 0 to"),
+        (lambda some: td.sample(SCENE, 1e6, quantities="volume"), "quantities must be a list of"),
+        (lambda some: td.simulate(SCENE, events="any_wall"), "events must be a list of"),
+        (lambda some: td.Scene(1.5, 1.0, 0.2, field=-1), "positive, finite number, or 0, not -1.0"),
         (lambda some: td.load("src"), "folder must hold tables of results, but 'src' has none"),
     ],
 )

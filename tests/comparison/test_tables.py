@@ -220,6 +220,7 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("\xff", "must be a table theory, but is no text"),
         ("", "must be a table theory with the columns"),
         ("radius,quantity\n", "must be a table theory with the columns"),
         ("quantity,radius,exact\n", "must be a table theory with the columns"),
@@ -230,7 +231,7 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
     ],
 )
 def test_a_wrong_file_is_named(tmp_path, text, message):
-    (tmp_path / "theory.csv").write_text(text)
+    (tmp_path / "theory.csv").write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match=rf"theory\.csv .*{message}"):
         Theory.read(tmp_path / "theory.csv")
 

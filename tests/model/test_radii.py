@@ -110,9 +110,9 @@ def test_seeds_depend_on_each_part_and_on_nothing_else():
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((-1, "paper", "dynamics", "0.1"), "root must be an integer from 0 to .*, not -1"),
-        ((True, "paper", "dynamics", "0.1"), "root must be an integer of at least 0, not True"),
-        ((1.0, "paper", "dynamics", "0.1"), "root must be an integer of at least 0, not 1.0"),
+        ((-1, "paper", "dynamics", "0.1"), "seed must be an integer from 0 to .*, not -1"),
+        ((True, "paper", "dynamics", "0.1"), "seed must be an integer of at least 0, not True"),
+        ((1.0, "paper", "dynamics", "0.1"), "seed must be an integer of at least 0, not 1.0"),
         ((1, "paper", "magic", "0.1"), "method must be one of monte_carlo, .*, not 'magic'"),
     ],
 )

@@ -328,7 +328,7 @@ MISTAKES = {
     ),
     "a figure of another kind": (
         words("figure", "figures.geometry.model", OF_BOX),
-        "output must be a .pdf, .png or .svg file, not 'output'",
+        "path must be a .pdf, .png or .svg file, not 'output'",
     ),
     "no kernels": (words("kernels", "theory.exact", {}), "must have a function compile_kernels"),
 }  # fmt: skip

@@ -261,3 +261,12 @@ def test_what_lost_its_record_is_made_again_without_a_word_on_what_is_somebodys_
     said = "results/theory.csv has lost its record; it is made again when needed.\n"
     assert capsys.readouterr().err == said
     assert mark in [path.name for path in (known.parents[1] / "incomplete").iterdir()]
+
+
+def test_a_folder_without_any_record_is_not_said_to_agree(tmp_path, monkeypatch, capsys):
+    (tmp_path / "results" / "logs").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    assert command(monkeypatch, record, "results") == 2
+    assert (
+        "results holds no results with a record: they are built by make" in capsys.readouterr().err
+    )

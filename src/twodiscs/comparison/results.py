@@ -218,7 +218,8 @@ def _named(what, names, allowed):
     if names is None:
         return list(allowed)
     if isinstance(names, str | bytes) or not isinstance(names, Iterable) or not (names := [*names]):
-        raise InputError(f"{what}s must be a list of some of {', '.join(allowed)}, not {names!r}")
+        plural = f"{what}s".replace("ys", "ies")
+        raise InputError(f"{plural} must be a list of some of {', '.join(allowed)}, not {names!r}")
     for name in names:
         one_of(what, name, allowed)
     return [name for name in allowed if name in names]

@@ -98,8 +98,11 @@ class Table:
         Raises ``InputError`` if its columns are not those of the table, or a cell not of its type.
         """
         columns = cls.columns()
-        with open(path, encoding="utf-8", newline="") as file:
-            lines = list(csv.reader(file))
+        try:
+            with open(path, encoding="utf-8", newline="") as file:
+                lines = list(csv.reader(file))
+        except UnicodeDecodeError:
+            raise InputError(f"{path} must be a table {cls.name()}, but is no text") from None
         if not lines or lines[0] != list(columns):
             raise InputError(
                 f"{path} must be a table {cls.name()} with the columns {list(columns)}"

@@ -49,6 +49,7 @@ class Effect:
         if value is None or (real and value == self.default):
             return self.default
         kind = "ratio" if self.name.endswith("_ratio") else "number"
+        kind += ", or 0" if self.default == 0.0 else ""
         return number(self.name, value, self.low, self.high, kind)
 
 

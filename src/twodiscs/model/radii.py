@@ -93,14 +93,14 @@ def shortest_decimal(value, distance, avoid=()):
     return next(c for c in candidates if abs(c - value) <= distance and c not in avoid)
 
 
-def stream_seed(root, scene, method, key):
+def stream_seed(seed, scene, method, key):
     """Return the integer in [0, 2**63) that seeds the streams of one job.
 
-    It depends on the configured ``root`` seed, the scene's name, the method (one of ``METHODS``)
+    It depends on the configured ``seed``, the scene's name, the method (one of ``METHODS``)
     and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
     """
-    root = whole("root", root, 0)
+    seed = whole("seed", seed, 0)
     if not isinstance(scene, str):
         raise InputError(f"scene must be the name of a scene, not {shown(scene)}")
-    text = "\n".join((str(root), scene, one_of("method", method, METHODS), key))
+    text = "\n".join((str(seed), scene, one_of("method", method, METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1

@@ -86,7 +86,7 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
         animation.moments(at(end=0.5), 1.0)
     with pytest.raises(ValueError, match="rows must be those of a trajectory, not none"):
         animation.animate(BOX, RADIUS, [], ["a.gif"])
-    with pytest.raises(ValueError, match=r"output must be a \.gif or \.png file, not 'a\.mp4'"):
+    with pytest.raises(ValueError, match=r"path must be a \.gif or \.png file, not 'a\.mp4'"):
         animation.animate(BOX, RADIUS, [], ["a.gif", "a.mp4"])
 
 

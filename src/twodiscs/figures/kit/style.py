@@ -122,5 +122,5 @@ def save(figure, path, origin=None):
         "svg": {"Creator": None, "Date": None, "Description": origin},
     }
     if kind not in metadata:
-        raise InputError(f"output must be a .pdf, .png or .svg file, not {str(path)!r}")
+        raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
     figure.savefig(path, format=kind, metadata=metadata[kind])

@@ -181,7 +181,7 @@ def animate(box, radius, rows, paths):
     """
     for path in paths:
         if not str(path).endswith((".gif", ".png")):
-            raise InputError(f"output must be a .gif or .png file, not {str(path)!r}")
+            raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise InputError("rows must be those of a trajectory, not none")
     stage = Stage(box, radius, rows)

@@ -289,6 +289,8 @@ def main():
     folder = parser.parse_args().folder
     if not folder.is_dir():
         raise InputError(f"{folder} holds no results: they are built by make")
+    if not any(True for _ in _recorded(folder)):
+        raise InputError(f"{folder} holds no results with a record: they are built by make")
     differences = list(audit(folder))
     print(*differences, f"differences from the record of the jobs: {len(differences)}", sep="\n")
     return bool(differences)
