@@ -330,7 +330,10 @@ def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
 
 @inlined
 def meeting(state, law):
-    """Return (gap, speed) of the discs, as towards a wall; the gap is infinite if they part."""
+    """Return (gap, speed) of the discs; they touch after gap / speed, if that is a number.
+
+    ``gap`` is infinite where they part or rest, and ``speed`` NaN where they miss.
+    """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
     z1, z2, w1, w2 = depth_part(state, law.depth)
     gap, speed, approach = contact_quotient(
@@ -348,7 +351,9 @@ def next_event(state, remaining, law):
 
 @inlined
 def first_event(state, remaining, gap_d, speed_d, law):
-    """Return (time, code) of the first event, given the ``meeting`` of the discs.
+    """Return (time, code) of the first event within the ``remaining`` time.
+
+    ``gap_d`` and ``speed_d`` are those of the ``meeting`` of the discs in this state.
 
     A wall wins over a disc that is tied with it, and of several tied walls one comes now and the
     others after a time of zero: the outcome is the same, and none is lost.
