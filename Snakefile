@@ -81,12 +81,6 @@ localrules:
     benchmark,
 
 
-if MAIN:
-
-    localrules:
-        paper,
-
-
 onstart:
     end_aside()
     # Whoever forces the jobs of points wants none of them kept.

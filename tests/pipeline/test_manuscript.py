@@ -456,7 +456,7 @@ def query(call, folder, **contents):
         ("smallest((3.19, 9.98))", "3.1"),
         ("percent((0.39689, 0.5), calc.min)", "39.6"),
         ("percent((0.39689, 0.9412), calc.max)", "94.2"),
-        ("above(0.0926, 1)", "0.1"),
+        ("bound(0.0926, 1)", "0.1"),
         ("count(2)", "two"),
         ("count(12)", "12"),
     ],

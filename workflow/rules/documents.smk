@@ -11,6 +11,9 @@ PAPER = {
 
 if MAIN:
 
+    localrules:
+        paper,
+
     rule paper:
         input:
             template=PAPER["paper.typ"],

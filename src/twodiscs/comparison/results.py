@@ -213,13 +213,12 @@ def seed_of(scene, method, seed, name):
     return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
 
 
-def _named(what, names, allowed):
+def _named(key, what, names, allowed):
     """Return some of the texts ``allowed``, in their order, or all of them for None."""
     if names is None:
         return list(allowed)
     if isinstance(names, str | bytes) or not isinstance(names, Iterable) or not (names := [*names]):
-        plural = f"{what}s".replace("ys", "ies")
-        raise InputError(f"{plural} must be a list of some of {', '.join(allowed)}, not {names!r}")
+        raise InputError(f"{key} must be a list of some of {', '.join(allowed)}, not {names!r}")
     for name in names:
         one_of(what, name, allowed)
     return [name for name in allowed if name in names]
@@ -244,7 +243,7 @@ def simulate(scene, error, seed, budget, events, name):
     given = error if isinstance(error, Mapping) else None
     if given is not None and events is None:
         events = given
-    events = _named("event", events, a_scene(scene).events)
+    events = _named("events", "event", events, a_scene(scene).events)
     target = dict.fromkeys(events, error)
     if given is not None:
         if missing := [event for event in events if event not in given]:
@@ -261,7 +260,8 @@ def simulate(scene, error, seed, budget, events, name):
 def sample(scene, samples, seed, quantities, shell, name):
     """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
     allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
-    quantities, samples = _named("quantity", quantities, allowed), count("samples", samples)
+    quantities = _named("quantities", "quantity", quantities, allowed)
+    samples = count("samples", samples)
     shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     from twodiscs.sampling.montecarlo import better_point
     from twodiscs.sampling.starts import require_share
