@@ -128,7 +128,8 @@ class Box:
             nearly = self.scene(self.last_radius * (1 - TINY))
             return self.last_radius if nearly.is_possible(event) else None
         if self.effects:
-            return self.end(lambda scene: scene.is_possible(event)) if self._has(event) else None
+            has_place = event in self.tiny.events
+            return self.end(lambda scene: scene.is_possible(event)) if has_place else None
         return min(self.blocking_radius(event), self.largest_radius)
 
     def blocking_radius(self, hop):
@@ -138,14 +139,11 @@ class Box:
         """
         return (self.width if AXIS[hop] == "y" else self.height) / 4
 
-    def _has(self, event):
-        return event in self.tiny.events
-
     @cached_property
     def thresholds(self):
         """The radii below the last one at which a hop becomes blocked, ascending, without repeats.
 
         Those of h/4 and w/4 that fit, where there are no effects.
         """
-        found = {self.threshold(hop) for hop in HOPS if self._has(hop)}
+        found = {self.threshold(hop) for hop in HOPS if hop in self.tiny.events}
         return tuple(sorted(radius for radius in found if radius < self.last_radius))

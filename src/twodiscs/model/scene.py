@@ -234,7 +234,7 @@ class Scene:
         nearest image counts.
         """
         side = Fraction(self.side(axis))
-        return side / 2 if axis in self.periodic else side - sum(self.exact_radii)
+        return side / 2 if axis in self.periodic else side - self.exact_contact
 
     def _spread(self, *without):
         """Return the sum of the squared reaches of all axes but some, an exact fraction."""
@@ -296,10 +296,6 @@ class Scene:
         (r1, r2), (m1, m2) = self.radii, self.masses
         return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
 
-    def _passable(self, axis):
-        """Say whether the discs can exchange sides along ``axis``."""
-        return axis in self._passed
-
     @cached_property
     def _passed(self):
         """The axes along which the discs can exchange sides."""
@@ -322,23 +318,26 @@ class Scene:
         For equal discs of the plane that is B − σ for the horizontal hop, A − σ for the vertical
         one; it is negative where the hop is blocked.
         """
-        spread, sigma = self._spread(DECLARED[hop].axis), sum(self.exact_radii)
+        spread, sigma = self._spread(DECLARED[hop].axis), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
 
     @cached_property
     def fastest(self):
-        """The largest relative velocity of the centres, √(1/m1 + 1/m2) at total energy 1/2."""
+        """The largest relative velocity of the centres, √(1/m1 + 1/m2) at total energy 1/2.
+
+        That is the length of the gradient of a separation, too, in the metric of the masses.
+        """
         return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses))
 
     @cached_property
     def vertical_hops(self):
         """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
-        return self._passable("y")
+        return "y" in self._passed
 
     @cached_property
     def horizontal_hops(self):
         """Whether the discs can pass each other on x1 = x2; equal discs of the plane if h > 4r."""
-        return self._passable("x")
+        return "x" in self._passed
 
     @cached_property
     def regime(self):
@@ -355,7 +354,7 @@ class Scene:
 
         Each hop that is blocked between walls doubles it. A periodic axis has a way around.
         """
-        return 2 ** sum(not self._passable(axis) for axis in self.walled)
+        return 2 ** (len(self.walled) - len(self._passed))
 
     def _confined(self, axis):
         """Say whether disc 1 reaches the far wall of ``axis`` only from its own side of disc 2.
@@ -363,7 +362,7 @@ class Scene:
         It does so once the hop is blocked, unless it is the larger disc and there is room for
         disc 2 in the corner behind it.
         """
-        if self._passable(axis) or axis not in self.walled:
+        if axis in self._passed or axis not in self.walled:
             return False
         r1, r2 = self.exact_radii
         if r1 <= r2:
@@ -420,7 +419,7 @@ class Scene:
             return False
         found = DECLARED[event]
         if found.kind == "hop":
-            return self._passable(found.axis)
+            return found.axis in self._passed
         if self.field and (found.axis, found.side) == ("y", +1):
             return self.field * (self.height - 2 * self.radius) < ENERGY
         return True

@@ -431,15 +431,14 @@ def weighted_ends(scene, epsilon):
     """
     if not any(epsilon):
         return None
-    relative = math.sqrt(sum(1 / mass for mass in scene.masses))
     walled = tuple("xyz".index(axis) for axis in scene.walled)
 
     def outer(thick):
-        reach = scene.contact_distance + relative * thick
+        reach = scene.contact_distance + scene.fastest * thick
         return reach * reach
 
     makers = {
-        "hop": lambda thick: relative * thick,
+        "hop": lambda thick: scene.fastest * thick,
         "collision": outer,
         "wall": lambda thick: thick,
         "walls": lambda thick: (tuple(thick / math.sqrt(m) for m in scene.masses), walled),

@@ -55,12 +55,11 @@ def strip_of(scene, hop, within):
     """Return the ``Strip`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
     axis, within = AXIS[hop], Fraction(within)
     squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
-    square = sum(scene.exact_radii) ** 2 - within**2
+    missing = scene.exact_contact**2 - within**2 - sum(squares.values())
     least, span = dict.fromkeys("xyz", 0.0), dict.fromkeys("xyz", 0.0)
     for a, reach in squares.items():
-        least[a] = math.sqrt(max(square - sum(squares.values()) + reach, 0))
-        room = min(sum(squares.values()) - square, reach)
-        span[a] = float(room) / (float(scene.reach(a)) + least[a])
+        least[a] = math.sqrt(max(missing + reach, 0))
+        span[a] = float(min(-missing, reach)) / (float(scene.reach(a)) + least[a])
     # In a field the upper disc is that high at least.
     rise = least["y"] - abs(scene.radii[0] - scene.radii[1])
     most = 1 - 2 * scene.field * min(scene.masses) * max(rise, 0.0)
@@ -75,8 +74,7 @@ def prism_of(scene, hop=None, within=None):
             return 0.0
         return (scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)) / 2
 
-    m1, m2 = scene.masses
-    inertia = scene.moment_of_inertia
+    (m1, m2), inertia = scene.masses, scene.moment_of_inertia
     return Prism(
         half_1=tuple(half(axis, scene.radii[0]) for axis in "xyz"),
         half_2=tuple(half(axis, scene.radii[1]) for axis in "xyz"),

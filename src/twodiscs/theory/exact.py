@@ -84,8 +84,7 @@ def work_per_event(scene):
     On a periodic axis discs leave their cell between two events, very often where they are small;
     ``PASSES_PER_EVENT`` times are in what an event costs anyhow.
     """
-    fastest = math.sqrt(sum(1 / mass for mass in a_scene(scene).masses))  # of all relative speeds
-    passes = sum(fastest / scene.side(axis) for axis in scene.periodic)
+    passes = sum(scene.fastest / scene.side(axis) for axis in a_scene(scene).periodic)
     return max(1.0, passes / PASSES_PER_EVENT / event_rate(scene))
 
 

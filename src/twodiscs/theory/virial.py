@@ -35,7 +35,7 @@ def momentum_per_hit(scene, event):
     components = scene.velocity_components
     normal = 1 / (components * constant(components))
     if event == "disc_collision":
-        return 2 * normal / math.sqrt(sum(1 / mass for mass in scene.masses))
+        return 2 * normal / scene.fastest
     return 2 * normal
 
 
