@@ -90,9 +90,11 @@ def test_scenes_with_effects_are_handed_over_to_the_weighted_theory():
     assert exact.areas(scene) == weighted.areas(scene)
     assert list(exact.areas(scene)) == list(EVENTS)
     times = exact.exact(scene)["mean_times"]
-    for event in EVENTS:
-        assert exact.rate(scene, event) == weighted.rate(scene, event)
-        assert times[event] == 1 / weighted.rate(scene, event)
+    per_area = weighted.constant(4) / weighted.volume(scene)
+    for event, area in weighted.areas(scene).items():
+        expected = area * per_area / (1 if event in HOPS else 2)
+        assert exact.rate(scene, event) == pytest.approx(expected, rel=1e-15)
+        assert times[event] == 1 / exact.rate(scene, event)
     shell = weighted.shell_expectation(scene, "any_wall", 0.01)
     assert exact.shell_expectation(scene, "any_wall", 0.01) == shell
 
@@ -151,3 +153,14 @@ def test_all_walls_together_have_no_shell():
 def test_a_bad_epsilon_is_refused(bad):
     with pytest.raises(ValueError, match=r"^epsilon must "):
         exact.shell_expectation(GOOD, "disc_collision", bad)
+
+
+def test_a_bad_shell_of_a_scene_with_effects_is_refused():
+    scene = Scene(*PAPER, 0.2, periodic="x")
+    with pytest.raises(ValueError, match="event must be one of vertical_hop, disc_collision"):
+        exact.shell_expectation(scene, "right_wall", 0.01)
+    for epsilon in (0.0, -1.0, math.nan, "a"):
+        with pytest.raises(ValueError, match=r"^epsilon must be a positive"):
+            exact.shell_expectation(scene, "vertical_hop", epsilon)
+    with pytest.raises(ValueError, match="epsilon must not exceed the radius"):
+        exact.shell_expectation(scene, "vertical_hop", 0.3)

@@ -61,12 +61,13 @@ def rate(scene, event):
     ``mean_times``. Raises ``InputError`` for anything that is not a ``Scene`` or one of
     ``EVENTS``.
     """
-    if a_scene(scene).has_effects:
+    volume, areas = measures(a_scene(scene))
+    sides = DECLARED[one_of("event", event, EVENTS)].sides
+    if scene.has_effects:
         from twodiscs.theory import weighted
 
-        return weighted.rate(scene, event)
-    volume, areas = measures(scene)
-    sides = DECLARED[one_of("event", event, EVENTS)].sides
+        constant = weighted.constant(scene.velocity_components)
+        return sides / 2 * constant * areas[event] / volume
     return sides * areas[event] / (1.5 * math.pi * volume)
 
 
@@ -147,7 +148,7 @@ def share_near(scene, hop, distance):
     if scene.has_effects:
         from twodiscs.theory import weighted
 
-        return weighted.share_near(scene, hop, distance)
+        return weighted.volume_near(scene, hop, distance) / volume(scene)
     epsilon = distance / math.sqrt(2)
     return 2 * epsilon * plain.shell_expectation(scene, hop, epsilon) / volume(scene)
 
@@ -165,19 +166,19 @@ def shell_expectation(scene, event, epsilon):
     Just beyond the radius where a hop becomes blocked its shell is not empty yet, though its area
     is 0. Shells of scenes with effects, whose discs may differ in mass, are in
     ``weighted.shell_expectation``. Raises ``InputError`` for anything that is not a ``Scene``, for
-    an ``epsilon`` that is not a length up to the radius, and for ``any_wall``, which has no shell
-    of its own in a plain scene.
+    an ``epsilon`` that is not a length up to the radius, for an event that has no place in the
+    scene, and for ``any_wall``, which has no shell of its own in a plain scene.
     """
-    if a_scene(scene).has_effects:
-        from twodiscs.theory import weighted
-
-        return weighted.shell_expectation(scene, event, epsilon)
-    one_of("event", event, SHELLS)
+    one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
         raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
+    if scene.has_effects:
+        from twodiscs.theory import weighted
+
+        return weighted.shell_expectation(scene, event, epsilon)
     return plain.shell_expectation(scene, event, epsilon)
 
 

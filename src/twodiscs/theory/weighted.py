@@ -32,9 +32,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, length, one_of, whole
+from twodiscs.model.checks import whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
-from twodiscs.model.scene import ENERGY, a_scene
+from twodiscs.model.scene import ENERGY
 from twodiscs.theory.quadrature import double_exponential, gauss_legendre
 
 
@@ -346,6 +346,10 @@ class _Space:
         """Return the measure of the configurations without overlap."""
         return _sum_of_orders(self.axes(**replaced), _beyond_contact, self.sigma)
 
+    def within(self, axis, distance):
+        """Return the measure of those with a separation up to a ``distance`` along ``axis``."""
+        return self.beyond(**{axis: self.axis(axis, farthest=distance)})
+
     def contact(self, thickness=0):
         """Return the measure of those at a distance of σ to σ + ``thickness``, per length."""
         return _sum_of_orders(self.axes(), _near_contact, self.sigma, Fraction(thickness))
@@ -379,38 +383,19 @@ def _walls(scene, event):
     return [(found.axis, 0, found.side > 0)]
 
 
-def _relative(scene):
-    """Return √(1/m1 + 1/m2), the length of the gradient of a separation."""
-    m1, m2 = scene.masses
-    return math.sqrt(1 / m1 + 1 / m2)
-
-
-@lru_cache(maxsize=1024)
-def _volume(scene):
-    """Return V."""
-    return _Space(scene, scene.velocity_components / 2 - 1).beyond()
-
-
 def _area(space, event):
     """Return A of one event."""
     scene, kind = space.scene, DECLARED[event].kind
     if not scene.is_possible(event):
         return 0.0
     if kind == "hop":
-        return _relative(scene) * space.passing(AXIS[event])
+        return scene.fastest * space.passing(AXIS[event])
     if kind == "collision":
-        return _relative(scene) * space.contact()
+        return scene.fastest * space.contact()
     return math.fsum(
         space.wall(axis, disc, high) / math.sqrt(scene.masses[disc])
         for axis, disc, high in _walls(scene, event)
     )
-
-
-@lru_cache(maxsize=1024)
-def _areas(scene):
-    """Return {event: A}."""
-    space = _Space(scene, (scene.velocity_components - 1) / 2)
-    return {event: _area(space, event) for event in EVENTS}
 
 
 # What is exact ------------------------------------------------------------------------------------
@@ -419,38 +404,24 @@ def _areas(scene):
 def volume(scene):
     """Return the weighted volume V of a ``Scene``, in length⁴ (length⁶ for balls).
 
-    Without a field it is the volume of configuration space. Raises ``InputError`` for anything that
-    is not a ``Scene``.
+    Without a field it is the volume of configuration space.
     """
-    return _volume(a_scene(scene))
+    return _Space(scene, scene.velocity_components / 2 - 1).beyond()
 
 
 def areas(scene):
     """Return {event: weighted area A} of a ``Scene``, keys ``EVENTS`` in their order.
 
     In length³ (length⁵ for balls) over the square root of a mass; exactly 0.0 where the event is
-    impossible or has no place. ``any_wall`` sums over both discs and all walls. Raises
-    ``InputError`` for anything that is not a ``Scene``.
+    impossible or has no place. ``any_wall`` sums over both discs and all walls.
     """
-    return dict(_areas(a_scene(scene)))
+    space = _Space(scene, (scene.velocity_components - 1) / 2)
+    return {event: _area(space, event) for event in EVENTS}
 
 
-def rate(scene, event):
-    """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
-
-    It is c_D A/V for hops and half of that for other events. Raises ``InputError`` for anything
-    that is not a ``Scene`` or one of ``EVENTS``.
-    """
-    area = areas(scene)[one_of("event", event, EVENTS)]
-    sides = DECLARED[event].sides
-    return sides / 2 * constant(scene.velocity_components) * area / volume(scene) if area else 0.0
-
-
-def share_near(scene, hop, distance):
-    """Return the probability of a separation up to ``distance`` along the axis of a ``hop``."""
-    space = _Space(scene, scene.velocity_components / 2 - 1)
-    near = space.axis(AXIS[hop], farthest=Fraction(distance))
-    return space.beyond(**{AXIS[hop]: near}) / volume(scene)
+def volume_near(scene, hop, distance):
+    """Return the part of V with a separation up to ``distance`` along the axis of a ``hop``."""
+    return _Space(scene, scene.velocity_components / 2 - 1).within(AXIS[hop], Fraction(distance))
 
 
 # Shells -------------------------------------------------------------------------------------------
@@ -469,23 +440,15 @@ def shell_expectation(scene, event, epsilon):
         top wall         likewise
         any wall         the sum of the shells of both discs at all walls, ε/√m each
 
-    Raises ``InputError`` for anything that is not a ``Scene``, for an event that has
-    no place in it, and for an ``epsilon`` that is not a length up to the radius.
+    ``event`` has a place in the scene, ``epsilon`` is a length up to the radius.
     """
-    one_of("event", event, a_scene(scene).events)
-    epsilon = length("epsilon", epsilon)
-    if epsilon > scene.radius:
-        raise InputError(
-            f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
-        )
     space = _Space(scene, (scene.velocity_components - 1) / 2)
-    thickness = Fraction(epsilon) * Fraction(_relative(scene))
+    thickness = Fraction(epsilon) * Fraction(scene.fastest)
     kind = DECLARED[event].kind
     if kind == "hop":
-        near = space.axis(AXIS[event], farthest=thickness)
-        return space.beyond(**{AXIS[event]: near}) / (2 * epsilon)
+        return space.within(AXIS[event], thickness) / (2 * epsilon)
     if kind == "collision":
-        return _relative(scene) * space.contact(thickness)
+        return scene.fastest * space.contact(thickness)
     return (
         math.fsum(
             space.wall(axis, disc, high, Fraction(epsilon / math.sqrt(scene.masses[disc])))
