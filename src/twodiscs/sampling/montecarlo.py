@@ -67,26 +67,20 @@ if SETS > 8:
 
 
 def _hop_shell(event):
-    row = SHELLS.index(event.name)
-    if event.axis == "x":
-        return lambda uu, vv, square, x, y, ends: uu <= ends[row]
-    return lambda uu, vv, square, x, y, ends: vv <= ends[row]
+    row, k = SHELLS.index(event.name), "xy".index(event.axis)
+    return lambda squares, square, place, ends: squares[k] <= ends[row]
 
 
 def _collision_shell(event):
     row = SHELLS.index(event.name)
-    return lambda uu, vv, square, x, y, ends: square <= ends[row]
+    return lambda squares, square, place, ends: square <= ends[row]
 
 
 def _wall_shell(event):
-    row = SHELLS.index(event.name)
-    if event.side < 0 and event.axis == "x":
-        return lambda uu, vv, square, x, y, ends: x <= ends[row]
-    if event.side < 0:
-        return lambda uu, vv, square, x, y, ends: y <= ends[row]
-    if event.axis == "x":
-        return lambda uu, vv, square, x, y, ends: x >= ends[row]
-    return lambda uu, vv, square, x, y, ends: y >= ends[row]
+    row, k = SHELLS.index(event.name), "xy".index(event.axis)
+    if event.side > 0:
+        return lambda squares, square, place, ends: place[k] >= ends[row]
+    return lambda squares, square, place, ends: place[k] <= ends[row]
 
 
 IN_SHELL = by_kind(
@@ -97,15 +91,15 @@ IN_SHELL = by_kind(
 
 in_shells = tally(
     ((256 ** (1 + i), IN_SHELL[event], None) for i, event in enumerate(SHELLS)),
-    "uu, vv, square, x, y, ends",
+    "squares, square, place, ends",
 )
 BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 
 @inlined
-def sets_of(uu, vv, square, x, y, ends):
+def sets_of(squares, square, place, ends):
     """Return the sets that a sample is in, an integer with a field of eight bits for each."""
-    sets = in_shells(1, uu, vv, square, x, y, ends)
+    sets = in_shells(1, squares, square, place, ends)
     return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
 
 
@@ -165,7 +159,7 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
                     square = uu + vv
                     count = 1
                     if areas is not None:
-                        count = sets_of(uu, vv, square, grain_x, grain_y, ends)
+                        count = sets_of((uu, vv), square, (grain_x, grain_y), ends)
                     packed[i] += count if square >= inner else 0
             for i in range(LANES):
                 for e in range(SETS):
@@ -228,12 +222,15 @@ def sample_point(scene, quantities, samples, shell, seed):
     area of all walls takes no shell of its own: ``right_and_top`` is how many samples lie in both
     shells.
 
-    For a scene with effects see ``weighted_point``. Raises ``InputError`` for an unknown quantity
-    or a number out of range.
+    In a scene with effects a sample of the prism in which the discs do not overlap counts for the
+    volume with the probability (1 − U/E)₊^(D/2 − 1), and for a shell it lies in with (1 −
+    U/E)₊^((D − 1)/2). All walls have an entry of their own there: for each sample one disc and one
+    wall are picked at random, so that its measure is that of the prism times their number. A sample
+    takes some forty times as long. Raises ``InputError`` for an unknown quantity or a number out of
+    range.
     """
-    if a_scene(scene).has_effects:
-        return weighted_point(scene, quantities, samples, shell, seed)
-    return _drawn(_in_prism(scene, quantities, shell, seed), samples)
+    sampler = weighted if a_scene(scene).has_effects else in_prism
+    return _drawn(sampler(scene, quantities, shell, seed), samples)
 
 
 class Sampler(NamedTuple):
@@ -253,8 +250,8 @@ def _drawn(sampler, samples):
     return sampler.point(blocks * sampler.block, sampler.count(0, blocks))
 
 
-def _in_prism(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of ``sample_point``."""
+def in_prism(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of ``sample_point`` for a plain scene."""
     wanted, epsilon = _shells(scene, quantities, shell)
     seed, sigma = whole("seed", seed, 0), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
@@ -338,7 +335,7 @@ def propose_blocks(seed, first, stop, draw, ends):
             to_right += u if bits & np.uint64(1 << 62) else 0.0
             to_top = slack_y * uniform(state)
             to_top += v if bits & np.uint64(1 << 61) else 0.0
-            sets = sets_of(u * u, v * v, excess, -to_right, -to_top, ends)
+            sets = sets_of((u * u, v * v), excess, (-to_right, -to_top), ends)
             for e in range(SETS):
                 totals[e] += (sets >> (8 * e)) & 255
     return totals
@@ -356,10 +353,10 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     """
     if a_scene(scene).has_effects:
         raise InputError(f"scene must have no effects for conditioned draws, not {scene.effects}")
-    return _drawn(_conditioned(scene, quantities, shell, seed), samples)
+    return _drawn(conditioned(scene, quantities, shell, seed), samples)
 
 
-def _conditioned(scene, quantities, shell, seed):
+def conditioned(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
     seed, draw, sigma = whole("seed", seed, 0), draw_constants(scene), scene.contact_distance
@@ -500,20 +497,8 @@ def weighted_blocks(seed, first, stop, prism, ends):
     return totals
 
 
-def weighted_point(scene, quantities, samples, shell, seed):
-    """Estimate the weighted volume and areas of a ``Scene`` with effects.
-
-    A sample of the prism in which the discs do not overlap counts for the volume with the
-    probability (1 − U/E)₊^(D/2 − 1), and for a shell it lies in with (1 − U/E)₊^((D − 1)/2). All
-    walls have an entry of their own: for each sample one disc and one wall are picked at random, so
-    that its measure is that of the prism times their number. Otherwise arguments, result and errors
-    are those of ``sample_point``; a sample takes some forty times as long.
-    """
-    return _drawn(_weighted(scene, quantities, shell, seed), samples)
-
-
-def _weighted(scene, quantities, shell, seed):
-    """Return the ``Sampler`` of ``weighted_point``."""
+def weighted(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of ``sample_point`` for a scene with effects."""
     wanted, epsilon = _shells(scene, quantities, shell)
     # Spins have no place in configuration space: one kernel less to compile.
     seed, prism = whole("seed", seed, 0), prism_of(scene)._replace(inertia=None)
@@ -532,23 +517,25 @@ def _weighted(scene, quantities, shell, seed):
 def better_point(scene, quantities, samples, shell, seed):
     """Estimate the volume and areas of a ``Scene`` by the sampler that suits it.
 
-    With effects that is ``weighted_point``. Without, it is ``sample_point`` where a sample of the
-    prism is free with a probability of at least 1/``DEARER``; else it is ``conditioned_point``,
-    with as many samples as take the same time. Arguments, result and errors are those of either.
+    That is ``sample_point`` with effects, and where a sample of the prism is free with a
+    probability of at least 1/``DEARER``; else it is ``conditioned_point``, with as many samples as
+    take the same time. Arguments, result and errors are those of either.
     """
-    draw_from, samples = plan(scene, samples)
-    return draw_from(scene, quantities, samples, shell, seed)
+    sampler, samples = plan(scene, samples)
+    return _drawn(sampler(scene, quantities, shell, seed), samples)
 
 
 def plan(scene, samples):
-    """Return (the sampler that suits a ``Scene``, the number of its samples for ``samples``)."""
-    in_prism = -(-whole("samples", samples) // BLOCK) * BLOCK
+    """Return what makes the ``Sampler`` that suits a ``Scene``, and the number of its samples.
+
+    It is one of ``in_prism``, ``conditioned`` and ``weighted``; ``samples`` are those of the prism.
+    """
+    in_blocks = -(-whole("samples", samples) // BLOCK) * BLOCK
     if a_scene(scene).has_effects:
-        return weighted_point, in_prism
-    free = exact.volume(scene) / (scene.range_x * scene.range_y) ** 2
-    if free >= 1 / DEARER:
-        return sample_point, in_prism
-    return conditioned_point, -(-samples // (DEARER * PROPOSALS)) * PROPOSALS
+        return weighted, in_blocks
+    if exact.free_share(scene) >= 1 / DEARER:
+        return in_prism, in_blocks
+    return conditioned, -(-samples // (DEARER * PROPOSALS)) * PROPOSALS
 
 
 #: What the work of a job is counted in: an entry of its result.
@@ -569,9 +556,8 @@ def _quantities(areas, volume):
 
 def _sampler(scene, areas, volume, samples, shell, seed):
     """Return (the ``Sampler`` of ``job``, the number of its samples)."""
-    draw_from, samples = plan(scene, samples)
-    make = {sample_point: _in_prism, conditioned_point: _conditioned, weighted_point: _weighted}
-    return make[draw_from](scene, _quantities(areas, volume), shell, seed), samples
+    sampler, samples = plan(scene, samples)
+    return sampler(scene, _quantities(areas, volume), shell, seed), samples
 
 
 def runs(box, radius, **given):
