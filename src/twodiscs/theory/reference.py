@@ -346,8 +346,5 @@ def beside_volume(q):
 
 def beyond_volume(q):
     """A sixteenth of the volume, where x > √2 r."""
-    ends, root = (q.a, q.b), mp.sqrt(2)
-    part = (q.r, q.b)
-    return rectangle(q.weight, *(root * x for x in ends)) - rectangle(
-        q.weight, *(root * x for x in part)
-    )
+    a, b, r = (mp.sqrt(2) * x for x in (q.a, q.b, q.r))
+    return rectangle(q.weight, a, b) - rectangle(q.weight, r, b)
