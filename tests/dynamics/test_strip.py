@@ -11,8 +11,9 @@ from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import states
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, states
 from twodiscs.sampling.strata import mean_of
+from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -146,7 +147,9 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(name):
     distance = math.sqrt(2) * min(scene.radii)
     everywhere = states(scene, 10**6, 5)
     seen = everywhere[:, np.abs(everywhere[k] - everywhere[k + 2]) <= distance]
-    drawn = strip.starts(scene, hop, distance, 20_000, 6)
+    drawn = np.zeros((COMPONENTS, 20_000))
+    draw, prism = origins(scene, hop, distance)
+    draw_any_starts(open_stream(np.uint64(6), 0), draw, (0, 0), drawn, prism)
     assert np.max(np.abs(drawn[k] - drawn[k + 2])) <= distance
     both = [
         np.concatenate((one, one**2, [(one[0] - one[2]) ** 2, (one[1] - one[3]) ** 2]))

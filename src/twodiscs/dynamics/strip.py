@@ -99,7 +99,10 @@ def widest(scene, hop):
 
 
 def expected_events(scene, hop, place):
-    """Return about how many events come in a time 2T: 1.45 T over the room in the neck."""
+    """Return about how many events come in a time 2T: 2βT over the mean room in the neck.
+
+    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41.
+    """
     arch = place.within**2 / (6 * scene.contact_distance)
     return 2 * place.time * scene.fastest / (scene.room(hop) + arch)
 
@@ -231,17 +234,6 @@ def compile_kernels(scene, hop):
     """Compile the kernel that counts a ``hop`` in a ``Scene``."""
     if scene.is_possible(hop):
         run_blocks(scene, hop, strip(scene, hop, widest(scene, hop)), 0, 0, 1, replicas=1)
-
-
-def starts(scene, hop, within, number, seed, block=0):
-    """Return ``number`` starts ``within`` a distance of a ``hop``, as ``sampling.starts.states``.
-
-    In a plain scene the hop is to be the horizontal one.
-    """
-    found = np.zeros((COMPONENTS, number))
-    draw, prism = origins(scene, hop, within)
-    draw_any_starts(open_stream(np.uint64(seed), block), draw, (0, 0), found, prism)
-    return found
 
 
 def run_of(scene, hop, target, budget, seed):
