@@ -235,11 +235,11 @@ def run_blocks(
     detected: without a hop among them no crossing is looked for. Returns (sums, products)
     as ``count_blocks`` does. They are integers: two shards add up to the whole.
     """
-    hops = True if any(event in HOPS for event in events) else None
-    walls = True if any(event in WALLS for event in events) else None
+    hops = any(event in HOPS for event in events) or None
+    walls = any(event in WALLS for event in events) or None
     # Four pairs of a disc and a wall along each of two axes are all there are.
-    whole = scene.alike and not scene.field and scene.walled == ("x", "y")
-    rest = None if walls and whole else True
+    complete = scene.alike and not scene.field and scene.walled == ("x", "y")
+    rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
         sides, scene.alike or None, hops, walls, rest,

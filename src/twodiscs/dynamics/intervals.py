@@ -135,11 +135,10 @@ def record_returns(
 
 
 def recorded(scene, event, blocks, chains, returns, seed, first=0):
-    """Return (times of the chains, sums, width of bins, edges of wide ones): ``record_returns``.
+    """Return (times of the chains, sums) as ``record_returns`` finds them.
 
     There are so many ``blocks``, from the ``first`` one on.
     """
-    width = _width(scene, event)
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
         horizontal = True
@@ -154,9 +153,9 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0):
     sums = np.zeros((2, beyond + 1), np.int64)
     totals = record_returns(
         np.uint64(seed), first, first + blocks, chains, LANES, returns, law_of(upright),
-        *origins(upright), horizontal, width, wide, sums,
+        *origins(upright), horizontal, _width(scene, event), wide, sums,
     )  # fmt: skip
-    return totals, sums, width, edges
+    return totals, sums
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -175,7 +174,7 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     or blocked, or a number out of range.
     """
     blocks, seed = _blocks(scene, event, intervals, seed, budget)
-    totals, sums, _, _ = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
+    totals, sums = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
     means = totals / RETURNS
     mean, error = math.fsum(means) / means.size, float(np.std(means, ddof=1))
     return _summary(scene, event, sums, totals.size, mean, error / math.sqrt(means.size))
@@ -246,10 +245,8 @@ def runs(box, radius, event, intervals, seed, event_budget=BUDGET):
     blocks, seed = _blocks(scene, event, intervals, seed, event_budget)
 
     def work(first, stop):
-        totals, sums, width, _ = recorded(
-            scene, event, stop - first, CHAINS, RETURNS, seed, first=first
-        )
-        times = np.rint(totals * (GRAIN / width)).astype(np.int64) - USUAL
+        totals, sums = recorded(scene, event, stop - first, CHAINS, RETURNS, seed, first)
+        times = np.rint(totals * (GRAIN / _width(scene, event))).astype(np.int64) - USUAL
         return sums, np.array([times.sum(), (times * times).sum()])
 
     events = CHAINS * RETURNS * exact.events_per_interval(scene, event)
