@@ -56,8 +56,8 @@ def areas(scene):
 def rate(scene, event):
     """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
 
-    This is the mean over the whole configuration space. A trajectory that can reach the right (top)
-    wall at all hits it twice as often where it is confined to one side of the other disc:
+    This is the mean over the whole configuration space. Where disc 1 reaches the right (top) wall
+    from its own side of disc 2 only, a trajectory that can reach it hits it twice as often:
     ``mean_times``. Raises ``InputError`` for anything that is not a ``Scene`` or one of
     ``EVENTS``.
     """
@@ -99,7 +99,9 @@ def mean_times(scene):
 
     Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the
     event is impossible. Wall times are those of disc 1 on the trajectories that can reach the wall:
-    half of configuration space where ``Scene.confined``. Accuracy and errors as for ``volume``.
+    half of configuration space where ``Scene.confined``. Where a larger disc 1 keeps its side and
+    still reaches both walls, the time is one over the mean of its two rates. Accuracy and errors
+    as for ``volume``.
     """
     return {
         event: scene.share(event) / rate(scene, event) if area else None

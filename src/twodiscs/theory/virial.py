@@ -17,7 +17,7 @@ for equal discs between walls, with rates ν over all initial conditions.
 
 import math
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, one_of
 from twodiscs.model.scene import a_scene
 from twodiscs.theory.weighted import constant
 
@@ -28,8 +28,7 @@ def momentum_per_hit(scene, event):
     For disc 1 at a wall and for the collisions of the discs. Raises ``InputError`` for anything
     that is not a ``Scene``, in a field, where it depends on the height, and for other events.
     """
-    if event not in ("right_wall", "top_wall", "disc_collision"):
-        raise InputError(f"event must be a hit of disc 1 or a disc collision, not {event!r}")
+    one_of("event", event, ("right_wall", "top_wall", "disc_collision"))
     if a_scene(scene).field:
         raise InputError(f"field must be 0, not {scene.field!r}: momenta depend on the height")
     components = scene.velocity_components
@@ -44,10 +43,13 @@ def pressure_factor(scene, event):
 
     That is side × (momentum per hit)/kT, with kT = 1/D: the force of an ideal gas of one particle
     on the wall at a distance of ``side`` from the opposite one is kT/side. ``event`` is
-    right_wall or top_wall. Raises ``InputError`` as ``momentum_per_hit`` does.
+    right_wall or top_wall. Raises ``InputError`` for another one, for anything that is not a
+    ``Scene``, and in a field.
     """
-    side = {"right_wall": scene.width, "top_wall": scene.height}[event]
-    return side * scene.velocity_components * momentum_per_hit(scene, event)
+    one_of("event", event, ("right_wall", "top_wall"))
+    momentum = momentum_per_hit(scene, event)
+    side = scene.width if event == "right_wall" else scene.height
+    return side * scene.velocity_components * momentum
 
 
 def weights(scene):
