@@ -158,9 +158,16 @@ def animation_files(scene):
     return multiext(path, ".gif", ".png") if called else []
 
 
-def study_file(study):
-    """Return the path of the first table of a study."""
-    return f"{RESULTS}/{study.tables[0].name()}.csv"
+def study_table(table):
+    """Return the file of a table of a study, with its place in the report; the errata say more."""
+    name = table.name()
+    return report(
+        ensure(f"{RESULTS}/{name}.csv", non_empty=True),
+        caption=f"../report/{'errata' if name == 'errata' else 'shared_table'}.rst",
+        category="Tables",
+        subcategory="all scenes",
+        labels={"table": name, "what a row says": table.meaning()},
+    )
 
 
 def study_files(name):

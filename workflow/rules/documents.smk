@@ -179,9 +179,7 @@ rule crate:
 # All results against the record of the jobs that wrote them.
 
 
-rule:
-    name:
-        "audit"
+rule audit:
     log:
         log_of("audit"),
     params:
@@ -194,9 +192,7 @@ rule:
 # whenever it is asked for.
 
 
-rule:
-    name:
-        "verify"
+rule verify:
     log:
         log_of("verify"),
     params:
@@ -213,9 +209,7 @@ rule:
 # Snakemake would keep up to date. cost.csv compares what jobs took with the last one there is.
 
 
-rule:
-    name:
-        "forecast"
+rule forecast:
     input:
         compiled=sorted(
             {
@@ -239,9 +233,7 @@ rule:
 # What survives kills and damage, tried on a build of its own in a temporary folder.
 
 
-rule:
-    name:
-        "soak"
+rule soak:
     log:
         log_of("soak"),
     threads: 64  # all that there are
@@ -257,9 +249,7 @@ rule:
 # How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
 
 
-rule:
-    name:
-        "benchmark"
+rule benchmark:
     input:
         scenes=rules.effects_cost.input.scenes,
     output:

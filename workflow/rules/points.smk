@@ -2,38 +2,26 @@
 # configuration alone, so they are known before any job runs.
 
 
-rule grid:
-    output:
-        table=ensure(f"{RESULTS}/{{scene}}/grid.csv", non_empty=True),
-    log:
-        log_of("{scene}/grid"),
-    benchmark:
-        benchmark_of("{scene}/grid")
-    params:
-        about=lambda w: about(w.scene, None),
-        job=lambda w: as_json(SCENES[w.scene].grid_job()),
-        code=table_code("theory.exact", SCENE_TABLES["grid"]),
-    shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
-        " --parameters {params.job:q} --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+for name in ("grid", "theory"):
 
-
-rule theory:
-    output:
-        table=ensure(f"{RESULTS}/{{scene}}/theory.csv", non_empty=True),
-    log:
-        log_of("{scene}/theory"),
-    benchmark:
-        benchmark_of("{scene}/theory")
-    params:
-        about=lambda w: about(w.scene, None),
-        job=lambda w: as_json(SCENES[w.scene].theory_job()),
-        code=table_code("theory.exact", SCENE_TABLES["theory"]),
-    shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
-        " --parameters {params.job:q} --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+    rule:
+        name:
+            name
+        output:
+            table=ensure(f"{RESULTS}/{{scene}}/{name}.csv", non_empty=True),
+        log:
+            log_of(f"{{scene}}/{name}"),
+        benchmark:
+            benchmark_of(f"{{scene}}/{name}")
+        params:
+            about=lambda w: about(w.scene, None),
+            job=lambda w, name=name: as_json(SCENES[w.scene].exact_job(name)),
+            function=f"{name}_rows",
+            code=table_code("theory.exact", SCENE_TABLES[name]),
+        shell:
+            "python -m twodiscs.pipeline.jobs table theory.exact --function {params.function}"
+            " --parameters {params.job:q} --output {output.table:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
