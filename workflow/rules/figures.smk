@@ -5,9 +5,9 @@
 
 rule figure:
     input:
-        tables=lambda w: figure_tables(
-            f"{RESULTS}/{w.scene}", FIGURES[w.figure]
-        ).values(),
+        tables=lambda w: [
+            f"{RESULTS}/{w.scene}/{name}.csv" for name in FIGURES[w.figure].tables
+        ],
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
@@ -38,7 +38,7 @@ rule figure:
 
 rule shared_figure:
     input:
-        tables=lambda w: study_figure_tables(STUDY_FIGURES[w.figure]).values(),
+        tables=lambda w: FILES.study_figure_reads(STUDY_FIGURES[w.figure]).values(),
     output:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
@@ -59,7 +59,7 @@ rule shared_figure:
         job=as_json({"box": MAIN.box.parameters()} if MAIN else {}),
         module=lambda w: STUDY_FIGURES[w.figure].module,
         tables=lambda w, input: named_tables(
-            study_figure_tables(STUDY_FIGURES[w.figure]), input.tables
+            FILES.study_figure_reads(STUDY_FIGURES[w.figure]), input.tables
         ),
         caption=lambda w: STUDY_FIGURES[w.figure].full_caption(),
         code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
@@ -98,7 +98,7 @@ rule animate:
 
 rule animation:
     input:
-        [animation_files(scene) for scene in SCENES.values()],
+        [FILES.animation(scene) for scene in SCENES.values()],
 
 
 # A figure's name is a target: that figure, for every scene that calls for it.
@@ -108,4 +108,4 @@ for figure in FIGURES:
         name:
             figure
         input:
-            [files.get(figure, []) for files in map(figure_files, SCENES.values())],
+            [files.get(figure, []) for files in map(FILES.figures, SCENES.values())],

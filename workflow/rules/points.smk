@@ -35,8 +35,6 @@ rule compile:
         log_of("compile-{kernels}"),
     benchmark:
         benchmark_of("compile-{kernels}")
-    wildcard_constraints:
-        kernels="|".join(KERNELS),
     params:
         modules=lambda w: ",".join(KERNELS[w.kernels]),
         code=lambda w: code(*KERNELS[w.kernels]),
@@ -52,8 +50,6 @@ rule compile_effects:
         log_of("{scene}/compile-{stage}"),
     benchmark:
         benchmark_of("{scene}/compile-{stage}")
-    wildcard_constraints:
-        stage="|".join(STAGES),
     params:
         job=lambda w: as_json(SCENES[w.scene].kernels(w.stage)),
         module=lambda w: STAGES[w.stage],
@@ -73,7 +69,7 @@ for stage, module in STAGES.items():
         name:
             stage
         input:
-            compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
+            compiled=lambda w, stage=stage: FILES.compiled(SCENES[w.scene], stage),
         output:
             bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
         log:

@@ -16,7 +16,7 @@ for name, study in ALLOWED.items():
         name:
             f"{name}_table"
         input:
-            tables=study_tables(study).values(),
+            tables=FILES.study_reads(study).values(),
             points=EFFECT_POINTS if name == "effects" else [],
             compiled=[f"{RESULTS}/.compiled/{kernels}" for kernels in study.kernels],
         output:
@@ -31,7 +31,7 @@ for name, study in ALLOWED.items():
             module=study.code,
             function=study.function,
             tables=lambda w, input, study=study: named_tables(
-                study_tables(study), input.tables
+                FILES.study_reads(study), input.tables
             ),
             code=table_code(study.code, study.tables[0]),
         shell:
@@ -97,4 +97,4 @@ for name in ALLOWED:
         name:
             name
         input:
-            study_files(name),
+            FILES.study(name),
