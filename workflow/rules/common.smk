@@ -105,6 +105,11 @@ def minutes(stage=None):
     )
 
 
+def drawn(w):
+    """Return the scene that a figure is about: the main one, if there is one, for one of no scene."""
+    return SCENES.get(w.get("scene"), MAIN)
+
+
 def study_table(table):
     """Return the file of a table of a study, with its place in the report; the errata say more."""
     name = table.name()

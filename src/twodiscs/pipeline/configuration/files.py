@@ -91,11 +91,12 @@ class Files:
             for name, (scene, table) in study.reads(self.configuration).items()
         }
 
-    def study_figure_reads(self, entry):
-        """Return {name: path} of the tables that a figure of a study reads."""
+    def figure_reads(self, entry, scene=None):
+        """Return {name: path} of the tables that a figure reads; ``scene`` is a name, or None."""
+        folder = f"{self.folder}/{scene}" if scene else self.folder
         main = self.configuration.main
         of_main = self.tables(main) if main else {}
-        found = {name: f"{self.folder}/{name}.csv" for name in entry.tables}
+        found = {name: f"{folder}/{name}.csv" for name in entry.tables}
         return found | {name: of_main[name] for name in entry.main_tables if name in of_main}
 
     def manuscript(self, results):
@@ -155,8 +156,8 @@ def named_tables(names, paths):
 
 
 def figure_job(scene, entry):
-    """Return what a figure of a scene depends on beside its tables."""
-    given = {"box": scene.box.parameters(), **entry.options}
+    """Return what a figure depends on beside its tables; ``scene`` is None where none is drawn."""
+    given = {"box": scene.box.parameters(), **entry.options} if scene else dict(entry.options)
     return given | ({"radius": scene.watch.trajectory} if "trajectory" in entry.tables else {})
 
 
