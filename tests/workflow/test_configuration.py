@@ -51,7 +51,7 @@ def test_a_file_that_cannot_be_read(unbuilt, tmp_path, own, text, said):
     path = tmp_path / "config" / ("config.yaml" if own else "other.yaml")
     path.write_text(text, errors="surrogateescape")
     words = [] if own else ["--configfile", str(path)]
-    run = folder.snakemake("-n", "-s", str(unbuilt.path / "Snakefile"), *words, passes=False)
+    run = folder.snakemake("-n", *words, passes=False)
     assert run.returncode != 0
     assert run.stderr.splitlines()[-1].startswith(f"Configuration: {path}{said}")
     assert "Traceback" not in run.stdout + run.stderr
