@@ -1,5 +1,5 @@
-# The studies: one rule makes the table of each that needs no more. What each effect does is counted a scene
-# of config/scenes at a time, as that is built alone; what it costs is in seconds.
+# The studies: one rule makes the first table of each. What each effect does is counted a scene of config/scenes
+# at a time, as that is built alone; what it costs is in seconds.
 
 EFFECTS = {path.stem: str(path) for path in sorted(HERE.glob("config/scenes/*.yaml"))}
 EFFECT_POINTS = [f"{RESULTS}/points/effects/{name}.json" for name in EFFECTS]
