@@ -332,7 +332,7 @@ def checked(tmp_path_factory):
         for key in scene.keys[stage]:
             job("point", module, scene.job(stage, key), points / stage / f"{key}.json")
     theory = job(
-        "table", "theory.exact", scene.theory_job(), folder / "theory.csv",
+        "table", "theory.exact", scene.exact_job("theory"), folder / "theory.csv",
         "--function", "theory_rows",
     )  # fmt: skip
     return job(

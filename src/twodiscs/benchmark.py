@@ -11,7 +11,7 @@ import math
 import multiprocessing
 import time
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from statistics import median
 
@@ -31,6 +31,7 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
 from twodiscs.studies.accuracy_cost import scalar
 from twodiscs.studies.effects.table import Benchmark, EffectsCost
+from twodiscs.theory.exact import event_rate
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7
@@ -73,15 +74,7 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
 def lockstep_intervals(intervals=5_000_000):
     """Record exact intervals between vertical hops; events are as many as their time holds."""
     found, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
-    return found["intervals"] * found["mean"] * total_rate(), seconds
-
-
-@cache
-def total_rate():
-    """Return wall and disc events per unit of time, from one count of many."""
-    duration = counting.replica_duration(SCENE)
-    sums, _ = counting.run_blocks(SCENE, EVENTS, 1, 0, BLOCKS, duration)
-    return counting.simulated_events(sums) / (BLOCKS * REPLICAS * duration)
+    return found["intervals"] * found["mean"] * event_rate(SCENE), seconds
 
 
 def scalar_engine(blocks=BLOCKS // 8):

@@ -49,10 +49,8 @@ def _parser():
     parser.add_argument("--version", action="version", version=version)
     commands = parser.add_subparsers(dest="command", title="commands", metavar="COMMAND")
 
-    def command(name, work, text, more=""):
-        found = commands.add_parser(
-            name, help=text, description=f"{text[0].upper()}{text[1:]}. {more}"
-        )
+    def command(name, work, text):
+        found = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
         for side in ("width", "height", "radius"):
             found.add_argument(f"--{side}", type=number, required=True, help="a length")
         effects = found.add_argument_group("effects", "what the scene calls for besides")

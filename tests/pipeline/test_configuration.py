@@ -173,8 +173,8 @@ def test_a_watch_block_is_everything_that_is_watched():
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
     for parameters in (
-        request.grid_job(),
-        request.theory_job(),
+        request.exact_job("grid"),
+        request.exact_job("theory"),
         request.table_job(STAGES),
         request.job("dynamics", next(iter(request.keys["dynamics"]))),
     ):
@@ -259,8 +259,8 @@ def test_included_radii_do_not_move_the_others():
 def jobs(request):
     """The parameters of every job of a scene, by job."""
     every = {
-        ("theory",): request.theory_job(),
-        ("grid",): request.grid_job(),
+        ("theory",): request.exact_job("theory"),
+        ("grid",): request.exact_job("grid"),
         ("trajectory",): request.trajectory_job(),
     }
     return every | {

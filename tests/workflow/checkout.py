@@ -66,7 +66,8 @@ def snakemake_main(arguments):
 class Checkout:
     """A folder to build in: a copy of the repository at ``path`` whose own sources do the work.
 
-    With ``home``, another checkout, it is a folder anywhere that uses the sources of that one.
+    With ``home``, another checkout, it is a folder anywhere that uses the sources of that one, and
+    its workflow, unless the folder has one of its own.
     """
 
     def __init__(self, path, home=None):
@@ -80,6 +81,8 @@ class Checkout:
         Snakemake already, but nothing of the package.
         """
         sources = str(self.home.path / "src")
+        if not (self.path / "Snakefile").exists():
+            arguments = "--snakefile", str(self.home.path / "Snakefile"), *arguments
         if "--dry-run" in arguments:
             run = forked(arguments, self.path, sources)
         else:

@@ -60,7 +60,7 @@ rule mine:
 
 def there(place):
     """Return the arguments that build in the folder of ``place`` from wherever it is called."""
-    return "--snakefile", str(place.home.path / "Snakefile"), "--directory", str(place.path)
+    return "--directory", str(place.path)
 
 
 def use(place, configuration, prefix="", more='config:\n        config["discs"]'):

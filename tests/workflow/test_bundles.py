@@ -45,8 +45,7 @@ def files(place):
 
 
 def test_jobs_are_few(place):
-    snakefile = ("--snakefile", str(place.home.path / "Snakefile"))
-    jobs = place.jobs("--cores", "2", *snakefile, "--", *TABLES)
+    jobs = place.jobs("--cores", "2", "--", *TABLES)
     rules = Counter(rule for rule, _ in jobs)
     assert rules.keys() == {"compile", "dynamics", "monte_carlo", "table", "theory"}
     assert len(RADII) / 100 < rules["dynamics"] == rules["monte_carlo"] < 100
@@ -54,8 +53,7 @@ def test_jobs_are_few(place):
 
 def build(place, *more):
     """Build the tables and return the bytes of them."""
-    snakefile = ("--snakefile", str(place.home.path / "Snakefile"))
-    place.snakemake(*snakefile, "--cores", "2", *more, "--", *TABLES)
+    place.snakemake("--cores", "2", *more, "--", *TABLES)
     return [(place.path / table).read_bytes() for table in TABLES]
 
 

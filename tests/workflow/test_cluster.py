@@ -35,8 +35,7 @@ def place_at(path, home):
 
 def build(place, *arguments):
     """Return the tables of a build."""
-    snakefile = str(place.home.path / "Snakefile")
-    place.snakemake("--snakefile", snakefile, *arguments, "--", *TABLES)
+    place.snakemake(*arguments, "--", *TABLES)
     return [(place.path / name).read_bytes() for name in TABLES]
 
 

@@ -145,13 +145,13 @@ def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
     assert not [job for job in jobs if WALLS in job[1]]
 
 
-@pytest.mark.parametrize(
-    ("old", "new"), [("1e-3", "0.001"), ("2e7", "20000000"), ("height: 1.0", "height: 1")]
-)
-def test_another_spelling_of_a_number_reruns_nothing(built, old, new):
+def test_another_spelling_of_a_number_reruns_nothing(built):
+    spellings = {"1e-3": "0.001", "2e7": "20000000", "height: 1.0": "height: 1"}
     text = built.configuration.read_text()
-    assert old in text
-    built.configuration.write_text(text.replace(old, new))
+    for old, new in spellings.items():
+        assert old in text
+        text = text.replace(old, new)
+    built.configuration.write_text(text)
     assert {rule for rule, _ in built.jobs()} <= {"report"}
 
 

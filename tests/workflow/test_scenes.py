@@ -139,6 +139,7 @@ def test_a_file_builds_its_scene_alone(unbuilt):
     assert {w for _, wildcards in found for w in wildcards if w.startswith("scene=")} == {
         "scene=torus"
     }
+    assert not {"effects_point", "effects_table", "effects_cost"} & {rule for rule, _ in found}
     # What is about a box without effects is no target there.
     run = unbuilt.snakemake(
         "-n", "--configfile", "config/scenes/torus.yaml", "--", "paper", passes=False

@@ -32,9 +32,7 @@ def change(place, **keys):
 def build(place, *arguments):
     """Build the mean times; return (the bytes of them, what was written below points)."""
     before = written(place)
-    place.snakemake(
-        "--snakefile", str(place.home.path / "Snakefile"), "--cores", "2", *arguments, "--", TABLE
-    )
+    place.snakemake("--cores", "2", *arguments, "--", TABLE)
     after = written(place)
     new = {name: stamp for name, stamp in after.items() if before.get(name) != stamp}
     return (place.path / TABLE).read_bytes(), new

@@ -3,12 +3,6 @@
 from twodiscs.pipeline.results.manifest import is_reproducible
 from twodiscs.pipeline.results.record import WORKFLOW
 
-PAPER = {
-    name: str(HERE / "paper" / name)
-    for name in ("paper.typ", "results.typ", "references.bib", "../CITATION.cff")
-}
-
-
 if MAIN:
 
     localrules:
@@ -16,17 +10,20 @@ if MAIN:
 
     rule paper:
         input:
-            template=PAPER["paper.typ"],
-            others=list(PAPER.values())[1:],
+            template=str(HERE / "paper/paper.typ"),
+            others=[
+                str(HERE / "paper" / name)
+                for name in ("results.typ", "references.bib", "../CITATION.cff")
+            ],
             figures=[
                 files[0]
                 for scene in CONFIGURATION.plain
-                for files in figure_files(scene).values()
+                for files in FILES.figures(scene).values()
             ],
             tables=[
                 path
                 for scene in CONFIGURATION.plain
-                for path in table_files(scene).values()
+                for path in FILES.tables(scene).values()
             ],
             shared=[f"{RESULTS}/{name}.csv" for name in shared_tables()],
             drawn=[f"{RESULTS}/figures/{name}.pdf" for name in STUDY_FIGURES],
@@ -43,7 +40,7 @@ if MAIN:
             benchmark_of("paper")
         params:
             contents=lambda w, output: as_json(
-                manuscript_job(os.path.dirname(output.pdf))
+                FILES.manuscript(os.path.dirname(output.pdf))
             ),
             texts=lambda w, input: contents(input.template, *input.others),
             code=code("pipeline.documents.manuscript"),
@@ -65,12 +62,12 @@ rule report:
         results=[
             rules.check.output,
             [
-                study_files(name) if name in STUDIES else rules.paper.output
+                FILES.study(name) if name in STUDIES else rules.paper.output
                 for name in CONFIGURATION.shared
                 if name != "report"
             ],
-            [list(table_files(scene).values()) for scene in SCENES.values()],
-            [list(figure_files(scene).values()) for scene in SCENES.values()],
+            [list(FILES.tables(scene).values()) for scene in SCENES.values()],
+            [list(FILES.figures(scene).values()) for scene in SCENES.values()],
             rules.animation.input,
         ],
         texts=sorted(map(str, HERE.glob("workflow/report/*.rst"))),
@@ -93,7 +90,7 @@ rule report:
             )
         ),
         snakefile=str(HERE / "Snakefile"),
-        scenes=as_json({"scenes": report_scenes()}),
+        scenes=as_json(FILES.report()),
         files=lambda w, input: kept("\n".join(input.results)),
         texts=lambda w, input: contents(*input.texts, input.style, input.front),
         code=code("pipeline.documents.report"),
@@ -146,9 +143,6 @@ rule provenance:
 # An RO-Crate of it all, with the texts of the workflow in it. Not part of `all`.
 
 
-TEXTS = [HERE / "Snakefile", *sorted(HERE.glob("workflow/rules/*.smk"))]
-
-
 rule crate:
     input:
         files=[
@@ -157,7 +151,10 @@ rule crate:
             rules.manifest.output,
             rules.provenance.output,
         ],
-        texts=map(str, TEXTS),
+        texts=[
+            str(HERE / "Snakefile"),
+            *sorted(map(str, HERE.glob("workflow/rules/*.smk"))),
+        ],
         citation=str(HERE / "CITATION.cff"),
     output:
         json=f"{RESULTS}/ro-crate-metadata.json",
@@ -179,9 +176,7 @@ rule crate:
 # All results against the record of the jobs that wrote them.
 
 
-rule:
-    name:
-        "audit"
+rule audit:
     log:
         log_of("audit"),
     params:
@@ -194,9 +189,7 @@ rule:
 # whenever it is asked for.
 
 
-rule:
-    name:
-        "verify"
+rule verify:
     log:
         log_of("verify"),
     params:
@@ -213,13 +206,11 @@ rule:
 # Snakemake would keep up to date. cost.csv compares what jobs took with the last one there is.
 
 
-rule:
-    name:
-        "forecast"
+rule forecast:
     input:
         compiled=sorted(
             {
-                compiled(scene, stage)
+                FILES.compiled(scene, stage)
                 for scene in SCENES.values()
                 for stage in STAGES
                 if scene.keys[stage]
@@ -239,9 +230,7 @@ rule:
 # What survives kills and damage, tried on a build of its own in a temporary folder.
 
 
-rule:
-    name:
-        "soak"
+rule soak:
     log:
         log_of("soak"),
     threads: 64  # all that there are
@@ -257,9 +246,7 @@ rule:
 # How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
 
 
-rule:
-    name:
-        "benchmark"
+rule benchmark:
     input:
         scenes=rules.effects_cost.input.scenes,
     output:

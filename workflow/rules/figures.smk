@@ -3,70 +3,50 @@
 # shows no other animated image.
 
 
-rule figure:
-    input:
-        tables=lambda w: figure_tables(
-            f"{RESULTS}/{w.scene}", FIGURES[w.figure]
-        ).values(),
-    output:
-        pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
-        png=report(
-            f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
-            caption="../report/figure.rst",
-            category=lambda w: FIGURES[w.figure].category,
-            subcategory="{scene}",
-            labels=lambda w: FIGURES[w.figure].labels,
-        ),
-    log:
-        log_of("{scene}/figure-{figure}"),
-    benchmark:
-        benchmark_of("{scene}/figure-{figure}")
-    wildcard_constraints:
-        figure="|".join(FIGURES),
-    params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(figure_job(SCENES[w.scene], FIGURES[w.figure])),
-        module=lambda w: FIGURES[w.figure].module,
-        tables=lambda w, input: named_tables(FIGURES[w.figure].tables, input.tables),
-        caption=lambda w: FIGURES[w.figure].full_caption(SCENES[w.scene].effects),
-        code=lambda w: figure_code(FIGURES[w.figure].module),
-    shell:
-        "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+ENTRIES = FIGURES | STUDY_FIGURES
 
+for name, place, entries in (
+    ("figure", "{scene}/", FIGURES),
+    ("shared_figure", "", STUDY_FIGURES),
+):
 
-rule shared_figure:
-    input:
-        tables=lambda w: study_figure_tables(STUDY_FIGURES[w.figure]).values(),
-    output:
-        pdf=f"{RESULTS}/figures/{{figure}}.pdf",
-        png=report(
-            f"{RESULTS}/figures/{{figure}}.png",
-            caption="../report/shared_figure.rst",
-            category=lambda w: STUDY_FIGURES[w.figure].category,
-            subcategory="all scenes",
-            labels=lambda w: STUDY_FIGURES[w.figure].labels,
-        ),
-    log:
-        log_of("figure-{figure}"),
-    benchmark:
-        benchmark_of("figure-{figure}")
-    wildcard_constraints:
-        figure="|".join(STUDY_FIGURES),
-    params:
-        about=about(MAIN.name if MAIN else None),
-        job=as_json({"box": MAIN.box.parameters()} if MAIN else {}),
-        module=lambda w: STUDY_FIGURES[w.figure].module,
-        tables=lambda w, input: named_tables(
-            study_figure_tables(STUDY_FIGURES[w.figure]), input.tables
-        ),
-        caption=lambda w: STUDY_FIGURES[w.figure].full_caption(),
-        code=lambda w: figure_code(STUDY_FIGURES[w.figure].module),
-    shell:
-        "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-        " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+    rule:
+        name:
+            name
+        input:
+            tables=lambda w: FILES.figure_reads(
+                ENTRIES[w.figure], w.get("scene")
+            ).values(),
+        output:
+            pdf=f"{RESULTS}/{place}figures/{{figure}}.pdf",
+            png=report(
+                f"{RESULTS}/{place}figures/{{figure}}.png",
+                caption=f"../report/{name}.rst",
+                category=lambda w: ENTRIES[w.figure].category,
+                subcategory="{scene}" if place else "all scenes",
+                labels=lambda w: ENTRIES[w.figure].labels,
+            ),
+        log:
+            log_of(f"{place}figure-{{figure}}"),
+        benchmark:
+            benchmark_of(f"{place}figure-{{figure}}")
+        wildcard_constraints:
+            figure="|".join(entries),
+        params:
+            about=lambda w: about(getattr(drawn(w), "name", None)),
+            job=lambda w: as_json(figure_job(drawn(w), ENTRIES[w.figure])),
+            module=lambda w: ENTRIES[w.figure].module,
+            tables=lambda w, input: named_tables(
+                FILES.figure_reads(ENTRIES[w.figure], w.get("scene")), input.tables
+            ),
+            caption=lambda w: ENTRIES[w.figure].full_caption(
+                getattr(drawn(w), "effects", ())
+            ),
+            code=lambda w: figure_code(ENTRIES[w.figure].module),
+        shell:
+            "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
+            " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 rule animate:
@@ -98,7 +78,7 @@ rule animate:
 
 rule animation:
     input:
-        [animation_files(scene) for scene in SCENES.values()],
+        [FILES.animation(scene) for scene in SCENES.values()],
 
 
 # A figure's name is a target: that figure, for every scene that calls for it.
@@ -108,4 +88,4 @@ for figure in FIGURES:
         name:
             figure
         input:
-            [files.get(figure, []) for files in map(figure_files, SCENES.values())],
+            [files.get(figure, []) for files in map(FILES.figures, SCENES.values())],

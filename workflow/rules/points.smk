@@ -2,38 +2,26 @@
 # configuration alone, so they are known before any job runs.
 
 
-rule grid:
-    output:
-        table=ensure(f"{RESULTS}/{{scene}}/grid.csv", non_empty=True),
-    log:
-        log_of("{scene}/grid"),
-    benchmark:
-        benchmark_of("{scene}/grid")
-    params:
-        about=lambda w: about(w.scene, None),
-        job=lambda w: as_json(SCENES[w.scene].grid_job()),
-        code=table_code("theory.exact", SCENE_TABLES["grid"]),
-    shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact --function grid_rows"
-        " --parameters {params.job:q} --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+for name in ("grid", "theory"):
 
-
-rule theory:
-    output:
-        table=ensure(f"{RESULTS}/{{scene}}/theory.csv", non_empty=True),
-    log:
-        log_of("{scene}/theory"),
-    benchmark:
-        benchmark_of("{scene}/theory")
-    params:
-        about=lambda w: about(w.scene, None),
-        job=lambda w: as_json(SCENES[w.scene].theory_job()),
-        code=table_code("theory.exact", SCENE_TABLES["theory"]),
-    shell:
-        "python -m twodiscs.pipeline.jobs table theory.exact --function theory_rows"
-        " --parameters {params.job:q} --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+    rule:
+        name:
+            name
+        output:
+            table=ensure(f"{RESULTS}/{{scene}}/{name}.csv", non_empty=True),
+        log:
+            log_of(f"{{scene}}/{name}"),
+        benchmark:
+            benchmark_of(f"{{scene}}/{name}")
+        params:
+            about=lambda w: about(w.scene, None),
+            job=lambda w, name=name: as_json(SCENES[w.scene].exact_job(name)),
+            function=f"{name}_rows",
+            code=table_code("theory.exact", SCENE_TABLES[name]),
+        shell:
+            "python -m twodiscs.pipeline.jobs table theory.exact --function {params.function}"
+            " --parameters {params.job:q} --output {output.table:q}"
+            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
 # Kernels are compiled once, before the jobs that share them start side by side: those of the box without
@@ -47,8 +35,6 @@ rule compile:
         log_of("compile-{kernels}"),
     benchmark:
         benchmark_of("compile-{kernels}")
-    wildcard_constraints:
-        kernels="|".join(KERNELS),
     params:
         modules=lambda w: ",".join(KERNELS[w.kernels]),
         code=lambda w: code(*KERNELS[w.kernels]),
@@ -64,8 +50,6 @@ rule compile_effects:
         log_of("{scene}/compile-{stage}"),
     benchmark:
         benchmark_of("{scene}/compile-{stage}")
-    wildcard_constraints:
-        stage="|".join(STAGES),
     params:
         job=lambda w: as_json(SCENES[w.scene].kernels(w.stage)),
         module=lambda w: STAGES[w.stage],
@@ -85,7 +69,7 @@ for stage, module in STAGES.items():
         name:
             stage
         input:
-            compiled=lambda w, stage=stage: compiled(SCENES[w.scene], stage),
+            compiled=lambda w, stage=stage: FILES.compiled(SCENES[w.scene], stage),
         output:
             bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
         log:

@@ -11,8 +11,6 @@ checkpoint plan:
         log_of("{scene}/plan-{stage}-{round}"),
     benchmark:
         benchmark_of("{scene}/plan-{stage}-{round}")
-    wildcard_constraints:
-        round="[0-9]+",
     params:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].plan_job(w.stage, needed_before(w))),
@@ -27,7 +25,7 @@ checkpoint plan:
 
 rule shard:
     input:
-        compiled=lambda w: compiled(SCENES[w.scene], w.stage),
+        compiled=lambda w: FILES.compiled(SCENES[w.scene], w.stage),
     output:
         shard=f"{SHARDS}/{{key}}/{{part}}-{{first}}-{{stop}}.json",
         cost=f"{SHARDS}/{{key}}/cost/{{part}}-{{first}}-{{stop}}.json",
@@ -35,10 +33,6 @@ rule shard:
         log_of("{scene}/shard-{stage}-{key}-{part}-{first}-{stop}"),
     benchmark:
         benchmark_of("{scene}/shard-{stage}-{key}-{part}-{first}-{stop}")
-    wildcard_constraints:
-        part="[a-z_]+",
-        first="[0-9]+",
-        stop="[0-9]+",
     resources:
         runtime=minutes(),
     params:
@@ -69,8 +63,6 @@ rule shards:
         log_of("{scene}/shards-{stage}-{key}-{name}"),
     benchmark:
         benchmark_of("{scene}/shards-{stage}-{key}-{name}")
-    wildcard_constraints:
-        name="[0-9a-f]+",
     params:
         names=lambda w: kept(json.dumps({"keys": needed(w)})),
     shell:

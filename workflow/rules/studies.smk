@@ -1,54 +1,43 @@
-# The studies: one rule makes the table of each that needs no more. What each effect does is counted a scene
-# of config/scenes at a time, as that is built alone; what it costs is in seconds.
+# The studies: one rule makes the first table of each. What each effect does is counted a scene of config/scenes
+# at a time, as that is built alone; what it costs is in seconds.
 
 EFFECTS = {path.stem: str(path) for path in sorted(HERE.glob("config/scenes/*.yaml"))}
 EFFECT_POINTS = [f"{RESULTS}/points/effects/{name}.json" for name in EFFECTS]
 
-# Those that the scenes allow; the errata say more in the report.
+# Those that the scenes allow.
 ALLOWED = {
     name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
 }
-GENERIC = [name for name in ALLOWED if name != "effects"]
-CAPTIONS = {"errata": "../report/errata.rst"}
 
 
-for name in GENERIC:
+for name, study in ALLOWED.items():
 
     rule:
         name:
             f"{name}_table"
         input:
-            tables=study_tables(STUDIES[name]).values(),
-            compiled=[
-                f"{RESULTS}/.compiled/{kernels}" for kernels in STUDIES[name].kernels
-            ],
+            tables=FILES.study_reads(study).values(),
+            points=EFFECT_POINTS if name == "effects" else [],
+            compiled=[f"{RESULTS}/.compiled/{kernels}" for kernels in study.kernels],
         output:
-            table=report(
-                ensure(study_file(STUDIES[name]), non_empty=True),
-                caption=CAPTIONS.get(name, "../report/shared_table.rst"),
-                category="Tables",
-                subcategory="all scenes",
-                labels={
-                    "table": name,
-                    "what a row says": STUDIES[name].tables[0].meaning(),
-                },
-            ),
+            table=study_table(study.tables[0]),
         log:
             log_of(f"{name}_table"),
         benchmark:
             benchmark_of(f"{name}_table")
         params:
             about=about(None),
-            job=as_json(STUDIES[name].parameters(CONFIGURATION)),
-            module=STUDIES[name].code,
-            function=STUDIES[name].function,
-            tables=lambda w, input, name=name: named_tables(
-                study_tables(STUDIES[name]), input.tables
+            job=as_json(study.parameters(CONFIGURATION)),
+            module=study.code,
+            function=study.function,
+            tables=lambda w, input, study=study: named_tables(
+                FILES.study_reads(study), input.tables
             ),
-            code=table_code(STUDIES[name].code, STUDIES[name].tables[0]),
+            code=table_code(study.code, study.tables[0]),
         shell:
             "python -m twodiscs.pipeline.jobs table {params.module} --function {params.function}"
-            " --parameters {params.job:q} --table {params.tables:q} --output {output.table:q}"
+            " --parameters {params.job:q} --table {params.tables:q} --points {input.points:q}"
+            " --output {output.table:q}"
             " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
 
 
@@ -82,49 +71,13 @@ rule effects_point:
         " && rm {output.point:q}.parameters"
 
 
-rule effects_table:
-    input:
-        points=EFFECT_POINTS,
-    output:
-        table=report(
-            ensure(f"{RESULTS}/effects.csv", non_empty=True),
-            caption="../report/shared_table.rst",
-            category="Tables",
-            subcategory="all scenes",
-            labels={
-                "table": "effects",
-                "what a row says": STUDIES["effects"].tables[0].meaning(),
-            },
-        ),
-    log:
-        log_of("effects_table"),
-    benchmark:
-        benchmark_of("effects_table")
-    params:
-        about=about(None),
-        code=table_code("studies.effects.measure", STUDIES["effects"].tables[0]),
-    shell:
-        "python -m twodiscs.pipeline.jobs table studies.effects.measure --parameters '{{}}'"
-        " --points {input.points:q} --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
-
 rule effects_cost:
     input:
         scenes=list(EFFECTS.values()),
         # By then the kernels are compiled.
         compiled=[f"{RESULTS}/.compiled/dynamics", *EFFECT_POINTS],
     output:
-        table=report(
-            ensure(f"{RESULTS}/effects_cost.csv", non_empty=True),
-            caption="../report/shared_table.rst",
-            category="Tables",
-            subcategory="all scenes",
-            labels={
-                "table": "effects_cost",
-                "what a row says": STUDIES["effects"].tables[1].meaning(),
-            },
-        ),
+        table=study_table(STUDIES["effects"].tables[1]),
     log:
         log_of("effects_cost"),
     benchmark:
@@ -144,4 +97,4 @@ for name in ALLOWED:
         name:
             name
         input:
-            study_files(name),
+            FILES.study(name),

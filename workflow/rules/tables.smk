@@ -4,8 +4,8 @@
 
 rule table:
     input:
-        tables=lambda w: tables_beside(w.scene, w.table).values(),
-        points=lambda w: gathered_points(SCENES[w.scene], w.table),
+        tables=lambda w: FILES.tables_beside(w.scene, w.table).values(),
+        points=lambda w: FILES.points(SCENES[w.scene], w.table),
     output:
         table=report(
             ensure(f"{RESULTS}/{{scene}}/{{table}}.csv", non_empty=True),
@@ -21,15 +21,13 @@ rule table:
         log_of("{scene}/{table}_table"),
     benchmark:
         benchmark_of("{scene}/{table}_table")
-    wildcard_constraints:
-        table="|".join(GATHERED),
     params:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
         tables=lambda w, input: named_tables(
-            tables_beside(w.scene, w.table), input.tables
+            FILES.tables_beside(w.scene, w.table), input.tables
         ),
-        points=lambda w, input: points_folder(input.points[0]),
+        points=lambda w, input: str(Path(input.points[0]).parents[2]),
         code=lambda w: table_code("comparison.gather", SCENE_TABLES[w.table]),
     shell:
         "python -m twodiscs.pipeline.jobs table comparison.gather --function {wildcards.table}_rows"
@@ -43,7 +41,7 @@ CHECKED = [scene for scene in SCENES.values() if "check" in scene.tables]
 
 rule check:
     input:
-        tables=[table_files(scene)["check"] for scene in CHECKED],
+        tables=[FILES.tables(scene)["check"] for scene in CHECKED],
     output:
         passed=f"{RESULTS}/check.passed",
     log:

@@ -99,11 +99,6 @@ def _load(mapping):
     return found
 
 
-def _types(node):
-    types = node.get("type", [])
-    return [types] if isinstance(types, str) else types
-
-
 def _settled(value, node, path):
     """Copy ``value`` with every number in one form: float, or int where an integer is asked."""
     if isinstance(value, Mapping):
@@ -112,8 +107,9 @@ def _settled(value, node, path):
     if isinstance(value, list | tuple):
         items = node.get("items", {})
         return [_settled(v, items, f"{path}[{i}]") for i, v in enumerate(value)]
-    types = _types(node)
-    if isinstance(value, bool) or not {"number", "integer"} & set(types):
+    types = node.get("type", [])
+    types = {types} if isinstance(types, str) else {*types}
+    if isinstance(value, bool) or not {"number", "integer"} & types:
         return value
     if isinstance(value, str) and _NUMBER.fullmatch(value):
         value = float(value) if re.search(r"[.eE]", value) else int(value)
@@ -238,7 +234,8 @@ def _box(block, path):
 def _radii(asked, box, path):
     if isinstance(asked, list):
         return _checked(asked, box, path)
-    smallest = asked.get("smallest", _smallest(box))
+    usual = _short(box.shortest / max(1, box.effects.get("radius_ratio", 1)) / 100)
+    smallest = asked.get("smallest", usual)
     _checked([smallest], box, f"{path}.smallest")
     include = _checked(asked.get("include", []), box, f"{path}.include")
     try:
@@ -249,10 +246,6 @@ def _radii(asked, box, path):
     except InputError as error:
         raise ConfigError(f"{path}: {error}") from None
     return _checked(tuple({*generated, *include}), box, path)
-
-
-def _smallest(box):
-    return _short(box.shortest / max(1, box.effects.get("radius_ratio", 1)) / 100)
 
 
 def _hops(scene):

@@ -259,13 +259,10 @@ class SceneRequest:
         }
         return self._sorted(**watched[stage])
 
-    def grid_job(self):
-        """Return the box and the scene's radii."""
-        return self._sorted(radii=list(self.radii))
-
-    def theory_job(self):
-        """Return the box and the radii of theory.csv: the scene's and those of its histograms."""
-        return self._sorted(radii=sorted({*self.radii, *self.watch.hop_histogram}))
+    def exact_job(self, table):
+        """Return the box and the radii of a table: in theory.csv are those of histograms, too."""
+        more = self.watch.hop_histogram if table == "theory" else ()
+        return self._sorted(radii=sorted({*self.radii, *more}))
 
     def trajectory_job(self):
         """Return box, radius and seed; raise ``InputError`` if no trajectory is watched."""

@@ -20,18 +20,13 @@ ROOMS = (
 WIDTH, WIDE, FLOOR, GAP, MARGIN = 7.4, 2.3, 0.86, 0.22, 0.06
 
 
-def room_of(module):
-    """Return the room of a module, a tuple of names: the first part of it."""
-    return module[0]
-
-
 def arrows():
     """Return {room: rooms that its modules import, without itself}, in the order of ``ROOMS``."""
     found = {room: set() for room in ROOMS}
     for module in modules():
         if module:
-            targets = {room_of(target) for target in imports_of(module) if target}
-            found[room_of(module)] |= targets - {room_of(module)}
+            room = module[0]
+            found[room] |= {target[0] for target in imports_of(module) if target} - {room}
     return {room: [other for other in ROOMS if other in found[room]] for room in ROOMS}
 
 

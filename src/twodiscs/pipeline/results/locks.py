@@ -13,7 +13,7 @@ from threading import Thread, current_thread, main_thread
 _held = []
 
 
-def make_do(folder=".snakemake"):
+def make_do():
     """Give Snakemake a user's name where there is none, and a cache where no other can be."""
     try:
         getpass.getuser()
@@ -26,7 +26,7 @@ def make_do(folder=".snakemake"):
     except OSError:
         writable = False
     if not writable:
-        os.environ["XDG_CACHE_HOME"] = os.path.abspath(os.path.join(folder, "cache"))
+        os.environ["XDG_CACHE_HOME"] = os.path.abspath(".snakemake/cache")
 
 
 def release(folder=".snakemake"):
