@@ -33,12 +33,11 @@ for path in workflow.configfiles:
     check(os.path.abspath(path))
 CONFIGURATION = or_exit(load, config)
 or_exit(check_results, CONFIGURATION.results, HERE)
+# Where results are when jobs run: as a module of another workflow they may have a prefix.
+BUILT = str(workflow.modifier.path_modifier.replace_prefix(CONFIGURATION.results))
 if workflow.is_main_process:
     if release():
-        # As a module of another workflow it may have a prefix.
-        notice(
-            str(workflow.modifier.path_modifier.replace_prefix(CONFIGURATION.results))
-        )
+        notice(BUILT)
     if CONFIGURATION.days > 1:
         logger.warning(
             f"This configuration takes some {CONFIGURATION.days:.2g} days of processor time;"

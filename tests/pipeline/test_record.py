@@ -155,6 +155,15 @@ def test_what_was_made_of_a_point_is_stale_without_its_bundle(bundled):
     assert stale() == [(Path("results/paper/made.csv"), "was made of a file that is gone")]
 
 
+def test_what_was_made_of_a_file_of_the_workflow_is_not_stale_in_a_copy_of_the_results(results):
+    scene, table = results.parent / "scene.yaml", results / "effects.csv"
+    for path in (scene, table):
+        path.write_text("")
+    record.write([table], {"scene": [scene]})
+    scene.unlink()
+    assert stale() == []
+
+
 def test_what_was_made_of_a_point_is_stale_when_that_was_made_again(bundled):
     table, cost = made_of(bundled, "cost/dynamics-0.1.json"), bundled / "cost/dynamics-0.1.json"
     later = table.stat().st_mtime_ns + 10**9

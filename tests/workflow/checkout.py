@@ -18,6 +18,28 @@ cli.get_argument_parser()  # finds the plug-ins, once for all copies
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = ("Snakefile", "workflow", "profiles", "src", "config", "paper", "CITATION.cff")
 
+MODULE = """
+configfile: "mine.yaml"
+
+
+module discs:
+    snakefile:
+        {snakefile!r}
+    {more}
+
+
+use rule * from discs{names}
+
+
+rule mine:
+    input:
+        rules.{prefix}check.output,
+    output:
+        "mine.txt",
+    shell:
+        "cp {{input}} {{output}}"
+"""
+
 
 def first(sources):
     """Return where Python looks for modules: in ``sources`` before all other places."""
@@ -144,3 +166,15 @@ def fresh(path):
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
     return Checkout(path)
+
+
+def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
+    """Write a workflow that uses the one of a checkout as a module, rules named with a prefix."""
+    text = MODULE.format(
+        snakefile=str(place.home.path / "Snakefile"),
+        more=more,
+        names=f" as {prefix}*" if prefix else "",
+        prefix=prefix,
+    )
+    (place.path / "Snakefile").write_text(text)
+    (place.path / "mine.yaml").write_text(yaml.safe_dump({"discs": configuration, "mine": 1}))

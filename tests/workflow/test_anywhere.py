@@ -9,7 +9,7 @@ import shutil
 
 import pytest
 import yaml
-from checkout import Checkout, fresh
+from checkout import Checkout, fresh, use
 
 TINY = {
     "shared": ["errata", "report"],
@@ -35,44 +35,10 @@ LOST = (
     *("report.html", "manifest.sha256"),
 )
 
-MODULE = """
-configfile: "mine.yaml"
-
-
-module discs:
-    snakefile:
-        {snakefile!r}
-    {more}
-
-
-use rule * from discs{names}
-
-
-rule mine:
-    input:
-        rules.{prefix}check.output,
-    output:
-        "mine.txt",
-    shell:
-        "cp {{input}} {{output}}"
-"""
-
 
 def there(place):
     """Return the arguments that build in the folder of ``place`` from wherever it is called."""
     return "--directory", str(place.path)
-
-
-def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
-    """Write a workflow that uses the one of a checkout as a module, rules named with a prefix."""
-    text = MODULE.format(
-        snakefile=str(place.home.path / "Snakefile"),
-        more=more,
-        names=f" as {prefix}*" if prefix else "",
-        prefix=prefix,
-    )
-    (place.path / "Snakefile").write_text(text)
-    (place.path / "mine.yaml").write_text(yaml.safe_dump({"discs": configuration, "mine": 1}))
 
 
 def copied(built, folder):
@@ -154,6 +120,9 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
         (tmp_path / "below" / "results" / "tiny" / name).unlink()
     place.snakemake("--cores", "2", "--", "discs_all")
     assert manifest(place, "below/results") == manifest(own)
+    place.snakemake("--cores", "2", "--", "discs_forecast")
+    place.snakemake("--cores", "1", "--", "discs_all")  # its costs are those forecast
+    place.snakemake("--cores", "1", "--", "discs_audit")
     kept = json.loads((tmp_path / "below" / "results" / "configuration.json").read_text())
     assert kept == TINY | {"results": "below/results"}
     assert {path.name for path in tmp_path.iterdir()} == {

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from checkout import Checkout
+from checkout import Checkout, use
 
 TINY = {
     "shared": [],
@@ -90,3 +90,15 @@ def test_points_go_from_shards_to_bundles_and_back(unbuilt, tmp_path):
     assert build(place)[0] == sharded
     change(place, shard_events=1e9, accuracy=0.02)
     assert build(place)[0] == bundled
+
+
+@pytest.mark.slow
+def test_as_a_module_shards_are_found_below_a_prefix(unbuilt, tmp_path):
+    alone = Checkout(tmp_path / "alone", unbuilt)
+    alone.path.mkdir()
+    change(alone)
+    place = Checkout(tmp_path / "other", unbuilt)
+    place.path.mkdir()
+    use(place, TINY, "discs_", 'config:\n        config["discs"]\n    prefix:\n        "below"')
+    place.snakemake("--cores", "2", "--", f"below/{TABLE}")
+    assert (place.path / "below" / TABLE).read_bytes() == build(alone)[0]

@@ -21,7 +21,7 @@ from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 
-FILES = Files(CONFIGURATION)
+FILES = Files(CONFIGURATION, BUILT)
 RESULTS = FILES.folder
 SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one

@@ -135,6 +135,7 @@ rule provenance:
         benchmark_of("provenance")
     params:
         sources=str(HERE),
+        code=code("pipeline.results.provenance"),
     shell:
         "python -m twodiscs.pipeline.results.provenance --sources {params.sources:q}"
         " --output {output.json:q} > {log:q} 2>&1"
@@ -180,7 +181,7 @@ rule audit:
     log:
         log_of("audit"),
     params:
-        results=RESULTS,
+        results=BUILT,
     shell:
         "python -m twodiscs.pipeline.results.record {params.results:q} 2> {log:q}"
 
@@ -195,7 +196,7 @@ rule verify:
     params:
         configuration=as_json(config),
         expected=str(HERE / "paper/expected"),
-        results=RESULTS,
+        results=BUILT,
     shell:
         "python -m twodiscs.pipeline.results.verify --results {params.results:q}"
         " --expected {params.expected:q} --configuration {params.configuration:q} 2> {log:q}"
@@ -221,7 +222,7 @@ rule forecast:
     threads: 64  # all that there are
     params:
         configuration=as_json(config),
-        table=f"{RESULTS}/forecast.csv",
+        table=f"{BUILT}/forecast.csv",
     shell:
         "python -m twodiscs.pipeline.forecast --configuration {params.configuration:q}"
         " --cores {threads} --output {params.table:q} 2> {log:q}"

@@ -14,7 +14,7 @@ checkpoint plan:
     params:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].plan_job(w.stage, needed_before(w))),
-        points=SHARDS,
+        points=lambda w, output: os.path.dirname(output.plan),
         module=lambda w: STAGES[w.stage],
         code=lambda w: code(STAGES[w.stage]),
     shell:
@@ -87,7 +87,7 @@ for stage, module in STAGES.items():
         params:
             about=lambda w: about(w.scene),
             job=lambda w, stage=stage: as_json(SCENES[w.scene].job(stage, w.key)),
-            points=SHARDS.replace("{stage}", stage),
+            points=lambda w, input: str(Path(input.names).parents[2]),
             module=module,
             code=code(module),
         shell:

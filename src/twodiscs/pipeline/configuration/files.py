@@ -35,8 +35,9 @@ class Files:
     Methods that return {name: path} name the tables as who reads them does.
     """
 
-    def __init__(self, configuration):
-        self.configuration, self.folder = configuration, configuration.results
+    def __init__(self, configuration, built):
+        """``built`` is where they are: whoever uses the workflow as a module may prefix them."""
+        self.configuration, self.folder, self.built = configuration, configuration.results, built
 
     def compiled(self, scene, stage):
         """Return the stamp that says that the kernels of a stage are compiled for a scene."""
@@ -61,8 +62,8 @@ class Files:
         """Return {name: path} of what a table needs besides; of a forecast, if there is one."""
         if table != "cost":
             return {"theory": f"{self.folder}/{scene}/theory.csv"}
-        path = f"{self.folder}/forecast.csv"
-        return {"forecast": path} if os.path.exists(path) else {}
+        there = os.path.exists(f"{self.built}/forecast.csv")
+        return {"forecast": f"{self.folder}/forecast.csv"} if there else {}
 
     def figures(self, scene):
         """Return {name: (PDF, PNG)} of the figures that a scene calls for."""

@@ -139,15 +139,17 @@ def touched(folder):
 def stale(folder, bundled):
     """Return pairs of a file below ``folder`` and why it is stale, for what Snakemake cannot see.
 
-    That is what was made of a file that is gone, or of a point that was made again since, of which
-    the time that it took is another one. A point is gone with its bundle, too; ``bundled`` is what
-    ``bundles`` returns. Points are not looked at: there are many, and they are made of nothing but
-    shards.
+    That is what was made of a file below it that is gone, or of a point that was made again since,
+    of which the time that it took is another one. A point is gone with its bundle, too; ``bundled``
+    is what ``bundles`` returns. Points are not looked at: there are many, and they are made of
+    nothing but shards.
     """
     found = []
 
-    def is_there(file):
-        return file.exists() and (file in bundled or not (file.parent / "bundles").is_dir())
+    def is_gone(file):
+        if not file.is_relative_to(folder):
+            return False  # results may have been copied to another place
+        return not file.exists() or (file not in bundled and (file.parent / "bundles").is_dir())
 
     for path, _ in _recorded(folder):
         if "points" in path.relative_to(folder).parts or not path.exists():
@@ -158,7 +160,7 @@ def stale(folder, bundled):
             ([Path(os.path.normpath(path.parent / name)) for name in one["files"]], one["sha256"])
             for one in known["inputs"].values()
         ]
-        if not all(is_there(file) for files, _ in made_of for file in files):
+        if any(is_gone(file) for files, _ in made_of for file in files):
             found.append((path, "was made of a file that is gone"))
             continue
         written = path.stat().st_mtime_ns
