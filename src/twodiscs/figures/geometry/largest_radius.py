@@ -4,7 +4,7 @@ from math import hypot
 
 from matplotlib.ticker import MultipleLocator
 
-from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, new_figure
 from twodiscs.model.box import Box
 
@@ -22,10 +22,8 @@ def draw(box, tables):
     extent = (-width / 2, width / 2, -height / 2, height / 2)
     left = LEFT + (COLUMN - LEFT - RIGHT - inches * width) / 2
     _jammed(drawing.place(figure, left, floor, inches, extent), width, height)
-    up = figure.get_figheight()
     across = COLUMN - MAP_LEFT - MAP_RIGHT
-    place = (MAP_LEFT / COLUMN, MAP_BOTTOM / up, across / COLUMN, MAP_HEIGHT / up)
-    _map(figure.add_axes(place), box)
+    _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
     return figure
 
 

@@ -66,7 +66,7 @@ def _rates(axes, rows):
             continue
         first, last, value, error = np.array(shown).T
         middle = (first + last) / 2
-        style = panels.open_symbol(colour, marker) | {"markersize": 0.8 * SIZES[marker]}
+        style = panels.open_symbol(colour, marker, 0.8)
         axes.errorbar(
             middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
         )

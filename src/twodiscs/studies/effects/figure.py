@@ -51,8 +51,8 @@ def draw(box=None, *, tables):
     figure = new_figure(BOTTOM + LOWER + JOINT + MAIN + TOP + LEGEND, WIDTH)
     for i, event in enumerate(SHOWN_EVENTS):
         left = LEFT + i * (ACROSS + GAP)
-        main = _panel(figure, left, BOTTOM + LOWER + JOINT, ACROSS, MAIN)
-        lower = _panel(figure, left, BOTTOM, ACROSS, LOWER)
+        main = panels.add_panel(figure, BOTTOM + LOWER + JOINT, MAIN, left, ACROSS)
+        lower = panels.add_panel(figure, BOTTOM, LOWER, left, ACROSS)
         for name, look in looks.items():
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
             radii, values = exact[name]
@@ -106,11 +106,6 @@ def _relative(row):
     }
 
 
-def _panel(figure, left, bottom, width, height):
-    across, up = figure.get_size_inches()
-    return figure.add_axes((left / across, bottom / up, width / across, height / up))
-
-
 def _title(axes, letter, text):
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
     drawing.label(axes, f"({letter})  {text}", (0, 1), (0, 15), **corner)
@@ -119,7 +114,7 @@ def _title(axes, letter, text):
 def _costs(figure, rows, looks):
     """Draw the time per event of each scene in units of that of the plain one."""
     left = LEFT + len(SHOWN_EVENTS) * (ACROSS + GAP) + NAMES
-    axes = _panel(figure, left, BOTTOM, COST, LOWER + JOINT + MAIN)
+    axes = panels.add_panel(figure, BOTTOM, LOWER + JOINT + MAIN, left, COST)
     shown = [row for row in rows if row["variant"] != "plain"]
     for i, row in enumerate(shown):
         colour, marker = looks.get(row["variant"], (BLACK, "o"))
