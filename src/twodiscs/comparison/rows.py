@@ -262,13 +262,12 @@ def _bin_rows(point):
             }
 
 
-def cost_rows(points, forecast=None):
+def cost_rows(points, forecast):
     """Return the rows of cost.csv from pairs (stage, radius, point), by stage and radius.
 
     ``forecast`` is {(stage, radius): seconds}, as far as there was one. The last row is the total
     of what was forecast, if anything was.
     """
-    forecast = forecast or {}
     rows = [
         _cost_row(stage, radius, point["events"], point["seconds"], forecast.get((stage, radius)))
         for stage, radius, point in sorted(points, key=lambda item: item[:2])
