@@ -61,8 +61,5 @@ def exact(box, others=()):
         radii.append(np.nan)
         rows.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
-    columns = {
-        name: np.array([np.nan if row.get(name) is None else row[name] for row in rows])
-        for name in names
-    }
+    columns = {name: np.array([row.get(name) for row in rows], float) for name in names}
     return np.array(radii), columns

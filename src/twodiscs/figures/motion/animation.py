@@ -111,12 +111,8 @@ class Stage:
         times = self.path(self.times[0], self.times[-1])
         apart = self.apart(times)
         reach = 1.1 * np.abs(apart).max()
-        self.strip.set(
-            xlim=(times[0], times[-1]),
-            ylim=(-reach, reach),
-            xlabel="time $t$",
-            ylabel=f"${self.axis}_2-{self.axis}_1$",
-        )
+        self.strip.set(xlim=(times[0], times[-1]), ylim=(-reach, reach), xlabel="time $t$")
+        self.strip.set_ylabel(f"${self.axis}_2-{self.axis}_1$")
         self.strip.axhline(0, color=GREY, lw=0.5)
         self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
 

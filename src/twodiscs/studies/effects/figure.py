@@ -94,7 +94,7 @@ def _plain_times(box, radii, event):
         mean_times(box.scene(float(r)))[event] if r > 0 and box.fits(float(r)) else None
         for r in radii
     ]
-    return np.array([np.nan if time is None else time for time in times])
+    return np.array(times, float)
 
 
 def _relative(row):

@@ -18,13 +18,7 @@ from twodiscs.comparison.estimates import Line, mean_of
 from twodiscs.comparison.rows import area_rows, volume_rows
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
-from twodiscs.dynamics.law import (
-    after_event,
-    contact_quotient,
-    law_of,
-    next_event,
-    wall_quotient,
-)
+from twodiscs.dynamics.law import after_event, contact_quotient, law_of, next_event, wall_quotient
 from twodiscs.model.checks import LARGEST_INTEGER, whole
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
