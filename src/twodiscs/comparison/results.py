@@ -313,8 +313,6 @@ def exact_table(width, height, radii, effects):
     """Return the exact numbers over radii as a ``DataFrame`` (see the face)."""
     import pandas as pd
 
-    from twodiscs.theory import exact
-
     box = Box(width, height, effects)
     if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
         raise InputError(f"radii must be a list of numbers, not {radii!r}")
@@ -326,9 +324,7 @@ def exact_table(width, height, radii, effects):
             "radius": scene.radius,
             "regime": scene.regime,
             "ergodic_components": scene.ergodic_components,
-            "volume": exact.volume(scene),
-            **{f"{event}_area": area for event, area in exact.areas(scene).items()},
-            **{f"{event}_time": mean for event, mean in exact.mean_times(scene).items()},
+            **{row["quantity"]: row["exact"] for row in theory_rows(box, [scene.radius])},
         }
         for scene in scenes
     ]
