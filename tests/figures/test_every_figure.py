@@ -3,6 +3,7 @@
 import pytest
 from figure_cases import BOXES, PAPER, draw, tables_of, unclear
 
+from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
@@ -58,6 +59,8 @@ def test_tables_with_little_in_them():
             draw("collision_area", PAPER, few)
         with pytest.raises(ValueError, match=r"mean_times\.csv has no row of right_wall"):
             draw("mean_wall_time", PAPER, few)
+        with pytest.raises(ValueError, match="tables must be the one of volume, not none"):
+            radius.draw(PAPER, {}, **FIGURES["volume"].options)
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,11 @@ from pathlib import Path
 
 import matplotlib
 import pytest
-from fabricated import command
 from figure_cases import PAPER, draw, tables_of
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
-from twodiscs.pipeline import jobs
 
 
 def words_of(folder, name, outputs):
@@ -93,54 +91,3 @@ def test_settings_are_restored():
     with style.context():
         assert matplotlib.rcParams["font.size"] == style.SETTINGS["font.size"]
     assert dict(matplotlib.rcParams) == before
-
-
-#: The first part of parameters, and all of those of a drawing.
-START = '{"box": {"width": 1.5, "height": 1.0}'
-BOX = START + "}"
-
-
-@pytest.mark.parametrize(
-    ("module", "options", "sentence"),
-    [
-        ("figures.portrait", {}, "module must be one of the package twodiscs"),
-        ("portrait", {}, "module must be one of the package twodiscs"),
-        ("../model", {}, "module must be one of the package twodiscs"),
-        ("figures.geometry.model", {"--parameters": "{}"}, "missing a required argument: 'box'"),
-        ("figures.geometry.model", {"--parameters": '{"box": {"width": 1.5}}'}, "box must be"),
-        (
-            "figures.geometry.model",
-            {"--parameters": '{"box": {"width": -1, "height": 1}}'},
-            "width must be",
-        ),
-        ("figures.geometry.model", {"--parameters": "1.5"}, "must be a JSON object"),
-        ("figures.geometry.model", {"--parameters": START + ', "colour": 1}'}, "'colour'"),
-        ("figures.geometry.model", {"--table": "volume"}, "must be given as NAME=VALUE"),
-        ("figures.geometry.model", {"--table": "volumes=a.csv"}, "there is no table called 'a'"),
-        ("figures.geometry.model", {"--table": "a=volume.csv"}, "volume.csv: No such file"),
-        ("figures.kit.style", {}, "figures.kit.style must have a function draw"),
-        ("figures.motion.hopping_trajectory", {}, "the table trajectory must be given"),
-        ("figures.radius", {}, "missing a required argument: 'names'"),
-        (
-            "figures.radius",
-            {"--parameters": START + ', "names": {"volume": ""}, "label": "", "place": ""}'},
-            "tables must be the one of volume, not none",
-        ),
-        (
-            "figures.geometry.model",
-            {"--output": "a.bmp"},
-            "file, not 'a.bmp'",
-        ),
-    ],
-)
-def test_mistakes_are_told_in_one_sentence(
-    module, options, sentence, monkeypatch, capsys, tmp_path
-):
-    monkeypatch.chdir(tmp_path)
-    given = {"--parameters": BOX, "--output": "a.png"} | options
-    words = [word for pair in given.items() for word in pair]
-    assert command(monkeypatch, jobs, "figure", module, *words) == 2
-    error = capsys.readouterr().err
-    assert sentence in error
-    assert error.count("\n") == 1
-    assert not any(tmp_path.iterdir())
