@@ -27,9 +27,9 @@ WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
 MAIN, LOWER, LEGEND = 1.95, 0.75, 0.36
 
-#: The events whose mean times are shown, a panel each.
-NAMES_OF = {"any_wall": "wall hits"}
+#: The events whose mean times are shown, a panel each, and what is called otherwise here.
 SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
+NAMES_OF = {"any_wall": "wall hits"}
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 MARKERS = ("o", "s", "^", "D", "v", "P")
