@@ -226,7 +226,6 @@ def test_what_a_job_took_is_checked_too(tmp_path):
 @pytest.mark.parametrize(
     ("name", "keys", "message"),
     [
-        ("volume", {"monte_carlo": ["0.11"]}, "points/monte_carlo/0.11.json: No such file"),
         ("volume", {"monte_carlo": ["negative"]}, "hits must be"),
         ("volume", {"sampling": ["0.1"]}, "stage must be one of monte_carlo, dynamics, int"),
         ("areas", {}, "keys must name one point at least"),
@@ -243,17 +242,3 @@ def test_mistakes_are_one_sentence(monkeypatch, capsys, folder, points, name, ke
     assert message in error
     assert error.count("\n") == 1
     assert not output.exists()
-
-
-def test_the_exact_values_must_be_given(monkeypatch, capsys, folder, points):
-    keys = keys_of(points, ["dynamics"])
-    words = ("--parameters", {"box": BOX.parameters(), "keys": keys}, "--points", folder)
-    for tables, message in (((), "theory"), (("--table", "theory=absent/theory.csv"), "absent")):
-        status = command(
-            monkeypatch, jobs, "table", "comparison.gather", "--function", "mean_times_rows",
-            *words, *tables, "--output", folder.parent / "mean_times.csv",
-        )  # fmt: skip
-        assert status == 2
-        error = capsys.readouterr().err
-        assert message in error
-        assert error.count("\n") == 1

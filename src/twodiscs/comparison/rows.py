@@ -68,7 +68,7 @@ def _sampled_row(point, quantity, exact, expectation):
     }
 
 
-def _any_wall_row(radius, point, exact, right, top):
+def _any_wall_row(point, exact, right, top):
     """Return the row of the whole wall area, 4 (right + top), from the rows of its two parts."""
     samples, hits = point["samples"], (right["hits"], top["hits"])
     measures = [4 * point["quantities"][f"{e}_area"]["measure"] for e in ("right_wall", "top_wall")]
@@ -130,9 +130,7 @@ def area_rows(scene, exact, points, watched=EVENTS):
                 found[event] = _sampled_row(point, quantity, value, expectation)
         if {"right_wall", "top_wall"} <= set(found) and not scene.has_effects:
             value = _exact(exact, radius, "any_wall_area")
-            found["any_wall"] = _any_wall_row(
-                radius, point, value, found["right_wall"], found["top_wall"]
-            )
+            found["any_wall"] = _any_wall_row(point, value, found["right_wall"], found["top_wall"])
         rows += [found[event] for event in EVENTS if event in found and event in watched]
     return rows
 

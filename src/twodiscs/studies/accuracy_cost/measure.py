@@ -305,7 +305,7 @@ def doubling(first, last):
     return tuple(first << k for k in range(max(2, int(last / first).bit_length())))
 
 
-def series(scale=1.0):
+def series(scale):
     """Return every ``Series`` of volume, area and time, with ``scale`` times the usual work."""
     found = []
 
@@ -352,7 +352,7 @@ def exact_values(scene, part):
     return {f"{event}_time": value for event, value in exact.mean_times(scene).items()}
 
 
-def measure(all_series, repetitions=REPETITIONS, report=None):
+def measure(all_series, repetitions, report):
     """Run every series ``repetitions`` times in turn and return {(series, work): results}.
 
     A result is (relative errors by quantity, units of work, seconds of one call).
@@ -503,7 +503,7 @@ def strip_rows(scene, blocks):
         )  # fmt: skip
 
 
-def by_radius(scale=1.0):
+def by_radius(scale):
     """Yield the rows of the part radius: what a relative error of ``TARGET`` takes, four ways.
 
     ``lockstep`` measures speed and error of a pilot at the radius, ``strip`` those of starts next
@@ -563,7 +563,7 @@ def by_radius(scale=1.0):
 # Single precision -----------------------------------------------------------------------------
 
 
-def where_single_fails(scale=1.0):
+def where_single_fails(scale):
     """Yield the rows of the part precision.
 
     For the mean time between disc collisions ``setting`` is the room left, 1 − r/r_max; ``error``
