@@ -162,11 +162,6 @@ def test_a_volume_off_by_one_percent_is_named(points, theory):
     assert {quantity for _, quantity, _ in found} == {"volume"}
 
 
-def test_one_point_off_by_one_percent_is_named(points, theory):
-    theory[0.3, "disc_collision_time"] *= 1.01
-    assert ("mean_time", "disc_collision_time", 0.3) in failed(table_of(points, theory))
-
-
 def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
     law = Laws(laws[2].scene)
     law.times["disc_collision"] *= 1.01
@@ -368,16 +363,8 @@ def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, g
         tables.append(f"{name}={path}")
 
     def judge(*tables):
-        return command(
-            monkeypatch,
-            jobs,
-            "verdict",
-            "pipeline.results.verdict",
-            "--table",
-            *tables,
-            "--output",
-            out,
-        )
+        words = ["verdict", "pipeline.results.verdict", "--table", *tables, "--output", out]
+        return command(monkeypatch, jobs, *words)
 
     assert judge(tables[0]) == 0
     assert out.read_text() == capsys.readouterr().out == verdict.verdict({"good": good})[1]
@@ -385,17 +372,3 @@ def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, g
     assert judge(*tables) == 1
     assert capsys.readouterr().err.splitlines() == verdict.verdict({"bad": bad})[0]
     assert not out.exists()
-
-
-@pytest.mark.parametrize("name", ["wrong", "absent"])
-def test_a_verdict_on_what_is_no_table(tmp_path, monkeypatch, capsys, name):
-    path = tmp_path / name / "check.csv"
-    if name == "wrong":
-        path.parent.mkdir()
-        path.write_text("radius\n")
-    words = ("--table", f"{name}={path}", "--output", tmp_path / "out")
-    assert command(monkeypatch, jobs, "verdict", "pipeline.results.verdict", *words) == 2
-    error = capsys.readouterr().err
-    assert str(path) in error
-    assert error.count("\n") == 1
-    assert not (tmp_path / "out").exists()

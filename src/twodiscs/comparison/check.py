@@ -27,28 +27,24 @@ from twodiscs.theory import virial
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
+#: Columns that are taken from what is compared.
+TAKEN = ("radius", "exact", "estimate", "stderr", "z", "status", "test")
+
 
 def _comparison(name, quantity, method, values, derived=False):
-    """Return a row of check.csv, without a verdict; ``values`` has the columns not named here.
+    """Return a row of check.csv, without a verdict; ``values`` has the columns ``TAKEN``.
 
     It is ``derived`` if it follows from other rows.
     """
     z = values["z"]
-    return {
+    return {taken: values[taken] for taken in TAKEN} | {
         "comparison": name,
         "quantity": quantity,
-        "radius": values["radius"],
         "method": method,
-        "exact": values["exact"],
-        "estimate": values["estimate"],
-        "stderr": values["stderr"],
-        "z": z,
         "p": None if z is None else scores.two_sided_p(z),
         "bound": None,
         "passed": None,
         "independent": z is not None and values["test"] != "certain" and not derived,
-        "status": values["status"],
-        "test": values["test"],
     }
 
 

@@ -240,16 +240,15 @@ def _progress():
 
 def simulate(scene, error, seed, budget, events, name):
     """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
-    given = error if isinstance(error, Mapping) else None
-    if given is not None and events is None:
-        events = given
-    events = _named("events", "event", events, a_scene(scene).events)
-    target = dict.fromkeys(events, error)
-    if given is not None:
-        if missing := [event for event in events if event not in given]:
-            raise InputError(f"error must hold every event, but has none for {missing[0]}")
-        target = {event: given[event] for event in events}
-    target = {event: proportion("error", one) for event, one in target.items()}
+    possible = a_scene(scene).events
+    if not isinstance(error, Mapping):
+        error = dict.fromkeys(possible, error)
+    elif events is None:
+        events = error
+    events = _named("events", "event", events, possible)
+    if missing := [event for event in events if event not in error]:
+        raise InputError(f"error must hold every event, but has none for {missing[0]}")
+    target = {event: proportion("error", error[event]) for event in events}
     budget, seed = count("budget", budget), seed_of(scene, "dynamics", seed, name)
     from twodiscs.dynamics.counting import count_events
 
@@ -314,8 +313,6 @@ def exact_table(width, height, radii, effects):
     """Return the exact numbers over radii as a ``DataFrame`` (see the face)."""
     import pandas as pd
 
-    from twodiscs.theory import exact
-
     box = Box(width, height, effects)
     if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
         raise InputError(f"radii must be a list of numbers, not {radii!r}")
@@ -327,9 +324,7 @@ def exact_table(width, height, radii, effects):
             "radius": scene.radius,
             "regime": scene.regime,
             "ergodic_components": scene.ergodic_components,
-            "volume": exact.volume(scene),
-            **{f"{event}_area": area for event, area in exact.areas(scene).items()},
-            **{f"{event}_time": mean for event, mean in exact.mean_times(scene).items()},
+            **{row["quantity"]: row["exact"] for row in theory_rows(box, [scene.radius])},
         }
         for scene in scenes
     ]

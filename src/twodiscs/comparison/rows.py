@@ -68,7 +68,7 @@ def _sampled_row(point, quantity, exact, expectation):
     }
 
 
-def _any_wall_row(radius, point, exact, right, top):
+def _any_wall_row(point, exact, right, top):
     """Return the row of the whole wall area, 4 (right + top), from the rows of its two parts."""
     samples, hits = point["samples"], (right["hits"], top["hits"])
     measures = [4 * point["quantities"][f"{e}_area"]["measure"] for e in ("right_wall", "top_wall")]
@@ -130,9 +130,7 @@ def area_rows(scene, exact, points, watched=EVENTS):
                 found[event] = _sampled_row(point, quantity, value, expectation)
         if {"right_wall", "top_wall"} <= set(found) and not scene.has_effects:
             value = _exact(exact, radius, "any_wall_area")
-            found["any_wall"] = _any_wall_row(
-                radius, point, value, found["right_wall"], found["top_wall"]
-            )
+            found["any_wall"] = _any_wall_row(point, value, found["right_wall"], found["top_wall"])
         rows += [found[event] for event in EVENTS if event in found and event in watched]
     return rows
 
@@ -262,13 +260,12 @@ def _bin_rows(point):
             }
 
 
-def cost_rows(points, forecast=None):
+def cost_rows(points, forecast):
     """Return the rows of cost.csv from pairs (stage, radius, point), by stage and radius.
 
     ``forecast`` is {(stage, radius): seconds}, as far as there was one. The last row is the total
     of what was forecast, if anything was.
     """
-    forecast = forecast or {}
     rows = [
         _cost_row(stage, radius, point["events"], point["seconds"], forecast.get((stage, radius)))
         for stage, radius, point in sorted(points, key=lambda item: item[:2])

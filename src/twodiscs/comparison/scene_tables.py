@@ -303,15 +303,5 @@ class Forecast(Table):
 #: The tables of a scene, {name: table}.
 SCENE_TABLES = {
     table.name(): table
-    for table in (
-        Grid,
-        Theory,
-        Volume,
-        Areas,
-        MeanTimes,
-        HopHistogram,
-        Check,
-        Cost,
-        Trajectory,
-    )
+    for table in (Grid, Theory, Volume, Areas, MeanTimes, HopHistogram, Check, Cost, Trajectory)
 }

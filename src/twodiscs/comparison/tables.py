@@ -70,9 +70,8 @@ class Table:
     @classmethod
     def columns(cls):
         """Return {name: ``Column``} in the order of the file."""
-        parts = [one.__annotations__ for one in cls.__mro__[:-1]]
-        parts = parts[: [*cls.__mro__].index(Table)]
-        return {name: column for part in reversed(parts) for name, column in part.items()}
+        derived = cls.__mro__[: cls.__mro__.index(Table)]
+        return {n: column for one in reversed(derived) for n, column in one.__annotations__.items()}
 
     @classmethod
     def write(cls, path, rows):

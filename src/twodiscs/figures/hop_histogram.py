@@ -5,6 +5,7 @@ from itertools import groupby, takewhile
 import numpy as np
 
 from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
 from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
@@ -63,8 +64,7 @@ def draw(box, tables):
     whole.legend(loc="upper right")
     panels.letter(whole, "a")
     panels.letter(short, "b")
-    hop = rows[0]["event"].replace("_", " ")
-    panels.name_box(whole, box, f",  {hop}s")
+    panels.name_box(whole, box, f",  {name_of(rows[0]['event'])}")
     return figure
 
 

@@ -310,10 +310,7 @@ STUDIES = {
                     an event, but is none.
                     """,
                     "studies.effects.figure",
-                    tables=(
-                        "effects",
-                        "effects_cost",
-                    ),
+                    tables=("effects", "effects_cost"),
                 ),
             },
             about_plain=False,

@@ -32,7 +32,7 @@ def draw(box, tables):
         band = sqrt(2) * radius * sqrt(1 - POINT[1 - i] ** 2)
         _square(axes, half, band, sqrt(2) * radius, (name, other), "ab"[i])
         depth = POINT[i] * sqrt(2) * radius
-        _point(axes, depth, ALONG[i] * (sqrt(2) * half - depth), name, colour)
+        _point(axes, depth, ALONG[i] * (sqrt(2) * half - depth), colour)
     cross = (LEFT + side + 0.13) / COLUMN
     middle = (BOTTOM + side / 2) / figure.get_figheight()
     figure.text(cross, middle, r"$\times$", fontsize=12, ha="center", va="center")
@@ -80,7 +80,7 @@ def _square(axes, half, band, widest, names, letter):
     drawing.line(axes, [(0.3 * half, 1.07 * half), at], colour=BLACK, width=0.5)
 
 
-def _point(axes, depth, along, name, colour):
+def _point(axes, depth, along, colour):
     """Mark a point and its distance ``depth`` from the diagonal."""
     point, foot = _turned(depth, along), _turned(0, along)
     drawing.arrow(axes, foot, point, "-", colour=colour, width=1)

@@ -1,10 +1,11 @@
 """The largest radius: the jammed discs, and what is open to discs of any radius in any box."""
 
+from itertools import pairwise
 from math import hypot
 
 from matplotlib.ticker import MultipleLocator
 
-from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, new_figure
 from twodiscs.model.box import Box
 
@@ -22,10 +23,8 @@ def draw(box, tables):
     extent = (-width / 2, width / 2, -height / 2, height / 2)
     left = LEFT + (COLUMN - LEFT - RIGHT - inches * width) / 2
     _jammed(drawing.place(figure, left, floor, inches, extent), width, height)
-    up = figure.get_figheight()
     across = COLUMN - MAP_LEFT - MAP_RIGHT
-    place = (MAP_LEFT / COLUMN, MAP_BOTTOM / up, across / COLUMN, MAP_HEIGHT / up)
-    _map(figure.add_axes(place), box)
+    _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
     return figure
 
 
@@ -39,34 +38,30 @@ def _jammed(axes, width, height):
     drawing.rectangle(axes, -right, right, -top, top, width=1.2)
     drawing.label(axes, "(a)", (-right, top), (-5, 0), ha="right", va="top")
 
-    point = drawing.points(axes)
-    near, far = 4 * point, 11 * point
-    if a > 0:
-        stops = (-right, -a, a, right)
-        for x in stops:
-            drawing.line(axes, [(x, -top - near), (x, -top - far)], BLACK, 0.4)
-        for start, end, name in zip(stops, stops[1:], ("r", "w-2r", "r"), strict=False):
-            ends = (start, -top - far), (end, -top - far)
-            drawing.dimension(axes, *ends, f"${name}$", (0, -7))
-    else:
-        ends = (-right, -top - far), (right, -top - far)
-        drawing.dimension(axes, *ends, "$w=2r$", (0, -7))
-    if b > 0:
-        stops = (-top, -b, b, top)
-        for y in stops:
-            drawing.line(axes, [(right + near, y), (right + far, y)], BLACK, 0.4)
-        for start, end, name in zip(stops, stops[1:], ("r", "h-2r", "r"), strict=False):
-            ends = (right + far, start), (right + far, end)
-            drawing.dimension(axes, *ends, f"${name}$", (4, 0), ha="left")
-    else:
-        ends = (right + far, -top), (right + far, top)
-        drawing.dimension(axes, *ends, "$h=2r$", (4, 0), ha="left")
+    _side(axes, "w", right, a, lambda x, away: (x, -top - away), (0, -7))
+    _side(axes, "h", top, b, lambda y, away: (right + away, y), (4, 0), ha="left")
     if a > 0 and b > 0:
         legs = [(-a, -b), (a, -b), (a, b)]
         drawing.line(axes, legs, BLACK, 0.6, (0, (3, 2)))
         drawing.line(axes, [(-a, -b), (a, b)], BLACK, 0.9)
         away = 6 / hypot(a, b)
         drawing.label(axes, "$2r$", (-a / 2, -b / 2), (-away * b, away * a))
+
+
+def _side(axes, name, end, centre, at, offset, **align):
+    """Draw the dimension lines of a side from −``end`` to ``end``, with centres at ±``centre``.
+
+    ``at`` returns the point that is so far along the side and so far away from it.
+    """
+    point = drawing.points(axes)
+    near, far = 4 * point, 11 * point
+    stops, names = (-end, end), (f"{name}=2r",)
+    if centre > 0:
+        stops, names = (-end, -centre, centre, end), ("r", f"{name}-2r", "r")
+        for stop in stops:
+            drawing.line(axes, [at(stop, near), at(stop, far)], BLACK, 0.4)
+    for (start, stop), text in zip(pairwise(stops), names, strict=True):
+        drawing.dimension(axes, at(start, far), at(stop, far), f"${text}$", offset, **align)
 
 
 def _map(axes, box):

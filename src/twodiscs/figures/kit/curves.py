@@ -6,7 +6,7 @@ import numpy as np
 
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
-from twodiscs.theory.exact import areas, mean_times, volume
+from twodiscs.theory.exact import theory_rows
 
 #: Closest approach to the limits of a regime, over its length.
 CLOSEST = 1e-9
@@ -51,18 +51,11 @@ def exact(box, others=()):
     """
     radii, rows = [], []
     for branch in branches(box, others):
-        for radius in branch:
-            here = box.scene(float(radius))
-            values = {"volume": volume(here)}
-            values |= {f"{event}_area": area for event, area in areas(here).items()}
-            values |= {f"{event}_time": time for event, time in mean_times(here).items()}
+        for radius in map(float, branch):
             radii.append(radius)
-            rows.append(values)
+            rows.append({row["quantity"]: row["exact"] for row in theory_rows(box, [radius])})
         radii.append(np.nan)
         rows.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]
-    columns = {
-        name: np.array([np.nan if row.get(name) is None else row[name] for row in rows])
-        for name in names
-    }
+    columns = {name: np.array([row.get(name) for row in rows], float) for name in names}
     return np.array(radii), columns

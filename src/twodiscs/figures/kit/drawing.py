@@ -82,13 +82,8 @@ def line(axes, points, colour=GREY, width=0.5, style="-", **options):
 
 def rectangle(axes, x0, x1, y0, y1, edge=BLACK, face="none", width=0.8, **options):
     """Draw the rectangle [x0, x1] × [y0, y1]."""
-    settings = {
-        "edgecolor": edge,
-        "facecolor": face,
-        "linewidth": width,
-        "clip_on": False,
-    } | options
-    axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, **settings))
+    settings = {"edgecolor": edge, "facecolor": face, "linewidth": width, "clip_on": False}
+    axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, **settings | options))
 
 
 def disc(axes, number, centre, radius):

@@ -120,24 +120,12 @@ def name_limits(axes, found):
     most = (x1 - x0) * points + 72 * RIGHT - 1
     for text, place, middle in zip(texts, wanted, spread(wanted, widths, 4, most), strict=True):
         text.remove()
-        axes.annotate(
-            text.get_text(),
-            (place / points, 1),
-            (middle - place, 5),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=7.5,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": GREY,
-                "linewidth": 0.5,
-                "shrinkA": 0,
-                "shrinkB": 0,
-                "relpos": (0.5, 0),
-            },
-        )
+        pointer = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0}
+        drawing.label(
+            axes, text.get_text(), (place / points, 1), (middle - place, 5),
+            xycoords=("data", "axes fraction"), va="bottom", fontsize=7.5,
+            arrowprops=pointer | {"relpos": (0.5, 0)},
+        )  # fmt: skip
 
 
 def spread(wanted, widths, gap, most):
@@ -194,9 +182,9 @@ def estimates(axes, rows, colour, marker):
     axes.errorbar(r, y, [0.4 * b for b in y], lolims=True, ls="", color=colour, elinewidth=0.6)
 
 
-def open_symbol(colour, marker):
-    """Return the settings of an open symbol."""
-    size = SIZES[marker]
+def open_symbol(colour, marker, scale=1):
+    """Return the settings of an open symbol, ``scale`` times as large as usual."""
+    size = scale * SIZES[marker]
     return {"color": colour, "marker": marker, "markersize": size, "markerfacecolor": "white"}
 
 

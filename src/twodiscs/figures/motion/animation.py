@@ -14,7 +14,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle
 from PIL import Image
 
-from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.model.checks import InputError, length
 from twodiscs.model.events import HOPS
@@ -107,18 +107,12 @@ class Stage:
 
     def _draw_strip(self):
         """Draw how the separation is going to change, below the box."""
-        up = self.figure.get_figheight()
-        area = (LEFT / ACROSS, BOTTOM / up, (ACROSS - LEFT - RIGHT) / ACROSS, STRIP / up)
-        self.strip = self.figure.add_axes(area)
+        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
         times = self.path(self.times[0], self.times[-1])
         apart = self.apart(times)
         reach = 1.1 * np.abs(apart).max()
-        self.strip.set(
-            xlim=(times[0], times[-1]),
-            ylim=(-reach, reach),
-            xlabel="time $t$",
-            ylabel=f"${self.axis}_2-{self.axis}_1$",
-        )
+        self.strip.set(xlim=(times[0], times[-1]), ylim=(-reach, reach), xlabel="time $t$")
+        self.strip.set_ylabel(f"${self.axis}_2-{self.axis}_1$")
         self.strip.axhline(0, color=GREY, lw=0.5)
         self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
 from twodiscs.figures.kit import drawing
-from twodiscs.figures.kit.panels import name_box
+from twodiscs.figures.kit.panels import add_panel, name_box
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -81,8 +81,7 @@ def _panel(figure, i, bottom, top):
     """Return new logarithmic axes in column ``i``, with room ``bottom`` and ``top`` in inches."""
     width = (WIDTH - LEFT - RIGHT - 2 * GAP) / 3
     left = LEFT + i * (width + GAP)
-    place = left / WIDTH, bottom / HEIGHT, width / WIDTH, (HEIGHT - bottom - top) / HEIGHT
-    axes = figure.add_axes(place)
+    axes = add_panel(figure, bottom, HEIGHT - bottom - top, left, width)
     axes.set(xscale="log", yscale="log", xlabel="processor time (s)")
     if top == TOP:
         drawing.label(axes, f"({'abc'[i]})", (0, 1), (-24, 7), xycoords="axes fraction", ha="left")

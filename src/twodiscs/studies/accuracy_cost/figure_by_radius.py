@@ -5,14 +5,7 @@ import numpy as np
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    SIZES,
-    SKY,
-    new_figure,
-)
+from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SIZES, SKY, new_figure
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 

@@ -305,7 +305,7 @@ def doubling(first, last):
     return tuple(first << k for k in range(max(2, int(last / first).bit_length())))
 
 
-def series(scale=1.0):
+def series(scale):
     """Return every ``Series`` of volume, area and time, with ``scale`` times the usual work."""
     found = []
 
@@ -352,7 +352,7 @@ def exact_values(scene, part):
     return {f"{event}_time": value for event, value in exact.mean_times(scene).items()}
 
 
-def measure(all_series, repetitions=REPETITIONS, report=None):
+def measure(all_series, repetitions, report):
     """Run every series ``repetitions`` times in turn and return {(series, work): results}.
 
     A result is (relative errors by quantity, units of work, seconds of one call).
@@ -503,14 +503,14 @@ def strip_rows(scene, blocks):
         )  # fmt: skip
 
 
-def by_radius(scale=1.0):
-    """Return the rows of the part radius: what a relative error of ``TARGET`` takes, four ways.
+def by_radius(scale):
+    """Yield the rows of the part radius: what a relative error of ``TARGET`` takes, four ways.
 
     ``lockstep`` measures speed and error of a pilot at the radius, ``strip`` those of starts next
     to a rare hop, also close to where it is blocked; ``poisson`` is predicted from the exact rates
     and one speed, the median over all radii; ``paid`` is a run to that very error.
     """
-    rows, speeds, scenes = [], [], []
+    speeds, scenes = [], []
     for radius in radii(SCENE.width, SCENE.height, 0.01, RADII):
         scene = SCENE.with_radius(radius)
         duration = counting.replica_duration(scene)
@@ -521,32 +521,28 @@ def by_radius(scale=1.0):
         events = counting.simulated_events(sums)
         speeds.append(events / seconds)
         scenes.append(scene)
-        rows += strip_rows(scene, blocks)
+        yield from strip_rows(scene, blocks)
         errors = relative_errors(sums, products, blocks * REPLICAS)
         for event, count, error in zip(EVENTS, sums, errors, strict=True):
             if count >= FEWEST:
                 more = (float(error) / TARGET) ** 2
-                rows.append(
-                    row(
-                        "radius", f"{event}_time", radius, "lockstep",
-                        work=round(events * more), seconds=seconds * more, error=TARGET,
-                        repetitions=blocks * REPLICAS,
-                    )
+                yield row(
+                    "radius", f"{event}_time", radius, "lockstep",
+                    work=round(events * more), seconds=seconds * more, error=TARGET,
+                    repetitions=blocks * REPLICAS,
                 )  # fmt: skip
     for hop in HOPS:
         for distance in CLOSE:
             scene = SCENE.with_radius(Box.of(SCENE).threshold(hop) * (1 - distance))
-            rows += strip_rows(scene, blocks)
+            yield from strip_rows(scene, blocks)
     speed = median(speeds)
     for scene in scenes:
         for event in EVENTS:
             if scene.is_possible(event):
                 events = predicted_events(scene, event)
-                rows.append(
-                    row(
-                        "radius", f"{event}_time", scene.radius, "poisson",
-                        work=round(events), seconds=events / speed, error=TARGET,
-                    )
+                yield row(
+                    "radius", f"{event}_time", scene.radius, "poisson",
+                    work=round(events), seconds=events / speed, error=TARGET,
                 )  # fmt: skip
     for event, paid in PAID.items():
         counting.run_blocks(SCENE, (event,), 0, 0, 1, 1.0)
@@ -558,27 +554,23 @@ def by_radius(scale=1.0):
             true = exact.mean_times(scene)[event]
             (found,) = mean_time_rows(scene, {(radius, f"{event}_time"): true}, [point])
             bias = found["estimate"] / true - 1
-            rows.append(
-                row(
-                    "radius", f"{event}_time", radius, "paid",
-                    work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,
-                )
+            yield row(
+                "radius", f"{event}_time", radius, "paid",
+                work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,
             )  # fmt: skip
-    return rows
 
 
 # Single precision -----------------------------------------------------------------------------
 
 
-def where_single_fails(scale=1.0):
-    """Return the rows of the part precision.
+def where_single_fails(scale):
+    """Yield the rows of the part precision.
 
     For the mean time between disc collisions ``setting`` is the room left, 1 − r/r_max; ``error``
     is averaged over ``NEAR`` radii, and ``spread`` is the standard error that chance alone would
     give each. For the energy ``setting`` is the number of events of a trajectory and ``error`` the
     root mean square of its relative change.
     """
-    rows = []
     blocks = math.ceil(PILOT_BLOCKS * scale / 2)
     for room in ROOMS:
         errors, events = {"lockstep": [], "single_precision": []}, 0
@@ -595,24 +587,19 @@ def where_single_fails(scale=1.0):
             events += counting.simulated_events(double)
             noise = relative_errors(double, products, blocks * REPLICAS)[counting.COLLISIONS]
         for method, found in errors.items():
-            rows.append(
-                row(
-                    "precision", "disc_collision_time", scene.radius, method, setting=room,
-                    work=events, error=math.sqrt(fmean(e * e for e in found)),
-                    spread=float(noise), bias=fmean(found), repetitions=len(NEAR),
-                )
+            yield row(
+                "precision", "disc_collision_time", scene.radius, method, setting=room,
+                work=events, error=math.sqrt(fmean(e * e for e in found)),
+                spread=float(noise), bias=fmean(found), repetitions=len(NEAR),
             )  # fmt: skip
     for longer in LONGER:
         duration = longer * counting.replica_duration(SCENE)
         counts, mean, error = precision.run_blocks(SCENE, 1, 0, max(1, blocks // longer), duration)
-        rows.append(
-            row(
-                "precision", "energy", SCENE.radius, "single_precision",
-                setting=duration * exact.event_rate(SCENE), work=scalar.simulated_events(counts),
-                error=error, bias=mean,
-            )
+        yield row(
+            "precision", "energy", SCENE.radius, "single_precision",
+            setting=duration * exact.event_rate(SCENE), work=scalar.simulated_events(counts),
+            error=error, bias=mean,
         )  # fmt: skip
-    return rows
 
 
 def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
@@ -626,4 +613,4 @@ def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
     repetitions = whole("repetitions", repetitions, 2)
     all_series = series(scale)
     found = work_precision(all_series, measure(all_series, repetitions, report))
-    return found + by_radius(scale) + where_single_fails(scale)
+    return [*found, *by_radius(scale), *where_single_fails(scale)]

@@ -15,14 +15,7 @@ from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 
 #: What the engines for comparison count, in this order; other events are none of their business.
-COUNTED = (
-    "vertical_hop",
-    "horizontal_hop",
-    "disc_collision",
-    "right_wall",
-    "top_wall",
-    "any_wall",
-)
+COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall")
 N = len(COUNTED)
 COLLISIONS, ANY_WALLS = COUNTED.index("disc_collision"), COUNTED.index("any_wall")
 

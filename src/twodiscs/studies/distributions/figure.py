@@ -66,7 +66,7 @@ def _rates(axes, rows):
             continue
         first, last, value, error = np.array(shown).T
         middle = (first + last) / 2
-        style = panels.open_symbol(colour, marker) | {"markersize": 0.8 * SIZES[marker]}
+        style = panels.open_symbol(colour, marker, 0.8)
         axes.errorbar(
             middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
         )
@@ -96,13 +96,10 @@ def _passages(axes, rows):
         ]
         if not own:
             continue
-        radius, mean, value, error, other, spread = np.array(
-            [
-                [row[c] for c in ("radius", "exact_mean", "estimate", "stderr")]
-                + [row["reference"], row["reference_stderr"]]
-                for row in sorted(own, key=lambda row: row["radius"])
-            ]
-        ).T
+        names = "radius", "exact_mean", "estimate", "stderr", "reference", "reference_stderr"
+        own.sort(key=lambda row: row["radius"])
+        columns = [[row[name] for row in own] for name in names]
+        radius, mean, value, error, other, spread = np.array(columns)
         style = panels.open_symbol(colour, marker)
         axes.errorbar(
             radius, value / mean, error / mean, ls="", label=name_of(hop), zorder=3, **style

@@ -32,6 +32,7 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
+from twodiscs.studies.distributions.table import Distributions
 from twodiscs.studies.tails.measure import wait
 from twodiscs.theory import exact, tails
 
@@ -194,8 +195,8 @@ def _affordable(scene, hop):
 def measured(scene, hop, seed, events=EVENTS):
     """Yield what is measured of the times to the next ``hop`` of a ``Scene``, as dicts.
 
-    These are rows of distributions.csv but for the columns that name scene and hop. ``events`` is
-    how many wall and disc events the intervals, and the first passages, take at most. Raises
+    These are rows of distributions.csv; the columns that name scene and hop are empty. ``events``
+    is how many wall and disc events the intervals, and the first passages, take at most. Raises
     ``InputError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
     range.
     """
@@ -220,7 +221,7 @@ def measured(scene, hop, seed, events=EVENTS):
     intervals, passages = BLOCKS * block, BLOCKS * passages
     time, square, cut_square, passage, cut_passage = mean_of(found)
 
-    yield _row("mean", intervals, time, mean) | {"z": _z(time.value - mean, time.stderr)}
+    yield _row("mean", intervals, time, mean, z=_z(time.value - mean, time.stderr))
     scale = 1 / (2 * mean)
     variation = Estimate(square.value / mean**2 - 1, square.stderr / mean**2, BLOCKS)
     yield _row("squared_cv", intervals, variation, 1.0)
@@ -235,8 +236,8 @@ def measured(scene, hop, seed, events=EVENTS):
     if 4 * width <= draw.beyond_x:
         zero = density_at_zero(counts[:2], intervals, width)
         due = tails.density_at_zero(scene, hop)
-        row = _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width)
-        yield row | {"z": (zero.value - due) / zero.stderr}
+        z = (zero.value - due) / zero.stderr
+        yield _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width, z=z)
     bins = list(hazard(counts, intervals, width))
     yield from _constancy([one for one in bins if one.first >= FIRST * mean], mean)
     for one in bins:
@@ -250,11 +251,10 @@ def _constancy(bins, mean):
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
     ends = {"first": bins[0].first, "last": bins[-1].last}
-    test = {"chi2": chi2, "degrees": degrees, "p": chi2_p(chi2, degrees)}
-    row = _row("rate", fit.n, fit, 1 / mean, **ends) | test
-    yield row | {"z": (fit.value - 1 / mean) / fit.stderr}
+    z, p = (fit.value - 1 / mean) / fit.stderr, chi2_p(chi2, degrees)
+    yield _row("rate", fit.n, fit, 1 / mean, **ends, z=z, chi2=chi2, degrees=degrees, p=p)
     z = trend.value / trend.stderr
-    yield _row("trend", trend.n, trend, 0.0, **ends) | {"z": z, "p": two_sided_p(z)}
+    yield _row("trend", trend.n, trend, 0.0, **ends, z=z, p=two_sided_p(z))
 
 
 def rows(scenes, seed, events=EVENTS):
@@ -276,25 +276,14 @@ def rows(scenes, seed, events=EVENTS):
             start = {"scene": one["name"], "width": box.width, "height": box.height}
             start |= {"radius": radius, "event": hop, "exact_mean": exact.mean_times(scene)[hop]}
             for row in measured(scene, hop, stream, events):
-                yield start | row
+                yield row | start
 
 
 def _z(deviation, error):
     return student_deviate(deviation / error, BLOCKS - 1)
 
 
-def _row(quantity, count, estimate, reference, first=None, last=None):
-    return {
-        "quantity": quantity,
-        "first": first,
-        "last": last,
-        "count": count,
-        "estimate": estimate.value,
-        "stderr": estimate.stderr,
-        "reference": reference,
-        "reference_stderr": None,
-        "z": None,
-        "chi2": None,
-        "degrees": None,
-        "p": None,
-    }
+def _row(quantity, count, estimate, reference, **more):
+    """Return a row; ``more`` are other columns, which are empty otherwise."""
+    found = {"estimate": estimate.value, "stderr": estimate.stderr, "reference": reference}
+    return Distributions.empty(quantity=quantity, count=count, **found, **more)

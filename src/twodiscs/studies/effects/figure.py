@@ -27,9 +27,9 @@ WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
 MAIN, LOWER, LEGEND = 1.95, 0.75, 0.36
 
-#: The events whose mean times are shown, a panel each.
-NAMES_OF = {"any_wall": "wall hits"}
+#: The events whose mean times are shown, a panel each, and what is called otherwise here.
 SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
+NAMES_OF = {"any_wall": "wall hits"}
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 MARKERS = ("o", "s", "^", "D", "v", "P")
@@ -51,8 +51,8 @@ def draw(box=None, *, tables):
     figure = new_figure(BOTTOM + LOWER + JOINT + MAIN + TOP + LEGEND, WIDTH)
     for i, event in enumerate(SHOWN_EVENTS):
         left = LEFT + i * (ACROSS + GAP)
-        main = _panel(figure, left, BOTTOM + LOWER + JOINT, ACROSS, MAIN)
-        lower = _panel(figure, left, BOTTOM, ACROSS, LOWER)
+        main = panels.add_panel(figure, BOTTOM + LOWER + JOINT, MAIN, left, ACROSS)
+        lower = panels.add_panel(figure, BOTTOM, LOWER, left, ACROSS)
         for name, look in looks.items():
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
             radii, values = exact[name]
@@ -94,7 +94,7 @@ def _plain_times(box, radii, event):
         mean_times(box.scene(float(r)))[event] if r > 0 and box.fits(float(r)) else None
         for r in radii
     ]
-    return np.array([np.nan if time is None else time for time in times])
+    return np.array(times, float)
 
 
 def _relative(row):
@@ -106,11 +106,6 @@ def _relative(row):
     }
 
 
-def _panel(figure, left, bottom, width, height):
-    across, up = figure.get_size_inches()
-    return figure.add_axes((left / across, bottom / up, width / across, height / up))
-
-
 def _title(axes, letter, text):
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
     drawing.label(axes, f"({letter})  {text}", (0, 1), (0, 15), **corner)
@@ -119,7 +114,7 @@ def _title(axes, letter, text):
 def _costs(figure, rows, looks):
     """Draw the time per event of each scene in units of that of the plain one."""
     left = LEFT + len(SHOWN_EVENTS) * (ACROSS + GAP) + NAMES
-    axes = _panel(figure, left, BOTTOM, COST, LOWER + JOINT + MAIN)
+    axes = panels.add_panel(figure, BOTTOM, LOWER + JOINT + MAIN, left, COST)
     shown = [row for row in rows if row["variant"] != "plain"]
     for i, row in enumerate(shown):
         colour, marker = looks.get(row["variant"], (BLACK, "o"))

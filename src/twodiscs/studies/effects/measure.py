@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from twodiscs.comparison import estimates
-from twodiscs.comparison.rows import mean_time_rows
+from twodiscs.comparison.rows import exact_values, mean_time_rows
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import DISC, after_event, law_of, next_event
@@ -133,13 +133,8 @@ def rows(points):
 
 def _compared(box, points):
     """Return the rows of mean_times.csv for the ``points`` of a scene."""
-    scenes = [box.scene(point["radius"]) for point in points]
-    true = {
-        (scene.radius, f"{event}_time"): time
-        for scene in scenes
-        for event, time in exact.mean_times(scene).items()
-    }
-    return mean_time_rows(scenes[0], true, points)
+    radii = [point["radius"] for point in points]
+    return mean_time_rows(box.scene(radii[0]), exact_values(exact.theory_rows(box, radii)), points)
 
 
 def _plain(box, radius):

@@ -32,12 +32,12 @@ TELLING = 0.02
 # Measurements -------------------------------------------------------------------------------------
 
 
-def _relative(rows, name):
-    """Yield (radius, name of the quantity, measured over exact, its error) of rows that tell."""
+def _relative(rows):
+    """Yield (row, measured over exact, its error) of rows that tell."""
     for row in rows:
         if row["exact"] and row["stderr"] and row["stderr"] <= TELLING * row["exact"]:
             value = row["estimate"] - row.get("bias", 0.0)
-            yield row["radius"], name(row), value / row["exact"], row["stderr"] / row["exact"]
+            yield row, value / row["exact"], row["stderr"] / row["exact"]
 
 
 def measurements(tables):
@@ -49,24 +49,21 @@ def measurements(tables):
     """
     found = {}
 
-    def add(quantity, radius, method, factor, error):
-        found.setdefault((quantity, radius), {})[method] = factor, error
+    def add(quantity, row, method, factor, error):
+        found.setdefault((quantity, row["radius"]), {})[method] = factor, error
 
-    for table in ("volume", "areas"):
-        for radius, quantity, factor, error in _relative(
-            tables.get(table, ()), lambda row: row["quantity"]
-        ):
-            add(quantity, radius, "Monte Carlo", factor, error)
-            if table == "areas":
-                time = quantity.removesuffix("_area") + "_time"
-                add(time, radius, "Monte Carlo", 1 / factor, error / factor**2)
-    for radius, event, factor, error in _relative(
-        tables.get("mean_times", ()), lambda row: row["event"]
-    ):
-        add(f"{event}_time", radius, "dynamics", factor, error)
-        add(f"{event}_area", radius, "dynamics", 1 / factor, error / factor**2)
+    for row, factor, error in _relative(tables.get("volume", ())):
+        add("volume", row, "Monte Carlo", factor, error)
+    for row, factor, error in _relative(tables.get("areas", ())):
+        add(row["quantity"], row, "Monte Carlo", factor, error)
+        time = row["quantity"].removesuffix("_area") + "_time"
+        add(time, row, "Monte Carlo", 1 / factor, error / factor**2)
+    for row, factor, error in _relative(tables.get("mean_times", ())):
+        event = row["event"]
+        add(f"{event}_time", row, "dynamics", factor, error)
+        add(f"{event}_area", row, "dynamics", 1 / factor, error / factor**2)
         if event == "disc_collision":
-            add("volume", radius, "dynamics", factor, error)
+            add("volume", row, "dynamics", factor, error)
     return found
 
 

@@ -40,20 +40,24 @@ def mean_free_time(volume, area, sides):
 # Section IV A: volume -----------------------------------------------------------------------------
 
 
-def volume_indicator(q):
-    """volindic: the coordinates that are not fixed first run along y, then along x."""
+def over_y(q, power):
+    """Return 2 ∫ (2b − v) (2a − √(4r² − v²)₊)₊^power dv over [0, 2b]: v = |y1 − y2| is last."""
     contact, x_range, y_range = 2 * q.r, 2 * q.a, 2 * q.b
 
     def strip(t):  # v = 2 r sin t
-        v = contact * mp.sin(t)
         open_x = max(x_range - contact * mp.cos(t), 0)
-        return contact * mp.cos(t) * (y_range - v) * open_x**2
+        return contact * mp.cos(t) * (y_range - contact * mp.sin(t)) * open_x**power
 
     ends = mp.asin(mp.sqrt(max(1 - (x_range / contact) ** 2, mpf(0))))
     free = mpf(0)
     if y_range > contact:
-        free = line(lambda v: (y_range - v) * x_range**2, contact, y_range)
+        free = line(lambda v: (y_range - v) * x_range**power, contact, y_range)
     return 2 * (smooth(strip, ends, mp.asin(min(y_range / contact, mpf(1)))) + free)
+
+
+def volume_indicator(q):
+    """volindic: the coordinates that are not fixed first run along y, then along x."""
+    return over_y(q, 2)
 
 
 def volume_separations(q):
@@ -162,17 +166,7 @@ def wall(x1, q):
 
 def wall_integral(q):
     """areaindic, and the first display on walls in appendix A: along x first."""
-    contact, x_range, y_range = 2 * q.r, 2 * q.a, 2 * q.b
-
-    def strip(t):  # v = 2 r sin t
-        open_x = max(x_range - contact * mp.cos(t), 0)
-        return contact * mp.cos(t) * (y_range - contact * mp.sin(t)) * open_x
-
-    ends = mp.asin(mp.sqrt(max(1 - (x_range / contact) ** 2, mpf(0))))
-    free = mpf(0)
-    if y_range > contact:
-        free = line(lambda v: (y_range - v) * x_range, contact, y_range)
-    return 2 * (smooth(strip, ends, mp.asin(min(y_range / contact, mpf(1)))) + free)
+    return over_y(q, 1)
 
 
 def wall_area(q):

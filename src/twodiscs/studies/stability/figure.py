@@ -6,9 +6,8 @@ import numpy as np
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
-from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.panels import name_box
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -16,7 +15,6 @@ from twodiscs.figures.kit.style import (
     GREY,
     ORANGE,
     SERIES,
-    SIZES,
     VERMILLION,
     new_figure,
 )
@@ -52,15 +50,14 @@ def draw(box, tables):
     _times(_panel(figure, 1, 5.8, 1.1, "f", 1.05), parts.get("times", []))
     _reversal(_panel(figure, 2, 0.5, 2.6, "g"), parts.get("reversal", []))
     _coverage(_panel(figure, 2, 3.65, 3.25, "h"), parts.get("coverage", []))
-    name_box(figure.axes[0], box)
+    panels.name_box(figure.axes[0], box)
     return figure
 
 
 def _panel(figure, line, left, width, name, margin=0.42):
     """Return new axes in a row of panels, ``left`` and ``width`` in inches, with their letter."""
-    across, up = figure.get_size_inches()
     bottom = BOTTOM + sum(ROWS[line + 1 :]) + BETWEEN * (len(ROWS) - 1 - line)
-    axes = figure.add_axes((left / across, bottom / up, width / across, ROWS[line] / up))
+    axes = panels.add_panel(figure, bottom, ROWS[line], left, width)
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom"}
     drawing.label(axes, f"({name})", (0, 1), (-72 * margin, 3), **corner)
     return axes
@@ -102,8 +99,7 @@ def _errors(axes, rows, high):
     for method, quantity, colour, marker, name in LINES:
         x, y = _worst(rows, method, quantity)
         y = [max(value, NOTHING) for value in y]
-        style = {"color": colour, "marker": marker, "markersize": 0.8 * SIZES[marker]}
-        axes.plot(x, y, label=name, lw=0.7, markerfacecolor="white", **style)
+        axes.plot(x, y, label=name, lw=0.7, **panels.open_symbol(colour, marker, 0.8))
     for row in _select(rows, method="stable")[:1]:
         axes.axhline(row["high"], **BOUND)
     _logarithmic(axes, (5e-15, 0.3), (NOTHING, high))
@@ -125,14 +121,13 @@ def _thresholds(axes, rows):
 def _shares(axes, rows):
     """Draw the accepted shares below the largest radius."""
     rows = _select(rows, case="largest radius")
-    for method, (colour, marker), name in (
+    for method, look, name in (
         ("conditioned", SERIES[0], "as drawn here"),
         ("prism", SERIES[1], "from the prism"),
     ):
         found = sorted((-row["distance"], row["value"]) for row in _select(rows, method=method))
-        style = {"color": colour, "marker": marker, "markersize": 0.8 * SIZES[marker]}
         x, y = zip(*found, strict=True) if found else ([], [])
-        axes.plot(x, y, label=name, lw=0.7, markerfacecolor="white", **style)
+        axes.plot(x, y, label=name, lw=0.7, **panels.open_symbol(*look, 0.8))
     for row in _select(rows, method="conditioned")[:1]:
         axes.axhline(row["low"], **BOUND)
     _logarithmic(axes, (5e-13, 0.3), (1e-20, 1e2))
@@ -183,15 +178,14 @@ def _estimates(axes, rows, radii):
     """Draw the residuals of the conditioned estimates."""
     places = {key: i for i, key in enumerate(radii)}
     _lines(axes, list(radii.values()))
-    for (colour, marker), volume, name in ((SERIES[0], True, "$V$"), (SERIES[1], False, "areas")):
+    for look, volume, name in ((SERIES[0], True, "$V$"), (SERIES[1], False, "areas")):
         shown = [
             (row["z"], places[row["case"], row["radius"]])
             for row in rows
             if (row["quantity"] == "volume") == volume and row["status"] == "sampled"
         ]
         x, y = zip(*shown, strict=True) if shown else ([], [])
-        style = {"color": colour, "marker": marker, "markersize": 0.8 * SIZES[marker]}
-        axes.plot(x, y, ls="", label=name, markerfacecolor="white", clip_on=False, **style)
+        axes.plot(x, y, ls="", label=name, clip_on=False, **panels.open_symbol(*look, 0.8))
     for z in (-5, 5):
         axes.axvline(z, **BOUND)
     axes.axvline(0, color=GREY, lw=0.5, zorder=0)
@@ -210,8 +204,7 @@ def _runs(axes, rows, radii):
         sign = -1 if quantity == "smallest_gap" else 1
         x = [max(sign * row["value"], NOTHING) for row in shown]
         y = [places[row["case"], row["radius"]] for row in shown]
-        style = {"color": colour, "marker": marker, "markersize": 0.9 * SIZES[marker]}
-        axes.plot(x, y, ls="", label=names[quantity], markerfacecolor="white", **style)
+        axes.plot(x, y, ls="", label=names[quantity], **panels.open_symbol(colour, marker, 0.9))
         for row in shown[:1]:
             bound = abs(row["low"] if sign < 0 else row["high"])
             axes.axvline(bound, **BOUND | {"color": colour})
@@ -239,9 +232,8 @@ def _times(axes, rows):
     walls = {"wall_time": "wall, "}
     _lines(axes, [walls.get(row["quantity"], "") + row["case"] for row in rows])
     for i, row in enumerate(rows):
-        colour, marker = SERIES[0] if row["quantity"] == "contact_time" else SERIES[1]
-        style = {"color": colour, "marker": marker, "markersize": SIZES[marker]}
-        axes.plot(row["value"], i, markerfacecolor="white", **style)
+        look = SERIES[0] if row["quantity"] == "contact_time" else SERIES[1]
+        axes.plot(row["value"], i, **panels.open_symbol(*look))
     axes.set(xscale="log", xlim=(0.1, 20))
     axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
     axes.xaxis.set_minor_formatter(NullFormatter())
@@ -258,7 +250,7 @@ def _reversal(axes, rows):
     radii = sorted({row["radius"] for row in _select(rows, quantity="return_error")})
     bits = np.array([0.0, 36.0])
     axes.plot(bits, 2.0 ** (bits - 53), color=BLACK, lw=0.7, zorder=1)
-    for (colour, marker), radius in zip(looks, radii, strict=False):
+    for look, radius in zip(looks, radii, strict=False):
         here = _select(rows, radius=radius)
         rate = _select(here, quantity="exponent", case="separation")[0]["value"]
         number = _select(here, quantity="events_retraced")[0]
@@ -266,8 +258,7 @@ def _reversal(axes, rows):
         x = [rate * row["count"] / math.log(2) for row in shown]
         y = [row["value"] for row in shown]
         name = f"$r={radius:g}$: {number['value']:.0f} events ({number['exact']:.0f})"
-        style = {"color": colour, "marker": marker, "markersize": 0.9 * SIZES[marker]}
-        axes.plot(x, y, ls="", label=name, markerfacecolor="white", zorder=2, **style)
+        axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
     axes.axhline(2.0**-26, **BOUND)
     axes.set(yscale="log", xlim=(0, 36), ylim=(1e-16, 1e-4))
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
@@ -281,19 +272,15 @@ def _reversal(axes, rows):
 def _coverage(axes, rows):
     """Draw the coverage of the intervals, radius by radius and event by event."""
     radii = sorted({row["radius"] for row in rows})
-    for i, (event, (colour, marker)) in enumerate(LOOKS.items()):
-        shown = [row for row in _select(rows, quantity=event) if row["value"] is not None]
-        x = [radii.index(row["radius"]) + (i - (len(LOOKS) - 1) / 2) * 0.12 for row in shown]
-        y = [row["value"] for row in shown]
-        error = [row["stderr"] for row in shown]
-        size = {"marker": marker, "markersize": SIZES.get(marker, 3.0)}
-        axes.errorbar(
-            x, y, error, ls="", color=colour, elinewidth=0.6, markerfacecolor="white",
-            label=name_of(event), **size,
-        )  # fmt: skip
-        few = [row for row in _select(rows, quantity=event) if row["value"] is None]
-        x = [radii.index(row["radius"]) + (i - (len(LOOKS) - 1) / 2) * 0.12 for row in few]
-        axes.plot(x, [0.905] * len(x), "x", color=colour)
+    for i, (event, look) in enumerate(LOOKS.items()):
+        beside = (i - (len(LOOKS) - 1) / 2) * 0.12
+        placed = [(radii.index(r["radius"]) + beside, r) for r in _select(rows, quantity=event)]
+        shown = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
+        x, y, error = zip(*shown, strict=True) if shown else ([], [], [])
+        symbol = panels.open_symbol(*look)
+        axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=name_of(event), **symbol)
+        few = [x for x, row in placed if row["value"] is None]
+        axes.plot(few, [0.905] * len(few), "x", color=look[0])
     for row in [row for row in rows if row["low"] is not None][:1]:
         axes.axhline(row["low"], **BOUND)
         axes.axhline(row["high"], **BOUND)

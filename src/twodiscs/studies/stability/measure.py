@@ -18,13 +18,7 @@ from twodiscs.comparison.estimates import Line, mean_of
 from twodiscs.comparison.rows import area_rows, volume_rows
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
-from twodiscs.dynamics.law import (
-    after_event,
-    contact_quotient,
-    law_of,
-    next_event,
-    wall_quotient,
-)
+from twodiscs.dynamics.law import after_event, contact_quotient, law_of, next_event, wall_quotient
 from twodiscs.model.checks import LARGEST_INTEGER, whole
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
@@ -153,8 +147,7 @@ def ordinary_radii(box):
 
     For the box 1.5 × 1 they are 0.05, 0.2, 0.24, 0.3 and 0.38.
     """
-    ends = [0.0, *limits(box).values()]
-    ends = sorted(ends)
+    ends = sorted([0.0, *limits(box).values()])
     places = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
     places += [(*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)]
     found = []
@@ -549,10 +542,6 @@ def growth(starts, forgotten, measured, small, law):
     return factors
 
 
-def _pair(estimate):
-    return estimate.value, estimate.stderr
-
-
 def reversal_rows(box, seed):
     """Yield how far reversed velocities retrace the path, and how far the exponent lets them.
 
@@ -581,39 +570,40 @@ def reversal_rows(box, seed):
             continue
         expected = digits / expected
         first = round(FITTED * expected)
-        rate, rate_error = _pair(exponent(first, round(expected) - first))
-        predicted = digits / rate
+        rate = exponent(first, round(expected) - first)
+        predicted = digits / rate.value
         yield row(
-            "reversal", "exponent", "separation", rate, radius=radius, stderr=rate_error,
+            "reversal", "exponent", "separation", rate.value, radius=radius, stderr=rate.stderr,
             count=REVERSED,
         )  # fmt: skip
 
+        found = {}  # the logarithm of the error of return by the number of events
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
-        errors = []
         for block, number in enumerate(numbers, start=1):
             starts = states(scene, REVERSED, seed, block)
             # A way back without any rounding is possible; it counts as an eighth of one.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
-            errors.append(_pair(mean_of(np.log(off))))
-            value = math.exp(errors[-1][0])
+            found[number] = log = mean_of(np.log(off))
+            value = math.exp(log.value)
             yield row(
                 "reversal", "return_error", "return", value, radius=radius, count=number,
-                stderr=value * errors[-1][1],
+                stderr=value * log.stderr,
             )  # fmt: skip
 
-        fitted = [i for i, n in enumerate(numbers) if first <= n <= round(expected)]
-        line = Line([numbers[i] for i in fitted], *zip(*(errors[i] for i in fitted), strict=True))
-        slope, slope_error = _pair(line.slope)
+        fitted = [(n, e.value, e.stderr) for n, e in found.items() if first <= n <= round(expected)]
+        slope = Line(*zip(*fitted, strict=True)).slope
         yield row(
-            "reversal", "exponent", "return", slope, radius=radius, exact=rate, stderr=slope_error,
-            count=REVERSED, z=(slope - rate) / math.hypot(slope_error, rate_error),
+            "reversal", "exponent", "return", slope.value, radius=radius, exact=rate.value,
+            stderr=slope.stderr, count=REVERSED,
+            z=(slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr),
         )  # fmt: skip
+        logs = [log.value for log in found.values()]
         yield row(
             "reversal", "events_retraced", "return",
-            float(np.interp(math.log(RETRACED), [value for value, _ in errors], numbers)),
+            float(np.interp(math.log(RETRACED), logs, numbers)),
             radius=radius, count=REVERSED, exact=predicted,
-            low=predicted - math.log(ROUNDINGS * long) / rate,
-            high=predicted + math.log(ROUNDINGS) / rate,
+            low=predicted - math.log(ROUNDINGS * long) / rate.value,
+            high=predicted + math.log(ROUNDINGS) / rate.value,
         )  # fmt: skip
 
 

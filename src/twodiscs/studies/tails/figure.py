@@ -4,7 +4,7 @@ import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import name_of
-from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, SIZES, VERMILLION, new_figure
+from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION, new_figure
 
 #: Inches: the panel of the tails, of their ratio to the law, of the exponential, and gaps.
 TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.75, 0.95, 1.3, 0.07, 0.42, 0.22
@@ -68,7 +68,7 @@ def _tail(whole, ratio, rows, colour, marker):
         laws = np.array([row["law"] for row in kept])
         style = panels.open_symbol(colour, marker)
         if method == "counted":
-            style |= {"markerfacecolor": colour, "markersize": 0.45 * SIZES[marker]}
+            style = panels.open_symbol(colour, marker, 0.45) | {"markerfacecolor": colour}
         name = _name(rows[0]) if method == "weighted" else None
         whole.plot(times, values, ls="", label=name, zorder=3, **style)
         ratio.errorbar(times, values / laws, errors / laws, ls="", elinewidth=0.6, **style)

@@ -161,11 +161,8 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     has no interval, and for a number out of range.
     """
     times, upright, hop = _prepared(scene, event, times)
-    samples, seed, blocks = (
-        whole("samples", samples),
-        whole("seed", seed, 0),
-        whole("blocks", blocks, 2),
-    )
+    samples, seed = whole("samples", samples), whole("seed", seed, 0)
+    blocks = whole("blocks", blocks, 2)
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
@@ -177,8 +174,10 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     return mean_of(found)
 
 
-def _counts(scene, event, upright, hop, times, replicas, seed):
+def _counts(scene, event, times, replicas, seed):
     """Return what each replica has of P(T > t), (replicas, times): its count over the mean one."""
+    times, upright, hop = _prepared(scene, event, times)
+    replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
         np.uint64(seed), 0, 1, replicas, window, times, law_of(upright),
@@ -195,10 +194,7 @@ def counted(scene, event, times, replicas, seed):
     number is on average eight, which the estimate divides by. Errors are from the spread between
     replicas. Raises ``InputError`` as ``tail`` does.
     """
-    times, upright, hop = _prepared(scene, event, times)
-    replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
-    counts = _counts(scene, event, upright, hop, times, replicas, seed)
-    return mean_of(counts)
+    return mean_of(_counts(scene, event, times, replicas, seed))
 
 
 def decay(scene, event, first, last, replicas, seed):
@@ -208,14 +204,13 @@ def decay(scene, event, first, last, replicas, seed):
     with its error by the delta method over replicas. Raises ``InputError`` as ``counted`` does, and
     where no interval is longer than ``last``.
     """
-    times, upright, hop = _prepared(scene, event, [first, last])
-    replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
-    counts = _counts(scene, event, upright, hop, times, replicas, seed)
+    counts = _counts(scene, event, [first, last], replicas, seed)
     early, late = counts.mean(axis=0)
     if not late:
         raise InputError(f"last must be shorter: none of the intervals lasts longer than {last!r}")
-    spread = np.std(counts[:, 0] / early - counts[:, 1] / late, ddof=1) / math.sqrt(replicas)
-    return Estimate(math.log(early / late) / (last - first), spread / (last - first), replicas)
+    n = len(counts)
+    spread = np.std(counts[:, 0] / early - counts[:, 1] / late, ddof=1) / math.sqrt(n)
+    return Estimate(math.log(early / late) / (last - first), spread / (last - first), n)
 
 
 #: Times of the tables in units of the mean: those that weighted starts reach, and plain counting.

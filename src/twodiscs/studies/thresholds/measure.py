@@ -25,7 +25,6 @@ WIDTH = 0.2
 #: A line through fewer points is not fitted.
 FEWEST = 3
 
-
 #: What a fit takes of the rows of a table.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
 
@@ -55,11 +54,10 @@ def _fit(law, quantity, form, x, y, errors, curve):
     fit |= {"nearest": float(deltas.min()), "farthest": float(deltas.max())}
     line = Line(x, y, errors)
     slope, error, chi2 = line.slope.value, line.slope.stderr, line.chi2
-    due = Line(x, curve, errors).slope.value
-    if quantity != "mean_time":
-        yield fit | _row("exponent", slope, error, None, law.power, chi2, len(x) - 2)
-        return
+    due = Line(x, curve, errors).slope.value if quantity == "mean_time" else None
     yield fit | _row("exponent", slope, error, due, law.power, chi2, len(x) - 2)
+    if due is None:
+        return
     weights = 1 / errors**2
     constant, due = (weights @ (v - law.power * x) / weights.sum() for v in (y, curve))
     chi2 = weights @ (y - constant - law.power * x) ** 2
