@@ -21,7 +21,7 @@ from twodiscs.figures.catalogue import (
 )
 from twodiscs.model.events import EVENTS
 from twodiscs.pipeline.jobs import module_of
-from twodiscs.studies.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 
 ALL = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
 QUANTITIES = {
@@ -49,6 +49,14 @@ def test_the_modules_that_draw_are_those_of_the_entries():
 def test_the_options_are_those_that_the_module_takes(name):
     entry = ALL[name]
     signature(module_of(entry.module).draw).bind(None, tables={}, **entry.options)
+
+
+@pytest.mark.parametrize(
+    "name", [name for study in STUDIES.values() if not study.about_plain for name in study.figures]
+)
+def test_a_study_of_any_scenes_is_drawn_without_a_box(name):
+    entry = ALL[name]
+    signature(module_of(entry.module).draw).bind(tables={}, **entry.options)
 
 
 def test_only_the_animation_animates():

@@ -184,7 +184,7 @@ def test_from_starts_next_to_it_it_does_not(rows, hop):
 @pytest.mark.parametrize("module", [figure, figure_by_radius])
 def test_the_figures_draw_them(rows, module, tmp_path):
     with style.context():
-        drawn = module.draw(None, {"accuracy_cost": rows})
+        drawn = module.draw(tables={"accuracy_cost": rows})
         style.save(drawn, tmp_path / "figure.png")
     assert (tmp_path / "figure.png").stat().st_size > 10_000
 

@@ -281,8 +281,8 @@ class Forecast(Table):
     """the scene; all for what is made once, and for the total"""
     stage: TEXT
     """
-    monte_carlo, dynamics, intervals, tables, figures; accuracy_cost and, as round figures, compile,
-    errata, stability, documents; total
+    of a scene: monte_carlo, dynamics, intervals, tables, figures, total; of all: compile and what
+    the key shared names, most of it as round figures, and the total
     """
     radius: LENGTH
     """radius of one job; empty for the sum over a stage"""

@@ -58,7 +58,7 @@ DOTTED = (0, (1, 1.5))
 SHADES = (1.0, 0.75, 0.55, 0.4, 0.3)
 
 
-def draw(box, tables):
+def draw(box=None, *, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
     rows = tables["accuracy_cost"]
     figure = new_figure(HEIGHT, WIDTH)

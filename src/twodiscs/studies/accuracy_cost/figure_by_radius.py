@@ -16,7 +16,7 @@ WIDTH, HEIGHT, TIMES, SINGLE = 7.0, 2.1, 3.72, 2.1
 CLOSEST = 1e-3
 
 
-def draw(box, tables):
+def draw(box=None, *, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
     rows = tables["accuracy_cost"]
     figure = new_figure(panels.BOTTOM + HEIGHT + panels.TOP, WIDTH)
