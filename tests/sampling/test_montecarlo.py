@@ -295,7 +295,7 @@ def test_what_has_no_place_is_refused():
 # Jobs -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [PAPER, SCENES["channel"]], ids=["plain", "channel"])
+@pytest.mark.parametrize("scene", [PAPER, SCENES["combination"]], ids=["plain", "combination"])
 def test_the_job_of_a_radius_is_the_point_of_its_scene(scene):
     box, shape = Box.of(scene), (1, 0.1, 5)
     found = montecarlo.job(box, scene.radius, ["vertical_hop"], True, *shape)

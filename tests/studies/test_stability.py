@@ -263,7 +263,7 @@ def run(monkeypatch, path, function="rows", **changes):
     return command(monkeypatch, jobs, *words)
 
 
-@pytest.mark.parametrize("box", [PAPER, Box(1.0, 1.0), Box(1e-6, 1e6)], ids=str)
+@pytest.mark.parametrize("box", [PAPER, Box(1e-6, 1e6)], ids=str)
 def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
     path = tmp_path / "stability.csv"
     contents = []
