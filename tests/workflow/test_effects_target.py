@@ -1,6 +1,5 @@
 """Effects as a target: a job for each file of config/scenes, and what is made of them."""
 
-import pytest
 from checkout import REPOSITORY
 
 FILES = sorted(path.stem for path in (REPOSITORY / "config" / "scenes").glob("*.yaml"))
@@ -19,13 +18,8 @@ def test_the_target_is_a_job_for_each_scene_and_what_is_made_of_them(unbuilt):
     assert jobs == sorted([*POINTS, *MADE, ("effects", ()), ("compile", ("kernels=dynamics",))])
 
 
-def test_it_is_part_of_all(unbuilt):
-    assert effects(unbuilt.jobs()) == sorted([*POINTS, *MADE])
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_a_scene_alone_does_without(unbuilt, name):
-    assert effects(unbuilt.jobs("--configfile", f"config/scenes/{name}.yaml")) == []
+def test_it_is_part_of_all(planned):
+    assert effects(planned) == sorted([*POINTS, *MADE])
 
 
 def test_edit_of_a_scene_counts_that_one_again(built):
