@@ -11,14 +11,13 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from fabricated import command
+from fabricated import make_table
 
 from twodiscs.comparison import estimates
 from twodiscs.dynamics import intervals
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import jobs
 from twodiscs.studies.distributions import figure
 from twodiscs.studies.distributions import measure as distributions
 from twodiscs.studies.distributions.table import Distributions
@@ -242,18 +241,12 @@ def test_without_any_rows_the_box_is_named(drawn):
 # The table and the figure -------------------------------------------------------------------------
 
 
-def run(monkeypatch, path, parameters):
-    """Run the job of the table and return its exit status."""
-    words = ["table", "studies.distributions.measure", "--parameters", parameters]
-    return command(monkeypatch, jobs, *words, "--output", path)
-
-
 def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
     scene = {"name": "paper", "box": BOX.parameters(), "event": "vertical_hop", "radii": [0.2]}
     other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
     parameters = {"events": 2**16, "scenes": [scene, other], "seed": 9}
     path = tmp_path / "distributions.csv"
-    assert run(monkeypatch, path, parameters) == 0
+    assert make_table(monkeypatch, "distributions", parameters, path) == 0
     rows = Distributions.read(path)
     cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
     near = [
@@ -272,11 +265,3 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch)
     assert any(line.get_ydata()[0] == pytest.approx(zero, rel=1e-12) for line in rates.lines)
     names = passages.get_legend_handles_labels()[1]
     assert {"vertical hops", "horizontal hops"} <= set(names)
-
-
-def test_a_job_that_lacks_its_scenes_is_told_in_one_sentence(tmp_path, monkeypatch, capsys):
-    assert run(monkeypatch, tmp_path / "distributions.csv", {"seed": 1}) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("error: parameters of twodiscs.studies.distributions.measure: missing")
-    assert said.count("\n") == 1
-    assert not any(tmp_path.iterdir())

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fabricated import Laws, command, store
+from fabricated import Laws, command, make_table, store
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
@@ -235,8 +235,7 @@ def test_the_job_of_a_scene_is_that_of_its_file(tmp_path, monkeypatch):
 def test_the_job_of_the_table_gathers_the_points(found, rows, tmp_path, monkeypatch):
     paths = store(tmp_path / "points", found)
     output = tmp_path / "effects.csv"
-    words = ["table", "studies.effects.measure", "--parameters", {}, "--points", *paths]
-    assert command(monkeypatch, jobs, *words, "--output", output) == 0
+    assert make_table(monkeypatch, "effects", {}, output, "--points", *paths) == 0
     assert Effects.read(output) == rows
     assert list(dict.fromkeys(row["scene"] for row in rows)) == NAMES
 

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fabricated import BOX, Laws, command, scenes, theory_rows
+from fabricated import BOX, Laws, make_table, scenes, theory_rows
 from mpmath import mp, mpf
 
 from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
@@ -18,7 +18,6 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import jobs
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
@@ -454,42 +453,15 @@ def test_errors_in_brackets(value, error, text):
 # The job ------------------------------------------------------------------------------------------
 
 
-def run(monkeypatch, folder, box, tables):
-    """Run the job of the table and return its exit status; ``tables`` are words NAME=PATH."""
-    words = ["table", "studies.errata.measure", "--parameters", {"box": box}]
-    words += ["--table", *tables, "--output", folder / "errata.csv"]
-    return command(monkeypatch, jobs, *words)
-
-
 def test_the_table_is_written(tmp_path, monkeypatch, measured):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
     paths = {name: tmp_path / f"{name}.csv" for name in measured}
     for name, path in paths.items():
         SCENE_TABLES[name].write(path, measured[name])
     words = [f"{name}={path}" for name, path in paths.items()]
-    assert run(monkeypatch, tmp_path, BOX.parameters(), words) == 0
-    assert Errata.read(tmp_path / "errata.csv") == errata.rows(measured, BOX)
-
-
-@pytest.mark.parametrize(
-    ("box", "tables", "message"),
-    [
-        ({"width": 1.5}, [], "box must be a block of width"),
-        ({"width": 1.5, "height": -1}, [], "height must be"),
-        ({"width": 0, "height": 1}, [], "width must be"),
-        ({"width": "wide", "height": 1}, [], "width must be"),
-        ({"width": 1.5, "height": float("nan")}, [], "must be a JSON object"),
-        (BOX.parameters(), ["volume.csv"], "NAME=VALUE"),
-        (BOX.parameters(), ["volume=absent.csv"], "there is no table called 'absent'"),
-        (BOX.parameters(), ["volume=absent/volume.csv"], "absent/volume.csv"),
-    ],
-)
-def test_mistakes_get_one_sentence(box, tables, message, tmp_path, monkeypatch, capsys):
-    assert run(monkeypatch, tmp_path, box, tables) == 2
-    said = capsys.readouterr().err
-    assert message in said
-    assert said.count("\n") == 1
-    assert not any(tmp_path.iterdir())
+    output, given = tmp_path / "errata.csv", {"box": BOX.parameters()}
+    assert make_table(monkeypatch, "errata", given, output, "--table", *words) == 0
+    assert Errata.read(output) == errata.rows(measured, BOX)
 
 
 def test_every_statement_says_where():

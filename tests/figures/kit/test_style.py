@@ -103,24 +103,11 @@ BOX = START + "}"
 @pytest.mark.parametrize(
     ("module", "options", "sentence"),
     [
-        ("figures.portrait", {}, "module must be one of the package twodiscs"),
-        ("portrait", {}, "module must be one of the package twodiscs"),
-        ("../model", {}, "module must be one of the package twodiscs"),
-        ("figures.geometry.model", {"--parameters": "{}"}, "missing a required argument: 'box'"),
-        ("figures.geometry.model", {"--parameters": '{"box": {"width": 1.5}}'}, "box must be"),
         (
             "figures.geometry.model",
             {"--parameters": '{"box": {"width": -1, "height": 1}}'},
             "width must be",
         ),
-        ("figures.geometry.model", {"--parameters": "1.5"}, "must be a JSON object"),
-        ("figures.geometry.model", {"--parameters": START + ', "colour": 1}'}, "'colour'"),
-        ("figures.geometry.model", {"--table": "volume"}, "must be given as NAME=VALUE"),
-        ("figures.geometry.model", {"--table": "volumes=a.csv"}, "there is no table called 'a'"),
-        ("figures.geometry.model", {"--table": "a=volume.csv"}, "volume.csv: No such file"),
-        ("figures.kit.style", {}, "figures.kit.style must have a function draw"),
-        ("figures.motion.hopping_trajectory", {}, "the table trajectory must be given"),
-        ("figures.radius", {}, "missing a required argument: 'names'"),
         (
             "figures.radius",
             {"--parameters": START + ', "names": {"volume": ""}, "label": "", "place": ""}'},

@@ -163,25 +163,14 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
         assert path.stat().st_size < 600_000
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"box": {"width": 1}}, "box must be a block of width, height and maybe effects, not"),
-        (
-            {"box": BOX.parameters()},
-            "figures.motion.animation: missing a required argument: 'radius'",
-        ),
-        ({"box": BOX.parameters(), "radius": -1}, "radius must be a positive"),
-    ],
-)
-def test_mistakes_are_told_in_one_sentence(given, said, rows, tmp_path, monkeypatch, capsys):
+def test_a_mistake_is_told_in_one_sentence(rows, tmp_path, monkeypatch, capsys):
     table, output = tmp_path / "trajectory.csv", tmp_path / "a.gif"
     Trajectory.write(table, rows)
+    given = {"box": BOX.parameters(), "radius": -1}
     words = ["--parameters", given, "--table", f"trajectory={table}"]
     words = ["animation", "figures.motion.animation", *words, "--output", output]
     assert command(monkeypatch, jobs, *words) == 2
     error = capsys.readouterr().err
-    assert error.startswith("error: ")
-    assert said in error
+    assert error.startswith("error: radius must be a positive")
     assert error.count("\n") == 1
     assert not output.exists()
