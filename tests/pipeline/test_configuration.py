@@ -72,11 +72,6 @@ def test_the_draft_is_a_quick_look_at_the_same_scenes():
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
 
 
-def test_the_page_about_the_configuration_is_up_to_date():
-    page = (ROOT / "config/README.md").read_text(encoding="utf-8")
-    assert page == schema.document(), schema.document.__module__
-
-
 def test_the_module_prints_that_page():
     command = [sys.executable, "-m", "twodiscs.pipeline.configuration.schema"]
     assert subprocess.run(command, capture_output=True, check=True).stdout.decode() == (
