@@ -16,13 +16,11 @@ from mpmath import mp, mpf
 from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
 from twodiscs.studies.errata.table import Errata
-from twodiscs.theory import exact, reference
+from twodiscs.theory import reference
 from twodiscs.theory.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
@@ -305,28 +303,6 @@ def test_the_time_left_in_long_boxes():
     q = MpScene(mpf(3), mpf(1), mpf(1) / 2 - mpf("1e-30"))
     limit = 3 * mp.pi / (4 * mp.sqrt(2)) * (q.w - 2 * q.h)
     assert abs(mean_time("disc_collision", q) / limit - 1) < 1e-20
-
-
-# The reference ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "box", [case for cases in REGIMES.values() for case in cases] + [(1.0, 1.7, 0.3)]
-)
-def test_the_reference_is_the_theory(box):
-    found = exact.exact(Scene(*box))
-    values = {"volume": found["volume"]}
-    values |= {f"{event}_area": found["areas"][event] for event in EVENTS}
-    values |= {f"{event}_time": found["mean_times"][event] for event in EVENTS}
-    for quantity, value in values.items():
-        if value:
-            assert abs(value / QUANTITIES[quantity](MpScene.of(*box)) - 1) < 1e-13, quantity
-
-
-def test_the_reference_keeps_its_digits():
-    with mp.workdps(15):
-        rough = reference.volume(MpScene.of(1.5, 1.0, 0.123))
-    assert abs(rough / published.volume_abd(MpScene.of(1.5, 1.0, 0.123)) - 1) < 1e-50
 
 
 # Measurements -------------------------------------------------------------------------------------
