@@ -8,6 +8,7 @@ import numpy as np
 
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.pipeline import jobs
 from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
@@ -143,3 +144,9 @@ def command(monkeypatch, module, *arguments):
             run(module.main)
         except SystemExit as leave:
             return leave.code or 0
+
+
+def make_table(monkeypatch, study, parameters, output, *words):
+    """Run the job of the table of a ``study`` with more ``words`` and return its exit status."""
+    words = ["--parameters", parameters, *words, "--output", output]
+    return command(monkeypatch, jobs, "table", f"studies.{study}.measure", *words)

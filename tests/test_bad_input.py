@@ -27,7 +27,9 @@ BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
 NAN, INF = math.nan, math.inf
 
-LENGTHS = [NAN, INF, -INF, -1.0, 0.0, -0.0, 0, "1", "", b"1", True, None, [1.0], 1j, 1e-61, 1e61]
+LENGTHS = [
+    NAN, INF, -INF, -1.0, 0.0, -0.0, 0, "1", "", b"1", True, None, [1.0], 1j, 1e-61, 1e61, 10**400,
+]  # fmt: skip
 RADII = [*LENGTHS, 0.5, 0.4, BOX.largest_radius, 1e3]
 SCENES = [None, 1.0, NAN, "scene", (1.5, 1.0, 0.2), {"width": 1.5}, Scene]
 NAMES = [None, 1.0, NAN, "", "hop", "vertical hop", b"any_wall", PAPER]
@@ -40,7 +42,8 @@ POSITIVE = [*REALS, 0.0, -1.0]
 SUM = ("disc_collision", "right_wall", "top_wall")
 
 EFFECTS = [
-    1, None, ["field"], {"gravity": 1}, {"field": -1.0}, {"field": "1"}, {"field": False},
+    1, None, "field", [], ["field"], {"gravity": 1}, {1: 2}, {"field": -1.0}, {"field": "1"},
+    {"field": False},
     {"periodic": "xx"}, {"periodic": "z"}, {"periodic": 1}, {"mass_ratio": 0},
     {"radius_ratio": 1e9}, {"moment_of_inertia": 2.0}, {"depth": 1e50},
     {"field": 1.0, "periodic": "y"}, {"periodic": "xy", "moment_of_inertia": 0.4},

@@ -31,7 +31,14 @@ def test_a_lane_holds_the_whole_state_and_nothing_else(scene, components):
     assert ensemble.state_at(rows, 0, law) == ensemble.state_at(rows, 2, law) == (0.0,) * components
 
 
-@pytest.mark.parametrize("scene", [Scene(1.5, 1.0, 0.2), *SCENES.values()], ids=["plain", *SCENES])
+#: Each takes seconds to compile; those that are not slow have all the effects.
+LAWS = [Scene(1.5, 1.0, 0.2), SCENES["rough"], SCENES["torus"], SCENES["combination"]] + [
+    pytest.param(SCENES[name], marks=pytest.mark.slow)
+    for name in ("unequal", "channel", "field", "balls")
+]
+
+
+@pytest.mark.parametrize("scene", LAWS, ids=repr)
 @pytest.mark.parametrize("remaining", [0.05, 1.0, np.inf])
 def test_lanes_together_find_the_event_that_each_would_find_alone(scene, remaining):
     lanes, law = 37, law_of(scene)  # no multiple of the width of a vector

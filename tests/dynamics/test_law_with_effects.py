@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 
+import effect_scenes
 import mpmath
 import numpy as np
 import pytest
@@ -29,17 +30,8 @@ from twodiscs.sampling.starts import states
 from twodiscs.theory import exact
 
 EPS = 2.0**-52
-SCENES = {
-    "unequal": Scene(1.5, 1.0, 0.2, radius_ratio=0.5, mass_ratio=0.3),
-    "torus": Scene(1.5, 1.0, 0.2, periodic="xy"),
-    "channel": Scene(1.5, 1.0, 0.2, periodic="x", mass_ratio=2.0),
-    "field": Scene(1.5, 1.0, 0.2, field=0.5),
-    "rough": Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4),
-    "balls": Scene(1.5, 1.0, 0.2, depth=1.2),
+SCENES = effect_scenes.SCENES | {
     "stack": Scene(1.5, 1.0, 0.3755, field=0.5),
-    "balls in a field": Scene(
-        1.5, 1.0, 0.2, depth=1.2, periodic="z", field=0.3, radius_ratio=1.2, mass_ratio=2.0
-    ),
     "nearly all": Scene(
         1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0,
         moment_of_inertia=0.4,
@@ -135,7 +127,7 @@ def test_reversed_velocities_lead_back(scene):
 
 
 #: Scenes whose events are counted, too; the kernel of a scene takes some seconds to compile.
-counted_scene = pytest.mark.parametrize("name", ["unequal", "balls in a field", "nearly all"])
+counted_scene = pytest.mark.parametrize("name", ["unequal", "combination", "nearly all"])
 
 
 @counted_scene

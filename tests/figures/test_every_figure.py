@@ -1,5 +1,7 @@
 """Every figure of a scene draws for every box and every table, with no text upon another."""
 
+from functools import cache
+
 import pytest
 from figure_cases import BOXES, PAPER, draw, tables_of, unclear
 
@@ -18,10 +20,17 @@ def pairs():
     yield from ((name, "square") for name in ("mean_wall_time", "horizontal_hop_area"))
 
 
+@cache
+def drawn(name, box):
+    """Return a figure of one of ``BOXES``."""
+    with style.context():
+        return draw(name, BOXES[box], tables_of(box))
+
+
 @pytest.mark.parametrize(("name", "box"), list(pairs()))
 def test_texts_stand_clear(name, box):
+    figure = drawn(name, box)
     with style.context():
-        figure = draw(name, BOXES[box], tables_of(box))
         assert unclear(figure) == []
     width, height = figure.get_size_inches()
     assert width == style.COLUMN
@@ -66,11 +75,12 @@ def test_tables_with_little_in_them():
 @pytest.mark.parametrize("name", [name for name, entry in FIGURES.items() if entry.tables])
 def test_laws_of_plain_scenes_are_not_drawn_with_effects(name):
     """No law for small discs, none near the end, no density at 0; the effects are named instead."""
-    symbols = {"field": "g=1.5", "radius_ratio": "r_2/r_1=0.5"}
-    boxes = [Box(1.5, 1.0, effects) for effects in ({"field": 1.5}, {"radius_ratio": 0.5})]
-    boxes = [box for box in boxes if FIGURES[name].without.isdisjoint(box.effects)]
+    effects, symbol = {"field": 1.5}, "g=1.5"
+    if "field" in FIGURES[name].without:
+        effects, symbol = {"radius_ratio": 0.5}, "r_2/r_1=0.5"
+    box = Box(1.5, 1.0, effects)
     with style.context():
-        figures = [draw(name, one, tables_of("paper")) for one in (PAPER, *boxes)]
+        figures = [drawn(name, "paper"), draw(name, box, tables_of("paper"))]
     dashed, marks = (
         [sum(wanted(line) for axes in figure.axes for line in axes.lines) for figure in figures]
         for wanted in (
@@ -81,6 +91,5 @@ def test_laws_of_plain_scenes_are_not_drawn_with_effects(name):
     assert not any(dashed[1:] + marks[1:])
     assert bool(dashed[0]) == ("laws" in FIGURES[name].options or name == "pressure")
     assert bool(marks[0]) == (name == "hop_histogram")
-    for box, figure in zip(boxes, figures[1:], strict=True):
-        texts = [text.get_text() for axes in figure.axes for text in axes.texts]
-        assert all(any(symbols[effect] in text for text in texts) for effect in box.effects)
+    texts = [text.get_text() for axes in figures[1].axes for text in axes.texts]
+    assert any(symbol in text for text in texts)

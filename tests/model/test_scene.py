@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import length
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import REGIMES, Scene
 
@@ -88,45 +87,3 @@ def test_a_scene_is_frozen_and_holds_floats():
     assert type(scene.width) is type(scene.radius) is float
     with pytest.raises(FrozenInstanceError):
         scene.width = 2.0
-
-
-BAD_LENGTHS = [
-    0,
-    -1,
-    -0.0,
-    math.nan,
-    math.inf,
-    "1",
-    b"1",
-    True,
-    None,
-    1j,
-    [1],
-    1e61,
-    1e-61,
-    10**400,
-]
-
-
-@pytest.mark.parametrize("bad", BAD_LENGTHS)
-@pytest.mark.parametrize("name", ["width", "height", "radius"])
-def test_what_is_no_length_is_refused_by_name(name, bad):
-    lengths = {"width": 1.5, "height": 1.0, "radius": 0.2} | {name: bad}
-    with pytest.raises(ValueError, match=rf"^{name} must "):
-        Scene(**lengths)
-
-
-@pytest.mark.parametrize("bad", BAD_LENGTHS)
-def test_functions_refuse_what_is_no_length(bad):
-    with pytest.raises(ValueError, match="must"):
-        Box(bad, 1)
-    with pytest.raises(ValueError, match="must"):
-        Box(1, bad)
-    with pytest.raises(ValueError, match=r"^side must"):
-        length("side", bad)
-
-
-@pytest.mark.parametrize("bad", ["hop", "", None, 3])
-def test_an_unknown_event_is_refused(bad):
-    with pytest.raises(ValueError, match="event must be one of vertical_hop"):
-        Scene(1.5, 1, 0.2).is_possible(bad)

@@ -14,20 +14,28 @@ from twodiscs.pipeline import jobs
 from twodiscs.pipeline.results import manifest, record
 
 
-@pytest.fixture
-def results(tmp_path, monkeypatch):
-    """A folder with theory.csv, a figure that shows it, and a point, by their jobs."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "results").mkdir()
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with theory.csv and a figure that shows it, by their jobs."""
     given = {"box": BOX.parameters()}
     about = ("--about", "scene paper, seed 3", "--code", "0123")
-    theory = ("table", "theory.exact", "--function", "theory_rows")
-    words = [*theory, "--parameters", given | {"radii": [0.1]}, *about]
-    assert command(monkeypatch, jobs, *words, "--output", "results/theory.csv") == 0
-    words = ["figure", "figures.geometry.model", "--parameters", given, *about]
-    words += ["--table", "theory=results/theory.csv"]
-    assert command(monkeypatch, jobs, *words, "--output", "results/m.pdf", "results/m.png") == 0
-    return tmp_path / "results"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("made"))
+        os.mkdir("results")
+        theory = ("table", "theory.exact", "--function", "theory_rows")
+        words = [*theory, "--parameters", given | {"radii": [0.1]}, *about]
+        assert command(patch, jobs, *words, "--output", "results/theory.csv") == 0
+        words = ["figure", "figures.geometry.model", "--parameters", given, *about]
+        words += ["--table", "theory=results/theory.csv"]
+        assert command(patch, jobs, *words, "--output", "results/m.pdf", "results/m.png") == 0
+        return Path("results").resolve()
+
+
+@pytest.fixture
+def results(made, tmp_path, monkeypatch):
+    """A copy of that folder, below the working directory."""
+    monkeypatch.chdir(tmp_path)
+    return shutil.copytree(made, tmp_path / "results")
 
 
 def rewrite(path, content):

@@ -11,14 +11,13 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from fabricated import command
+from fabricated import make_table
 
 from twodiscs.comparison import estimates
 from twodiscs.dynamics import intervals
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import jobs
 from twodiscs.studies.distributions import figure
 from twodiscs.studies.distributions import measure as distributions
 from twodiscs.studies.distributions.table import Distributions
@@ -247,8 +246,7 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch)
     other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
     parameters = {"events": 2**16, "scenes": [scene, other], "seed": 9}
     path = tmp_path / "distributions.csv"
-    words = ["table", "studies.distributions.measure", "--parameters", parameters]
-    assert command(monkeypatch, jobs, *words, "--output", path) == 0
+    assert make_table(monkeypatch, "distributions", parameters, path) == 0
     rows = Distributions.read(path)
     cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
     near = [

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fabricated import Laws, command, store
+from fabricated import Laws, command, make_table, store
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
@@ -56,16 +56,7 @@ def test_a_scene_has_the_parameters_that_it_has_alone(path):
     assert not {one["seed"] for one in other["dynamics"]} & {one["seed"] for one in dynamics}
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [
-        ROUGH,
-        ROUGH.with_radius(0.1),
-        Scene(1.5, 1.0, 0.24),
-        Scene(1.5, 1.0, 0.2, periodic="x", mass_ratio=3.0),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), Scene(1.5, 1.0, 0.24)], ids=str)
 def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
     """Against the trajectories that are written for people, start by start."""
     times, seed, replicas = (2.0, 6.0, 15.0), np.uint64(3), 48
@@ -242,8 +233,7 @@ def test_the_job_of_a_scene_is_that_of_its_file(tmp_path, monkeypatch):
 def test_the_job_of_the_table_gathers_the_points(found, rows, tmp_path, monkeypatch):
     paths = store(tmp_path / "points", found)
     output = tmp_path / "effects.csv"
-    words = ["table", "studies.effects.measure", "--parameters", {}, "--points", *paths]
-    assert command(monkeypatch, jobs, *words, "--output", output) == 0
+    assert make_table(monkeypatch, "effects", {}, output, "--points", *paths) == 0
     assert Effects.read(output) == rows
     assert list(dict.fromkeys(row["scene"] for row in rows)) == NAMES
 

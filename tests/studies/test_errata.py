@@ -10,13 +10,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fabricated import BOX, Laws, command, scenes, theory_rows
+from fabricated import BOX, Laws, make_table, scenes, theory_rows
 from mpmath import mp, mpf
 
 from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
-from twodiscs.pipeline import jobs
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
@@ -412,10 +411,10 @@ def test_the_table_is_written(tmp_path, monkeypatch, measured):
     paths = {name: tmp_path / f"{name}.csv" for name in measured}
     for name, path in paths.items():
         SCENE_TABLES[name].write(path, measured[name])
-    words = ["table", "studies.errata.measure", "--parameters", {"box": BOX.parameters()}]
-    words += ["--table", *(f"{name}={path}" for name, path in paths.items())]
-    assert command(monkeypatch, jobs, *words, "--output", tmp_path / "errata.csv") == 0
-    assert Errata.read(tmp_path / "errata.csv") == errata.rows(measured, BOX)
+    words = [f"{name}={path}" for name, path in paths.items()]
+    output, given = tmp_path / "errata.csv", {"box": BOX.parameters()}
+    assert make_table(monkeypatch, "errata", given, output, "--table", *words) == 0
+    assert Errata.read(output) == errata.rows(measured, BOX)
 
 
 def test_every_statement_says_where():

@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from fabricated import command
+from fabricated import make_table
 
 from twodiscs.comparison.scene_tables import MeanTimes
 from twodiscs.figures.kit import style
 from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.box import Box
 from twodiscs.model.events import SHELLS
-from twodiscs.pipeline import jobs
 from twodiscs.studies.catalogue import STUDY_FIGURES
 from twodiscs.studies.distributions.table import Distributions
 from twodiscs.studies.thresholds import figure
@@ -149,9 +148,8 @@ def run(monkeypatch, folder, box, read):
         path.parent.mkdir(exist_ok=True)
         (MeanTimes if name.endswith("mean_times") else Distributions).write(path, rows)
         words.append(f"{name}={path}")
-    given = {"scenes": {"a": box.parameters()}}
-    words = ["table", "studies.thresholds.measure", "--parameters", given, "--table", *words]
-    return command(monkeypatch, jobs, *words, "--output", folder / "thresholds.csv")
+    given, output = {"scenes": {"a": box.parameters()}}, folder / "thresholds.csv"
+    return make_table(monkeypatch, "thresholds", given, output, "--table", *words)
 
 
 def test_the_job_writes_the_table_and_the_figure_reads_it(box, read, tmp_path, monkeypatch):

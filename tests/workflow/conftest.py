@@ -16,6 +16,12 @@ def unbuilt(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def planned(unbuilt):
+    """The jobs of a checkout without results."""
+    return unbuilt.jobs()
+
+
+@pytest.fixture(scope="session")
 def complete(tmp_path_factory):
     """A checkout in which everything is built, not to be changed."""
     checkout = fresh(tmp_path_factory.mktemp("complete") / "checkout")

@@ -3,17 +3,13 @@
 import pytest
 from checkout import Checkout
 
-#: One for each of those who find mistakes: the reader, the schema, the scenes, the box, the folder.
+#: Of every place where one is found one: what each sentence says is tested where it is written.
 MISTAKES = {
-    "a key given twice": ("seed: 1\nseed: 2\n", "second time"),
     "an unknown key": ("seeed: 1\n", "unknown key 'seeed'"),
-    "a name used twice": (
-        "scenes: [{name: a, box: {width: 1, height: 1}}, {name: a, box: {width: 1, height: 2}}]\n",
-        "'a'",
-    ),
-    "a radius that does not fit": (
-        "scenes: [{name: a, box: {width: 1, height: 1}, radii: [0.4]}]\n",
-        "radius 0.4 does not fit",
+    "a key given twice": ("seed: 1\nseed: 2\n", "second time"),
+    "no room for starts": (
+        "scenes: [{name: a, box: {width: 1, height: 1}, effects: {field: 900}}]\n",
+        "needs more room",
     ),
     "results in a file": ("results: Snakefile\n", "results must be"),
 }
@@ -58,6 +54,6 @@ def test_a_file_that_cannot_be_read(unbuilt, tmp_path, own, text, said):
 
 
 def test_a_mistake_on_the_command_line(unbuilt):
-    run = unbuilt.snakemake("-n", "--config", "seed=abc", passes=False)
+    run = unbuilt.snakemake("--dry-run", "--config", "seed=abc", passes=False)
     assert run.returncode != 0
     assert "Configuration: seed must be" in run.stderr

@@ -18,8 +18,8 @@ def test_the_target_is_a_job_for_each_scene_and_what_is_made_of_them(unbuilt):
     assert jobs == sorted([*POINTS, *MADE, ("effects", ()), ("compile", ("kernels=dynamics",))])
 
 
-def test_it_is_part_of_all(unbuilt):
-    assert effects(unbuilt.jobs()) == sorted([*POINTS, *MADE])
+def test_it_is_part_of_all(planned):
+    assert effects(planned) == sorted([*POINTS, *MADE])
 
 
 def test_edit_of_a_scene_counts_that_one_again(built):

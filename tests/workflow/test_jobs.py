@@ -15,7 +15,6 @@ def expected(*jobs):
 def test_after_a_full_build_there_is_nothing_to_do(complete):
     run = complete.snakemake("--dry-run")
     assert "Nothing to be done" in run.stdout + run.stderr
-    assert complete.jobs() == []
 
 
 def test_touching_everything_reruns_nothing(built):
@@ -62,7 +61,6 @@ COUNTED = {"monte_carlo", "dynamics", "intervals", "compile", "effects_point", "
 @pytest.mark.parametrize(
     ("module", "drawn"),
     [
-        ("figures/hop_histogram.py", ("figure", SIX, "figure=hop_histogram")),
         ("figures/motion/animation.py", ("animate", SIX)),
         ("studies/tails/figure.py", ("shared_figure", "figure=tails")),
     ],
@@ -74,7 +72,7 @@ def test_edit_of_a_figure_redraws_that_figure_and_what_contains_it(built, module
     assert built.jobs() == expected(drawn, *contain)
 
 
-def test_a_source_with_an_older_time_stamp_is_seen(built):
+def test_so_does_a_source_with_an_older_time_stamp(built):
     path = "src/twodiscs/figures/hop_histogram.py"
     built.edit(path, CODE)
     os.utime(built.path / path, (1e9, 1e9))
@@ -101,9 +99,11 @@ def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
 
 def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
     built.edit("src/twodiscs/studies/tails/table.py", CODE)
-    tails = [("tails_table",), ("shared_figure", "figure=tails"), ("tails",)]
-    assert built.jobs("tails") == expected(*tails)
-    assert not COUNTED & {rule for rule, _ in built.jobs()}
+    jobs = built.jobs()
+    assert {*expected(("tails_table",), ("shared_figure", "figure=tails"))} <= {*jobs}
+    assert {rule for rule, _ in jobs} == {rule for rule, *_ in DOCUMENTS} | {
+        *("tails_table", "shared_figure"),
+    }
 
 
 def test_edit_of_a_caption_counts_nothing_again(built):
@@ -146,9 +146,8 @@ def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
 
 
 def test_another_spelling_of_a_number_reruns_nothing(built):
-    spellings = {"1e-3": "0.001", "2e7": "20000000", "height: 1.0": "height: 1"}
     text = built.configuration.read_text()
-    for old, new in spellings.items():
+    for old, new in (("1e-3", "0.001"), ("2e7", "20000000"), ("height: 1.0", "height: 1")):
         assert old in text
         text = text.replace(old, new)
     built.configuration.write_text(text)
@@ -165,8 +164,8 @@ def test_a_third_box_leaves_the_others_alone(built):
     assert len([job for job in jobs if job[0] == "dynamics"]) == 1
 
 
-def test_a_scene_that_watches_wall_times_runs_nothing_else(unbuilt):
-    jobs = [job for job in unbuilt.jobs() if WALLS in job[1]]
+def test_a_scene_that_watches_wall_times_runs_nothing_else(planned):
+    jobs = [job for job in planned if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("grid", "theory", "dynamics", "table", "figure"),
     }
@@ -175,12 +174,12 @@ def test_a_scene_that_watches_wall_times_runs_nothing_else(unbuilt):
     assert not {f"figure={name}" for name in ("mean_hop_time", "hop_histogram", "volume")} & drawn
 
 
-@pytest.mark.parametrize("name", ["volume", "mean_wall_time", "model", "hopping_trajectory"])
-def test_a_figure_is_a_target_by_its_name(unbuilt, name):
-    jobs = unbuilt.jobs(name)
-    drawn = [job for job in jobs if job[0] == "figure"]
-    scenes = [SIX, WALLS] if name in ("mean_wall_time", "model") else [SIX]
-    assert drawn == expected(*(("figure", scene, f"figure={name}") for scene in scenes))
+def test_a_figure_is_a_target_by_its_name(unbuilt):
+    scenes = {"volume": [SIX], "model": [SIX, WALLS], "mean_wall_time": [SIX, WALLS]}
+    drawn = [job for job in unbuilt.jobs(*scenes) if job[0] == "figure"]
+    assert drawn == expected(
+        *(("figure", scene, f"figure={name}") for name in scenes for scene in scenes[name])
+    )
 
 
 def test_a_drawing_needs_no_simulation(unbuilt):

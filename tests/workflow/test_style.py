@@ -1,9 +1,7 @@
-"""The Snakefiles: their format, what Snakemake's linter says of them, and the pages about them."""
+"""The Snakefiles: what Snakemake's linter says of them, and the pages about them."""
 
 import json
 import re
-import subprocess
-import sys
 
 import jsonschema
 import pytest
@@ -13,16 +11,6 @@ from checkout import REPOSITORY
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.pipeline.documents import pages
 from twodiscs.studies.catalogue import STUDIES
-
-
-def test_snakefiles_are_formatted():
-    run = subprocess.run(
-        [sys.executable, "-m", "snakefmt", "--check", "Snakefile", "workflow"],
-        cwd=REPOSITORY,
-        capture_output=True,
-        text=True,
-    )
-    assert run.returncode == 0, run.stderr
 
 
 def test_linter_only_misses_a_container(unbuilt):
