@@ -1,7 +1,6 @@
 """The grid of radii: where its points lie; keys and seeds: what they depend on."""
 
 import itertools
-import math
 
 import pytest
 from hypothesis import assume, given
@@ -75,17 +74,9 @@ def test_the_grid_scales_with_the_box():
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ((1.5, 1.0, 0.01, 0), "count must be an integer from 1 to 1000, not 0"),
-        ((1.5, 1.0, 0.01, -3), "count must be an integer from 1 to 1000, not -3"),
-        ((1.5, 1.0, 0.01, 5.0), "count must be an integer of at least 1, not 5.0"),
-        ((1.5, 1.0, 0.01, True), "count must be an integer of at least 1, not True"),
-        ((1.5, 1.0, 0.01, "5"), "count must be an integer of at least 1, not '5'"),
+        ((1.5, 1.0, 0.01, 1001), "count must be an integer from 1 to 1000, not 1001"),
         ((1.5, 1.0, 0.4, 5), "smallest must be below the largest radius"),
         ((1.5, 1.0, 0.25, 5), "smallest must not be 0.25"),
-        ((1.5, 1.0, math.nan, 5), "smallest must be a positive, finite number, not nan"),
-        ((1.5, 1.0, 0, 5), "smallest must be a positive, finite number, not 0.0"),
-        ((-1.5, 1.0, 0.01, 5), "width must be a positive, finite number, not -1.5"),
-        ((1.5, "1", 0.01, 5), "height must be a positive number, not '1'"),
     ],
 )
 def test_bad_grids_are_refused(arguments, sentence):
@@ -107,26 +98,6 @@ def test_seeds_depend_on_each_part_and_on_nothing_else():
     assert seeds[1908, "paper", "dynamics", "0.2"] == 2126172600973548450
 
 
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ((-1, "paper", "dynamics", "0.1"), "seed must be an integer from 0 to .*, not -1"),
-        ((True, "paper", "dynamics", "0.1"), "seed must be an integer of at least 0, not True"),
-        ((1.0, "paper", "dynamics", "0.1"), "seed must be an integer of at least 0, not 1.0"),
-        ((1, "paper", "magic", "0.1"), "method must be one of monte_carlo, .*, not 'magic'"),
-    ],
-)
-def test_bad_seeds_are_refused(arguments, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        stream_seed(*arguments)
-
-
-@pytest.mark.parametrize("bad", [0, -1, math.nan, "0.1", True])
-def test_what_is_no_radius_has_no_key(bad):
-    with pytest.raises(ValueError, match="radius must"):
-        key(bad)
-
-
 @given(st.floats(-6, 6).map(lambda x: 10**x), st.floats(1.01, 1e4), st.integers(2, 1000))
 def test_even_radii_are_even(smallest, ratio, count):
     largest = ratio * smallest
@@ -139,18 +110,7 @@ def test_even_radii_are_even(smallest, ratio, count):
         assert radius < 1.0100001 * largest
 
 
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        ((0.2, 0.2, 5), r"smallest must be below 0\.2, not 0\.2"),
-        ((0.1, 0.2, 0), "count must be an integer from 1 to 1000, not 0"),
-        ((0.1, 0.2, 1001), "count must be an integer"),
-        ((0.1, 0.2, 2.0), "count must be an integer"),
-        ((-0.1, 0.2, 2), "smallest must be a positive"),
-        ((0.1, math.inf, 2), "largest must be a positive"),
-    ],
-)
-def test_even_radii_that_make_no_sense(arguments, sentence):
+def test_one_even_radius_is_the_smallest_and_there_may_not_be_too_many():
     assert even_radii(0.1, 0.2, 1) == (0.1,)
-    with pytest.raises(ValueError, match=sentence):
-        even_radii(*arguments)
+    with pytest.raises(ValueError, match="count must be an integer from 1 to 1000, not 1001"):
+        even_radii(0.1, 0.2, 1001)

@@ -130,28 +130,6 @@ def test_no_hits_where_rejection_is_hopeless():
     assert point["quantities"]["volume"]["hits"] == 0
 
 
-@pytest.mark.parametrize(
-    ("quantities", "samples", "shell", "seed"),
-    [
-        ([], 1, 0.02, 1),
-        (["mass"], 1, 0.02, 1),
-        (["volume"], 0, 0.02, 1),
-        (["volume"], 1.5, 0.02, 1),
-        (["volume"], "1e6", 0.02, 1),
-        (["volume"], True, 0.02, 1),
-        (["volume"], 1, 0.0, 1),
-        (["volume"], 1, 1.0, 1),
-        (["volume"], 1, math.nan, 1),
-        (["volume"], 1, "thin", 1),
-        (["volume"], 1, 0.02, -1),
-        (["volume"], 1, 0.02, 2**64),
-    ],
-)
-def test_bad_requests_are_refused(quantities, samples, shell, seed):
-    with pytest.raises(ValueError, match="must"):
-        montecarlo.sample_point(PAPER, quantities, samples, shell, seed)
-
-
 # Scenes with effects ----------------------------------------------------------------------------
 
 #: Blocked hops, discs that hardly fit, a large disc that passes nowhere but reaches all walls, and
