@@ -6,12 +6,12 @@ from collections import Counter
 import mpmath
 import numpy as np
 import pytest
+from dynamics.rates import check_rates
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from twodiscs.dynamics import counting, trajectory
-from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -26,7 +26,6 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import components, states
-from twodiscs.theory import exact
 
 EPS = 2.0**-52
 SCENES = {
@@ -175,15 +174,8 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
 
 @counted_scene
 def test_counts_have_the_exact_rates(name):
-    """Walls with all that symmetry makes equal; five sigma."""
-    scene, blocks = SCENES[name], 8
-    duration, times = counting.replica_duration(scene), exact.mean_times(scene)
-    sums, products = counting.run_blocks(scene, EVENTS, 6, 0, blocks, duration)
-    errors = relative_errors(sums, products, blocks * REPLICAS)
-    for event in scene.events:
-        total, error = (found[EVENTS.index(event)] for found in (sums, errors))
-        expected = scene.copies(event) * duration / times[event] * blocks * REPLICAS
-        assert abs(total - expected) <= 5 * error * total, event
+    """Walls with all that symmetry makes equal."""
+    check_rates(SCENES[name], seed=6, blocks=8)
 
 
 @every_scene
