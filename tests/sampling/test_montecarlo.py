@@ -47,17 +47,6 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
         assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
 
 
-def test_estimates_tend_to_the_areas():
-    """With a thin shell the estimate is the area itself, gradient factor and sides included."""
-    point = montecarlo.sample_point(PAPER, EVERYTHING, 64 * montecarlo.BLOCK, 1e-3, 5)
-    areas = exact.areas(PAPER)
-    for event in SHELLS:
-        sampled = point["quantities"][f"{event}_area"]
-        estimate = sampled["measure"] * sampled["hits"] / point["samples"]
-        # Five standard errors and the bias, which is of the order of ε over the room.
-        assert abs(estimate / areas[event] - 1) <= 5 / math.sqrt(sampled["hits"]) + 2e-3
-
-
 def test_blocks_add_up_and_are_independent_of_company():
     # Squares of separations, then grains of the places of disc 1 at the walls.
     ends = (2e-4, 2e-4, 0.42**2, *(2**32 - 2**26 for _ in WALLS))
@@ -108,14 +97,6 @@ def test_shells_scale_with_the_room(share):
     for hop, limit in zip(HOPS, (0.375, 0.25), strict=True):
         epsilon = montecarlo.shell_thickness(scene, hop, 0.02)
         assert epsilon == 0.02 * min(scene.radius, abs(limit - scene.radius))
-
-
-def test_a_blocked_hop_has_no_hits():
-    for radius in (0.2501, 0.3, 0.38):
-        scene = PAPER.with_radius(radius)
-        point = montecarlo.sample_point(scene, ["horizontal_hop_area"], SAMPLES, 0.5, 1)
-        assert point["quantities"]["horizontal_hop_area"]["hits"] == 0
-        assert point["quantities"]["horizontal_hop_area"]["epsilon"] > 0
 
 
 def test_a_radius_on_the_threshold_has_a_shell():
@@ -170,18 +151,6 @@ def test_weighted_hits_have_their_exact_probability(scene, shell):
         event = quantity.removesuffix("_area")
         expected = exact.shell_expectation(scene, event, sampled["epsilon"])
         assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
-
-
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_weighted_estimates_tend_to_the_areas(scene):
-    point = montecarlo.sample_point(scene, everything(scene), 4 * montecarlo.BLOCK, 0.02, 6)
-    areas = exact.areas(scene)
-    for event in scene.events:
-        sampled = point["quantities"][f"{event}_area"]
-        estimate = sampled["measure"] * sampled["hits"] / point["samples"]
-        if scene.is_possible(event):
-            # Five standard errors and the bias, which is of the order of ε over the room.
-            assert abs(estimate / areas[event] - 1) <= 5 / math.sqrt(sampled["hits"]) + 0.03
 
 
 #: Of one block of each scene with the seed 9: volume, then hops, collisions and three walls.

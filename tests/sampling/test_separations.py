@@ -13,13 +13,8 @@ from scipy.special import chdtrc
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.separations import (
-    draw_configuration,
-    draw_constants,
-    draw_crossing,
-    draw_separation,
-    draw_velocity,
-)
+from twodiscs.sampling.separations import draw_constants, draw_crossing, draw_separation
+from twodiscs.sampling.starts import states
 from twodiscs.sampling.streams import open_stream
 
 JAM = Box(1.5, 1.0).largest_radius
@@ -42,26 +37,6 @@ def separations(seed, draw, n):
     found = np.empty((3, n))
     for i in range(n):
         found[0, i], found[1, i], found[2, i] = draw_separation(state, draw)
-    return found
-
-
-@compiled
-def configurations(seed, draw, side_x, side_y, n):
-    state = open_stream(seed, 0)
-    found = np.empty((4, n))
-    for i in range(n):
-        found[0, i], found[1, i], found[2, i], found[3, i] = draw_configuration(
-            state, draw, side_x, side_y
-        )
-    return found
-
-
-@compiled
-def velocities(seed, n):
-    state = open_stream(seed, 0)
-    found = np.empty((4, n))
-    for i in range(n):
-        found[0, i], found[1, i], found[2, i], found[3, i] = draw_velocity(state)
     return found
 
 
@@ -158,7 +133,7 @@ def test_a_quarter_of_the_proposals_is_accepted_at_least(width, height, radius):
 def test_components_are_chosen(radius, sides):
     scene = Scene(1.5, 1.0, radius)
     n = 20_000
-    x1, y1, x2, y2 = configurations(np.uint64(5), draw_constants(scene), *sides, n)
+    x1, y1, x2, y2 = states(scene, n, 5, sides=sides)[:4]
     for side, difference in zip(sides, (x1 - x2, y1 - y2), strict=True):
         above = np.count_nonzero(difference > 0)
         if side:
@@ -177,7 +152,7 @@ def test_configurations_are_those_of_rejection(radius):
     """Single coordinates and their mutual moments against plain rejection by numpy."""
     scene = Scene(1.5, 1.0, radius)
     n = 200_000
-    drawn = configurations(np.uint64(8), draw_constants(scene), 0, 0, n)
+    drawn = states(scene, n, 8)[:4]
     rng = np.random.default_rng(8)
     half = np.array([scene.range_x, scene.range_y, scene.range_x, scene.range_y]) / 2
     plain = rng.uniform(-half, half, (20 * n, 4)).T
@@ -200,7 +175,7 @@ def test_configurations_are_those_of_rejection(radius):
 
 def test_velocities_are_uniform_on_the_sphere():
     """Each component n has density ∝ √(1 − n²); squares of pairs are uniform; no correlations."""
-    v = velocities(np.uint64(2), 100_000)
+    v = states(Scene(1.5, 1.0, 0.2), 100_000, 2)[4:8]
     assert np.max(np.abs(np.sum(v**2, axis=0) - 1)) < 8 * 2.0**-52
     for n in v:
         assert_uniform((np.arcsin(n) + n * np.sqrt(1 - n**2)) / math.pi + 0.5)

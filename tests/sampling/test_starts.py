@@ -200,13 +200,6 @@ def test_rows_that_a_scene_has_no_use_for_are_zero(scene):
             assert not np.any(found[used:])
 
 
-@pytest.mark.parametrize("sides", [(0, 0), (1, 0), (-1, 0), (0, -1), (1, 1), (-1, 1)])
-def test_sides_choose_the_component_of_a_plain_scene(sides):
-    x1, y1, x2, y2 = states(Scene(1.5, 1.0, 0.3), 400, 5, sides=sides)[:4]
-    for side, difference in zip(sides, (x1 - x2, y1 - y2), strict=True):
-        assert set(np.sign(difference)) == ({side} if side else {-1, 1})
-
-
 def test_a_start_on_the_surface_of_a_plain_scene_is_a_crossing():
     draw = draw_constants(PLAIN)
     state = open_stream(np.uint64(17), 0)

@@ -185,6 +185,11 @@ def test_only_plain_scenes_have_closed_forms_and_limits(function):
         function(UNEQUAL)
 
 
+def test_false_is_no_radius_of_small_discs():
+    with pytest.raises(ValueError, match=r"^radius must "):
+        small_radius_time(Box(1, 1), "any_wall", radius=False)
+
+
 @pytest.mark.parametrize("law", [small_radius_time, leading_law])
 def test_only_plain_boxes_have_limits(law):
     with pytest.raises(ValueError, match=r"must be plain .* it has radius_ratio, field"):

@@ -41,7 +41,7 @@ def test_density_at_zero_is_that_of_one_bounce(box):
 
 
 def test_tail_constants_of_blocked_drifts():
-    """Their size is measured in test_py; here are the symmetries and what is blocked."""
+    """The study of tails measures their size; here are the symmetries and what is blocked."""
     assert tail_constant(GOOD, "horizontal_hop") is None
     assert tail_constant(GOOD, "vertical_hop") == 0.0
     assert tail_constant(Scene(*PAPER, 0.38), "disc_collision") == 0.0

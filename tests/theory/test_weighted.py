@@ -579,7 +579,7 @@ def test_flux(scene):
         assert abs(found - expected) <= 5 * error, event
 
 
-@pytest.mark.parametrize("scene", [SCENES[7], SCENES[3], FLUXES[-1]], ids=repr)
+@pytest.mark.parametrize("scene", [SCENES[7], SCENES[3], FLUXES[5], FLUXES[-1]], ids=repr)
 def test_shells_tend_to_areas(scene):
     """The bias of a shell goes down with its thickness, for some hops with its square."""
     for event in scene.events:
