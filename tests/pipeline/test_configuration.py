@@ -72,13 +72,6 @@ def test_the_draft_is_a_quick_look_at_the_same_scenes():
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
 
 
-def test_the_module_prints_that_page():
-    command = [sys.executable, "-m", "twodiscs.pipeline.configuration.schema"]
-    assert subprocess.run(command, capture_output=True, check=True).stdout.decode() == (
-        schema.document()
-    )
-
-
 # The schema
 
 

@@ -86,8 +86,7 @@ def document():
         "",
         schema()["description"],
         "",
-        "This page is made by"
-        " `python -m twodiscs.pipeline.configuration.schema > config/README.md`.",
+        "This page is made by `python -m twodiscs.pipeline.documents.pages`.",
     ]
     lines += _section(schema(), "")
     return "\n".join(lines) + "\n"
@@ -119,7 +118,3 @@ def _default(node, required):
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     return f"`{str(value).lower() if isinstance(value, bool) else value}`"
-
-
-if __name__ == "__main__":
-    print(document(), end="")
