@@ -40,6 +40,9 @@ rule mine:
         "cp {{input}} {{output}}"
 """
 
+#: For a module whose files are in a folder of their own.
+BELOW = 'config:\n        config["discs"]\n    prefix:\n        "below"'
+
 
 def first(sources):
     """Return where Python looks for modules: in ``sources`` before all other places."""

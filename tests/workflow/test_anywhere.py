@@ -9,7 +9,7 @@ import shutil
 
 import pytest
 import yaml
-from checkout import Checkout, fresh, use
+from checkout import BELOW, Checkout, fresh, use
 
 TINY = {
     "shared": ["errata", "report"],
@@ -112,7 +112,7 @@ def test_as_a_module_it_does_the_same_jobs(own, tmp_path, prefix):
 @pytest.mark.slow
 def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     place = Checkout(tmp_path, own.home)
-    use(place, TINY, "discs_", 'config:\n        config["discs"]\n    prefix:\n        "below"')
+    use(place, TINY, "discs_", BELOW)
     place.snakemake("--cores", "2", "--", "discs_all", "mine.txt")
     assert manifest(place, "below/results") == manifest(own)
     assert {*place.results("below/results")} == {*own.results()}

@@ -72,7 +72,7 @@ def test_edit_of_a_figure_redraws_that_figure_and_what_contains_it(built, module
     assert built.jobs() == expected(drawn, *contain)
 
 
-def test_so_does_a_source_with_an_older_time_stamp(built):
+def test_a_figure_whose_edited_source_has_an_older_time_stamp_is_drawn_again(built):
     path = "src/twodiscs/figures/hop_histogram.py"
     built.edit(path, CODE)
     os.utime(built.path / path, (1e9, 1e9))

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from checkout import Checkout, use
+from checkout import BELOW, Checkout, use
 
 TINY = {
     "shared": [],
@@ -99,6 +99,6 @@ def test_as_a_module_shards_are_found_below_a_prefix(unbuilt, tmp_path):
     change(alone)
     place = Checkout(tmp_path / "other", unbuilt)
     place.path.mkdir()
-    use(place, TINY, "discs_", 'config:\n        config["discs"]\n    prefix:\n        "below"')
+    use(place, TINY, "discs_", BELOW)
     place.snakemake("--cores", "2", "--", f"below/{TABLE}")
     assert (place.path / "below" / TABLE).read_bytes() == build(alone)[0]

@@ -114,7 +114,7 @@ def study_table(table):
     """Return the file of a table of a study, with its place in the report; the errata say more."""
     name = table.name()
     return report(
-        ensure(f"{RESULTS}/{name}.csv", non_empty=True),
+        ensure(FILES.table(name), non_empty=True),
         caption=f"../report/{'errata' if name == 'errata' else 'shared_table'}.rst",
         category="Tables",
         subcategory="all scenes",

@@ -25,7 +25,7 @@ if MAIN:
                 for scene in CONFIGURATION.plain
                 for path in FILES.tables(scene).values()
             ],
-            shared=[f"{RESULTS}/{name}.csv" for name in shared_tables()],
+            shared=[FILES.table(name) for name in shared_tables()],
             drawn=[f"{RESULTS}/figures/{name}.pdf" for name in STUDY_FIGURES],
         output:
             pdf=report(

@@ -4,7 +4,7 @@
 
 rule table:
     input:
-        tables=lambda w: FILES.tables_beside(w.scene, w.table).values(),
+        tables=lambda w: FILES.tables_beside(SCENES[w.scene], w.table).values(),
         points=lambda w: FILES.points(SCENES[w.scene], w.table),
     output:
         table=report(
@@ -25,7 +25,7 @@ rule table:
         about=lambda w: about(w.scene),
         job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
         tables=lambda w, input: named_tables(
-            FILES.tables_beside(w.scene, w.table), input.tables
+            FILES.tables_beside(SCENES[w.scene], w.table), input.tables
         ),
         points=lambda w, input: str(Path(input.points[0]).parents[2]),
         code=lambda w: table_code("comparison.gather", SCENE_TABLES[w.table]),

@@ -39,6 +39,10 @@ class Files:
         """``built`` is where they are: whoever uses the workflow as a module may prefix them."""
         self.configuration, self.folder, self.built = configuration, configuration.results, built
 
+    def table(self, name, scene=None):
+        """Return the path of a table of a ``scene``, its name, or of one that belongs to none."""
+        return "/".join(filter(None, (self.folder, scene, f"{name}.csv")))
+
     def compiled(self, scene, stage):
         """Return the stamp that says that the kernels of a stage are compiled for a scene."""
         if scene.effects:
@@ -56,14 +60,14 @@ class Files:
 
     def tables(self, scene):
         """Return {name: path} of the tables that a scene calls for."""
-        return {name: f"{self.folder}/{scene.name}/{name}.csv" for name in scene.tables}
+        return {name: self.table(name, scene.name) for name in scene.tables}
 
     def tables_beside(self, scene, table):
         """Return {name: path} of what a table needs besides; of a forecast, if there is one."""
         if table != "cost":
-            return {"theory": f"{self.folder}/{scene}/theory.csv"}
+            return {"theory": self.table("theory", scene.name)}
         there = os.path.exists(f"{self.built}/forecast.csv")
-        return {"forecast": f"{self.folder}/forecast.csv"} if there else {}
+        return {"forecast": self.table("forecast")} if there else {}
 
     def figures(self, scene):
         """Return {name: (PDF, PNG)} of the figures that a scene calls for."""
@@ -82,22 +86,21 @@ class Files:
     def study(self, name):
         """Return the tables of a study and its figures, as PDF and as PNG."""
         study = STUDIES[name]
-        found = [f"{self.folder}/{table.name()}.csv" for table in study.tables]
+        found = [self.table(table.name()) for table in study.tables]
         return [*found, *(_drawn(f"{self.folder}/figures/{figure}") for figure in study.figures)]
 
     def study_reads(self, study):
         """Return {name: path} of the tables that a study reads."""
         return {
-            name: f"{self.folder}/{scene}/{table}.csv" if scene else f"{self.folder}/{table}.csv"
+            name: self.table(table, scene)
             for name, (scene, table) in study.reads(self.configuration).items()
         }
 
     def figure_reads(self, entry, scene=None):
         """Return {name: path} of the tables that a figure reads; ``scene`` is a name, or None."""
-        folder = f"{self.folder}/{scene}" if scene else self.folder
         main = self.configuration.main
         of_main = self.tables(main) if main else {}
-        found = {name: f"{folder}/{name}.csv" for name in entry.tables}
+        found = {name: self.table(name, scene) for name in entry.tables}
         return found | {name: of_main[name] for name in entry.main_tables if name in of_main}
 
     def manuscript(self, results):
