@@ -132,11 +132,19 @@ MUTANTS = {
 
 def tests(package, *targets):
     """Run pytest on the ``package`` in a folder; return the test that failed first, or None."""
-    environment = os.environ | {"PYTHONPATH": str(package), "XDG_CACHE_HOME": str(package / "cache")}
+    environment = os.environ | {
+        "PYTHONPATH": str(package),
+        "XDG_CACHE_HOME": str(package / "cache"),
+    }
     command = [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", "--tb=no", *targets]
     try:
         run = subprocess.run(
-            command, cwd=REPOSITORY, env=environment, capture_output=True, text=True, timeout=PATIENCE
+            command,
+            cwd=REPOSITORY,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
         )
     except subprocess.TimeoutExpired:
         return "a run without an end"
@@ -179,7 +187,10 @@ def main(words):
             caught |= {failed} if failed and "::" in failed else set()
             verdict = f"by {failed}" if failed else ""
             seconds = time.monotonic() - begun
-            print(f"{'caught   ' if failed else 'SURVIVED '}  {file}: {what} ({seconds:.0f} s) {verdict}", flush=True)
+            print(
+                f"{'caught   ' if failed else 'SURVIVED '}  {file}: {what} ({seconds:.0f} s) {verdict}",
+                flush=True,
+            )
         false = tests(package, *sorted(caught)) if caught else None
     print(f"{len(wanted) - survived} of {len(wanted)} caught")
     sys.exit(f"{false} fails without a mutant" if false else survived)
