@@ -610,7 +610,7 @@ def test_every_key_refuses_what_is_of_no_kind_or_out_of_range(path, node, requir
             node[end] + beyond * max(1, node[end]) for end, beyond in ends.items() if end in node
         ]
     for value in mistakes:
-        with pytest.raises(load.ConfigError, match=" must |unknown key|needs the key") as caught:
+        with pytest.raises(load.ConfigError, match=r" must |unknown key|needs the key") as caught:
             load.load(with_value(path, value))
         sentence = str(caught.value)
         assert sentence.startswith(path.lstrip(".").replace("[]", "[0]")), sentence
@@ -648,6 +648,28 @@ def test_effects_that_make_no_sense_get_a_sentence(tmp_path, lines, expected):
     block |= {line.split(":")[0]: line for line in lines}
     text = "scenes:\n  - " + "\n    ".join(block.values()) + "\n"
     assert agrees(refusal(tmp_path / "bad.yaml", text), f"scenes[0]{expected} (scene 'one')")
+
+
+def nested(value, depth):
+    """Return YAML of a list in a list …, six of them in each."""
+    return value if depth == 0 else f"[{', '.join([nested(value, depth - 1)] * 6)}]"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"seed: {nested('a' * 30, 5)}\nscenes: [{{name: one, box: {{width: 1, height: 1}}}}]",
+        f"scenes: [{{name: {nested('a' * 30, 5)}, box: 1}}]",
+        nested("a", 5),
+        "a: *" + "b" * 70_000,
+        "a: !" + "b" * 70_000 + " 1",
+        "? " + "a" * 1000 + "\n: 1",
+    ],
+    ids="{:.30}".format,
+)
+def test_sentences_have_an_end(tmp_path, text):
+    """However much there is to quote."""
+    assert len(refusal(tmp_path / "bad.yaml", text)) < 1100
 
 
 def test_two_scenes_of_one_name_are_refused():
