@@ -1,110 +1,115 @@
-# What is found at each radius: exact values, Monte Carlo, molecular dynamics. The radii follow from the
-# configuration alone, so they are known before any job runs.
+# What is found at each radius: exact values, Monte Carlo, molecular dynamics. A radius is a job; where
+# it is more work than one job should do it is the sum of shards, which are jobs too.
 
 
-for name in ("grid", "theory"):
-
-    rule:
-        name:
-            name
-        output:
-            table=ensure(f"{RESULTS}/{{scene}}/{name}.csv", non_empty=True),
-        log:
-            log_of(f"{{scene}}/{name}"),
-        benchmark:
-            benchmark_of(f"{{scene}}/{name}")
-        params:
-            about=lambda w: about(w.scene, None),
-            job=lambda w, name=name: as_json(SCENES[w.scene].exact_job(name)),
-            function=f"{name}_rows",
-            code=table_code("theory.exact", SCENE_TABLES[name]),
-        shell:
-            "python -m twodiscs.pipeline.jobs table theory.exact --function {params.function}"
-            " --parameters {params.job:q} --output {output.table:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
-
-# Kernels are compiled once, before the jobs that share them start side by side: those of the box without
-# effects for every choice of what is watched, those of a scene with effects for what it watches.
-
-
-rule compile:
+rule exact:
+    """Exact values at all radii of a scene: which regime each is in, volume, areas, mean times."""
     output:
-        stamp=f"{RESULTS}/.compiled/{{kernels}}",
+        table=f"{RESULTS}/{{scene}}/{{table}}.csv",
     log:
-        log_of("compile-{kernels}"),
+        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
     benchmark:
-        benchmark_of("compile-{kernels}")
+        f"{RESULTS}/benchmarks/{{scene}}/{{table}}.tsv"
+    wildcard_constraints:
+        table="grid|theory",
+    localrule: True
     params:
-        modules=lambda w: ",".join(KERNELS[w.kernels]),
-        code=lambda w: code(*KERNELS[w.kernels]),
+        box=box,
+        radii=lambda w: word(SCENES[w.scene].exact_radii(w.table)),
+        code=code("pipeline.jobs.table", "comparison.tables.exact"),
     shell:
-        "python -m twodiscs.pipeline.jobs kernels {params.modules} --output {output.stamp:q}"
-        " > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --radii {params.radii}"
+        " --output {output.table} > {log} 2>&1"
 
 
-rule compile_effects:
-    output:
-        stamp=f"{RESULTS}/.compiled/{{scene}}/{{stage}}",
-    log:
-        log_of("{scene}/compile-{stage}"),
-    benchmark:
-        benchmark_of("{scene}/compile-{stage}")
-    params:
-        job=lambda w: as_json(SCENES[w.scene].kernels(w.stage)),
-        module=lambda w: STAGES[w.stage],
-        code=lambda w: code(STAGES[w.stage]),
-    shell:
-        "python -m twodiscs.pipeline.jobs kernels {params.module} --parameters {params.job:q}"
-        " --output {output.stamp:q} > {log:q} 2>&1"
+def shards_of(stage):
+    """Return an input function: the shards of a point of a stage, none where one job does it all."""
+
+    def files(w):
+        folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
+        pieces = cost.shards(SCENES[w.scene], stage, float(w.radius))
+        return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
+
+    return files
 
 
-# A job does a bundle of points, or a single one. Points are no outputs, which Snakemake would remove before the
-# job starts: those that are there stay, unless the job is forced.
+def argument(stage, name):
+    """Return a function of the wildcards: an argument of the job of a stage at a radius."""
+    return lambda w: word(SCENES[w.scene].arguments(stage, w.radius)[name])
 
 
-for stage, module in STAGES.items():
+# The module of each stage is imported by its own jobs alone.
+POINT = {
+    stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
+    for stage, module in STAGES.items()
+}
+
+for stage, does, names in (
+    ("monte_carlo", "Sample volume and areas", ("quantities", "samples", "shell")),
+    ("dynamics", "Count events by molecular dynamics", ("target", "budget")),
+    ("intervals", "Record intervals between hops", ("event", "intervals", "budget")),
+):
 
     rule:
         name:
             stage
+        message:
+            does + " at the radius {wildcards.radius} of {wildcards.scene}."
         input:
-            compiled=lambda w, stage=stage: FILES.compiled(SCENES[w.scene], stage),
+            shards=shards_of(stage),
         output:
-            bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
+            point=f"{RESULTS}/{{scene}}/points/{stage}/{{radius}}.json",
         log:
-            log_of(f"{{scene}}/{stage}-{{bundle}}"),
+            f"{RESULTS}/logs/{{scene}}/{stage}/{{radius}}.log",
         benchmark:
-            benchmark_of(f"{{scene}}/{stage}-{{bundle}}")
-        wildcard_constraints:
-            scene=one_of(s.name for s in SCENES.values() if not s.is_sharded(stage)),
+            f"{RESULTS}/benchmarks/{{scene}}/{stage}/{{radius}}.tsv"
         resources:
             runtime=minutes(stage),
         params:
-            about=lambda w: about(w.scene),
-            job=lambda w, stage=stage: as_json(
-                SCENES[w.scene].bundle_job(stage, w.bundle)
-            ),
-            module=module,
-            code=code(module),
+            box=box,
+            **{name: argument(stage, name) for name in names},
+            seed=argument(stage, "seed"),
+            shards=lambda w, input: braced(input.shards),
+            code=POINT[stage],
         shell:
-            "python -m twodiscs.pipeline.jobs bundle {params.module} --parameters {params.job:q}"
-            " --output {output.bundle:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+            f"python -m twodiscs.pipeline.jobs.point {stage} {{params.box}} --radius {{wildcards.radius}}"
+            + "".join(f" --{name} {{params.{name}}}" for name in (*names, "seed"))
+            + " --shards {params.shards} --output {output.point} > {log} 2>&1"
+
+
+rule shard:
+    """Do some blocks of the work of a point. Which accuracy is asked for is of no consequence to it."""
+    output:
+        shard=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
+    log:
+        f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.tsv"
+    resources:
+        runtime=minutes(),
+    params:
+        box=box,
+        work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
+        code=lambda w: POINT[w.stage],
+    shell:
+        "python -m twodiscs.pipeline.jobs.point {wildcards.stage} {params.box} --radius {wildcards.radius}"
+        " {params.work} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
+        " --output {output.shard} > {log} 2>&1"
 
 
 rule trajectory:
+    """Follow one trajectory, event by event."""
     output:
-        table=ensure(f"{RESULTS}/{{scene}}/trajectory.csv", non_empty=True),
+        table=f"{RESULTS}/{{scene}}/trajectory.csv",
     log:
-        log_of("{scene}/trajectory"),
+        f"{RESULTS}/logs/{{scene}}/trajectory.log",
     benchmark:
-        benchmark_of("{scene}/trajectory")
+        f"{RESULTS}/benchmarks/{{scene}}/trajectory.tsv"
     params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
-        code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
+        box=box,
+        radius=lambda w: SCENES[w.scene].watch.trajectory,
+        seed=lambda w: SCENES[w.scene].trajectory_seed,
+        code=code("pipeline.jobs.table", "comparison.tables.trajectory"),
     shell:
-        "python -m twodiscs.pipeline.jobs table dynamics.trajectory --parameters {params.job:q}"
-        " --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs.table trajectory {params.box} --radius {params.radius}"
+        " --seed {params.seed} --output {output.table} > {log} 2>&1"

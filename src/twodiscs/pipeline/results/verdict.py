@@ -1,4 +1,13 @@
-"""What the check tables of all scenes say together; read by a job that imports no NumPy."""
+"""What the check tables of all scenes say together.
+
+    python -m twodiscs.pipeline.results.verdict results/paper/check.csv … --output check.passed
+"""
+
+import sys
+from pathlib import Path
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.pipeline.arguments import Parser, run
 
 
 def failure(scene, row):
@@ -32,3 +41,22 @@ def verdict(tables):
         if row["passed"] is False
     ]
     return failures, "".join(f"{summary(scene, rows)}\n" for scene, rows in tables.items())
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.results.verdict", description=__doc__.split("\n")[0])
+    parser.add_argument("tables", nargs="*", type=Path, metavar="CSV", help="check.csv of scenes")
+    parser.add_argument("--output", required=True, type=Path, metavar="FILE")
+    options = parser.parse_args()
+    tables = {path.parent.name: SCENE_TABLES["check"].read(path) for path in options.tables}
+    failures, text = verdict(tables)
+    if failures:
+        print("\n".join(failures), file=sys.stderr)
+        return 1
+    print(text, end="")
+    options.output.write_text(text, encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    run(main)

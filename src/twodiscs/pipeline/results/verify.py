@@ -20,7 +20,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.results.manifest import digest
+from twodiscs.pipeline.results.digests import digest, read_json
 from twodiscs.studies.catalogue import STUDY_TABLES
 
 TABLES = SCENE_TABLES | STUDY_TABLES
@@ -127,9 +127,9 @@ def read_points(folder):
     """
     try:
         paths = sorted(Path(folder).glob("*.json"), key=lambda path: float(path.stem))
-        return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
     except ValueError as error:
         raise InputError(f"{folder} must hold points alone: {error}") from None
+    return {path.stem: read_json(path) for path in paths}
 
 
 # Comparison -----------------------------------------------------------------------------------
