@@ -23,8 +23,9 @@ from typing import NamedTuple
 import numpy as np
 from mpmath import mp
 
-from twodiscs.comparison.estimates import Line
-from twodiscs.comparison.rows import mean_time_rows
+from twodiscs.comparison.estimates import LinearFit
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.box import Box
@@ -403,10 +404,10 @@ def summary(one, quantity, work, results):
 
 
 def fitted(x, y, error=None):
-    """Return (slope, its standard error) of a ``Line``, None for what two points do not tell."""
+    """Return (slope, its standard error) of a ``LinearFit``, None for what two points do not tell."""
     if len(x) < 2:
         return None, None
-    slope = Line(x, y, error).slope
+    slope = LinearFit(x, y, error).slope
     return slope.value, slope.stderr or None
 
 
@@ -551,9 +552,9 @@ def by_radius(scale):
             start = time.process_time()
             point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
-            true = exact.mean_times(scene)[event]
-            (found,) = mean_time_rows(scene, {(radius, f"{event}_time"): true}, [point])
-            bias = found["estimate"] / true - 1
+            box = Box.of(scene)
+            (mean,) = MeanTimes.rows(box, Theory.rows(box, [radius]), {"dynamics": [point]})
+            bias = mean["estimate"] / mean["exact"] - 1
             yield row(
                 "radius", f"{event}_time", radius, "paid",
                 work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,
