@@ -206,8 +206,8 @@ def mean_time(total, squares, replicas, duration, mean=None):
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can see the event, each of
     length ``duration`` = T. The relative error of the time is that of the mean count; ``mean``, if
-    given, is that count and its error as known better than from these sums. When ``has_error_bar`` says
-    no, the error is not to be shown.
+    given, is that count and its error as known better than from these sums. The error is to be
+    shown only where they have one (``has_error_bar``).
     """
     total, squares, replicas = moments_of(total, squares, whole("replicas", replicas, 2))
     duration = real("duration", duration)

@@ -27,7 +27,6 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.stability.table import Stability
 from twodiscs.theory import exact, laws
 from twodiscs.theory.reference import DIGITS, exact_numbers
 
@@ -82,21 +81,21 @@ SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 REPETITIONS = 1600
 
 
-def row(part, quantity, case, value, **more):
-    """Return a row of stability.csv; ``more`` are other columns, which are empty otherwise.
+def row(part, quantity, case, value, low=None, high=None, z=None, **more):
+    """Return the columns of a row of stability.csv that are not empty, and the bounds.
 
     It has ``passed`` if the value is within ``low`` and ``high`` and |z| ≤ 5, as far as they are
     given; without any of them, or without a value, nothing is said.
     """
-    columns = Stability.empty(part=part, quantity=quantity, case=case, value=value) | more
-    low, high, z = columns["low"], columns["high"], columns["z"]
+    passed = None
     if value is not None and any(asked is not None for asked in (low, high, z)):
-        columns["passed"] = (
+        passed = (
             (low is None or value >= low)
             and (high is None or value <= high)
             and (z is None or abs(z) <= LARGEST_Z)
         )
-    return columns
+    columns = {"part": part, "quantity": quantity, "case": case, "value": value, **more}
+    return columns | {"low": low, "high": high, "z": z, "passed": passed}
 
 
 def other_seed(seed, i):
