@@ -79,10 +79,10 @@ def _seed(command):
 def _exact(scene, options):
     numbers = twodiscs.exact(scene)
     if options.csv:
+        from twodiscs.comparison.tables.exact import Theory
         from twodiscs.model.box import Box
-        from twodiscs.theory.exact import theory_rows
 
-        _print_csv(theory_rows(Box.of(scene), [scene.radius]))
+        _print_csv(Theory.rows(Box.of(scene), [scene.radius]))
     elif options.json:
         _print_json(numbers)
     else:

@@ -15,7 +15,7 @@ from twodiscs.theory import virial
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
-HONEST = 100
+MIN_EVENTS = 100
 
 #: Allowance for clusters where events are rare: a replica that sees any sees at most so many in the
 #: mean. A hop through a narrow gap may be undone soon: just below the thresholds of boxes from
@@ -103,7 +103,7 @@ def mean_of(values):
     return [Estimate(float(m), float(e), n) for m, e in zip(means, errors, strict=True)]
 
 
-class Line:
+class LinearFit:
     """The straight line through values ``y`` over ``x``, by least squares.
 
     ``errors`` are the standard errors of ``y``, one for all or one for each; without them the
@@ -196,9 +196,9 @@ def effective_count(total, squares, replicas):
     return total**2 * (replicas - 1) / spread if spread else 0.0
 
 
-def is_honest(total, squares, replicas):
+def has_error_bar(total, squares, replicas):
     """Say whether the replicas carry an error bar: 100 of them, and 100 effective events."""
-    return effective_count(total, squares, replicas) >= HONEST and replicas >= HONEST
+    return effective_count(total, squares, replicas) >= MIN_EVENTS and replicas >= MIN_EVENTS
 
 
 def mean_time(total, squares, replicas, duration, mean=None):
@@ -206,8 +206,8 @@ def mean_time(total, squares, replicas, duration, mean=None):
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can see the event, each of
     length ``duration`` = T. The relative error of the time is that of the mean count; ``mean``, if
-    given, is that count and its error as known better than from these sums. When ``is_honest`` says
-    no, the error is not to be shown.
+    given, is that count and its error as known better than from these sums. The error is to be
+    shown only where they have one (``has_error_bar``).
     """
     total, squares, replicas = moments_of(total, squares, whole("replicas", replicas, 2))
     duration = real("duration", duration)

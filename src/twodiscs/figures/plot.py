@@ -3,7 +3,7 @@
 from importlib import import_module
 from operator import attrgetter
 
-from twodiscs.comparison.results import Intervals, Measurements, the_scene
+from twodiscs.comparison.measurements import Intervals, Measurements, the_scene
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box

@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from twodiscs.comparison.tables.exact import Theory
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
-from twodiscs.theory.exact import theory_rows
 
 #: Closest approach to the limits of a regime, over its length.
 CLOSEST = 1e-9
@@ -53,7 +53,7 @@ def exact(box, others=()):
     for branch in branches(box, others):
         for radius in map(float, branch):
             radii.append(radius)
-            rows.append({row["quantity"]: row["exact"] for row in theory_rows(box, [radius])})
+            rows.append({row["quantity"]: row["exact"] for row in Theory.rows(box, [radius])})
         radii.append(np.nan)
         rows.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]

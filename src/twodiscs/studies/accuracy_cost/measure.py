@@ -23,8 +23,9 @@ from typing import NamedTuple
 import numpy as np
 from mpmath import mp
 
-from twodiscs.comparison.estimates import Line
-from twodiscs.comparison.rows import mean_time_rows
+from twodiscs.comparison.estimates import LinearFit
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.box import Box
@@ -37,7 +38,6 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.studies.accuracy_cost import precision, scalar, timestepping
-from twodiscs.studies.accuracy_cost.table import AccuracyCost
 from twodiscs.theory import exact, laws
 from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs.theory.reference import DIGITS, MpScene, disc_collision_area, volume
@@ -381,9 +381,9 @@ def measure(all_series, repetitions, report):
 
 
 def row(part, quantity, radius, method, **values):
-    """Return a row of accuracy_cost.csv; what ``values`` does not name stays empty."""
+    """Return the columns of a row of accuracy_cost.csv that are not empty."""
     box = {"width": SCENE.width, "height": SCENE.height, "radius": radius}
-    return AccuracyCost.empty(part=part, quantity=quantity, method=method, **box) | values
+    return {"part": part, "quantity": quantity, "method": method, **box, **values}
 
 
 def summary(one, quantity, work, results):
@@ -403,10 +403,10 @@ def summary(one, quantity, work, results):
 
 
 def fitted(x, y, error=None):
-    """Return (slope, its standard error) of a ``Line``, None for what two points do not tell."""
+    """Return (slope, its standard error) of a ``LinearFit``, None where two points tell none."""
     if len(x) < 2:
         return None, None
-    slope = Line(x, y, error).slope
+    slope = LinearFit(x, y, error).slope
     return slope.value, slope.stderr or None
 
 
@@ -421,7 +421,7 @@ def with_slope(rows):
         fair = [one for one in rows if one["error"] > 1e-14]
         found = fitted([one["work"] for one in fair], [math.log10(one["error"]) for one in fair])
     else:
-        fair = [one for one in rows if 0.5 > one["error"] > 3 * (one["floor"] or 0.0)]
+        fair = [one for one in rows if 0.5 > one["error"] > 3 * (one.get("floor", 0.0))]
         x = [math.log(one["work"]) for one in fair]
         y = [math.log(one["error"]) for one in fair]
         # The root mean square of R normal deviates is known to 1/√(2R).
@@ -551,9 +551,9 @@ def by_radius(scale):
             start = time.process_time()
             point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
-            true = exact.mean_times(scene)[event]
-            (found,) = mean_time_rows(scene, {(radius, f"{event}_time"): true}, [point])
-            bias = found["estimate"] / true - 1
+            box = Box.of(scene)
+            (mean,) = MeanTimes.rows(box, Theory.rows(box, [radius]), {"dynamics": [point]})
+            bias = mean["estimate"] / mean["exact"] - 1
             yield row(
                 "radius", f"{event}_time", radius, "paid",
                 work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,

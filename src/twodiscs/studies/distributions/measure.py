@@ -32,7 +32,6 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.distributions.table import Distributions
 from twodiscs.studies.tails.measure import wait
 from twodiscs.theory import exact, tails
 
@@ -283,7 +282,16 @@ def _z(deviation, error):
     return student_deviate(deviation / error, BLOCKS - 1)
 
 
-def _row(quantity, count, estimate, reference, **more):
+def _row(quantity, count, estimate, reference, first=None, last=None, z=None, **more):
     """Return a row; ``more`` are other columns, which are empty otherwise."""
-    found = {"estimate": estimate.value, "stderr": estimate.stderr, "reference": reference}
-    return Distributions.empty(quantity=quantity, count=count, **found, **more)
+    return {
+        "quantity": quantity,
+        "first": first,
+        "last": last,
+        "count": count,
+        "estimate": estimate.value,
+        "stderr": estimate.stderr,
+        "reference": reference,
+        "z": z,
+        **more,
+    }

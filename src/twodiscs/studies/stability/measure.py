@@ -14,8 +14,9 @@ import numpy as np
 from mpmath import mp, mpf
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import Line, mean_of
-from twodiscs.comparison.rows import area_rows, volume_rows
+from twodiscs.comparison.estimates import LinearFit, mean_of
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, next_event, wall_quotient
@@ -26,7 +27,6 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.stability.table import Stability
 from twodiscs.theory import exact, laws
 from twodiscs.theory.reference import DIGITS, exact_numbers
 
@@ -81,21 +81,21 @@ SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 REPETITIONS = 1600
 
 
-def row(part, quantity, case, value, **more):
-    """Return a row of stability.csv; ``more`` are other columns, which are empty otherwise.
+def row(part, quantity, case, value, low=None, high=None, z=None, **more):
+    """Return the columns of a row of stability.csv that are not empty, and the bounds.
 
     It has ``passed`` if the value is within ``low`` and ``high`` and |z| ≤ 5, as far as they are
     given; without any of them, or without a value, nothing is said.
     """
-    columns = Stability.empty(part=part, quantity=quantity, case=case, value=value) | more
-    low, high, z = columns["low"], columns["high"], columns["z"]
+    passed = None
     if value is not None and any(asked is not None for asked in (low, high, z)):
-        columns["passed"] = (
+        passed = (
             (low is None or value >= low)
             and (high is None or value <= high)
             and (z is None or abs(z) <= LARGEST_Z)
         )
-    return columns
+    columns = {"part": part, "quantity": quantity, "case": case, "value": value, **more}
+    return columns | {"low": low, "high": high, "z": z, "passed": passed}
 
 
 def other_seed(seed, i):
@@ -230,17 +230,12 @@ def estimate_rows(box, seed):
     radii += hard_radii(box)[1:]
     for i, (case, distance, radius) in enumerate(radii):
         scene = box.scene(radius)
-        true = {(radius, "volume"): exact.volume(scene)}
-        true |= {(radius, f"{event}_area"): area for event, area in exact.areas(scene).items()}
+        quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
         point = montecarlo.conditioned_point(
-            scene,
-            [quantity for _, quantity in true],
-            ESTIMATE_PROPOSALS,
-            SHELL,
-            other_seed(seed, i),
+            scene, quantities, ESTIMATE_PROPOSALS, SHELL, other_seed(seed, i)
         )
-        found = volume_rows(true, [point]) + area_rows(scene, true, [point])
-        for seen in found:
+        theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
+        for seen in Volume.rows(theory, points) + Areas.rows(box, theory, points):
             yield row(
                 "estimates", seen["quantity"], case, seen["estimate"], method="conditioned",
                 radius=radius, distance=distance, count=seen["samples"], exact=seen["expectation"],
@@ -591,7 +586,7 @@ def reversal_rows(box, seed):
             )  # fmt: skip
 
         fitted = [(n, e.value, e.stderr) for n, e in found.items() if first <= n <= round(expected)]
-        slope = Line(*zip(*fitted, strict=True)).slope
+        slope = LinearFit(*zip(*fitted, strict=True)).slope
         yield row(
             "reversal", "exponent", "return", slope.value, radius=radius, exact=rate.value,
             stderr=slope.stderr, count=REVERSED,
@@ -614,7 +609,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
     """Yield how often the 95 % interval of a mean time covers the exact one, event by event.
 
     A repetition is one block of ``counting.run_blocks``. Where most of them have too few events for
-    an interval (``estimates.is_honest``), that is all that is said.
+    an interval (``estimates.has_error_bar``), that is all that is said.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):
@@ -628,7 +623,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
             if times[event] is None:
                 continue
             moments = [(int(sums[e]), int(products[e, e]), REPLICAS) for sums, products in blocks]
-            if sum(estimates.is_honest(*m) for m in moments) < repetitions / 2:
+            if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
                 yield row(
                     "coverage", event, "ordinary", None, radius=radius, count=repetitions,
                     status="too-few",

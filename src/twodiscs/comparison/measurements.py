@@ -1,4 +1,4 @@
-"""What a simulation or a sample found, beside the exact values: objects that print themselves.
+"""What a simulation or a sample measured, beside the exact values: objects that print themselves.
 
 Their numbers are those of the rows of the tables, made by the same functions.
 """
@@ -9,15 +9,17 @@ import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from twodiscs.comparison import rows
-from twodiscs.comparison.estimates import HONEST, density_at_zero, normal_quantile
+from twodiscs.comparison.estimates import MIN_EVENTS, density_at_zero, normal_quantile
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, count, one_of, proportion
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.theory import tails
-from twodiscs.theory.exact import theory_rows
 
 #: The columns that people read, and how wide they are.
 COLUMNS = {
@@ -107,25 +109,25 @@ class Measurements(Mapping):
 
     def __init__(self, scene, rows):
         self.scene, self.rows = scene, rows
-        self._found = {
+        self._measurements = {
             row.get("event") or row["quantity"]: _measurement(scene, row) for row in rows
         }
 
     def __getitem__(self, name):
-        return self._found[name]
+        return self._measurements[name]
 
     def __iter__(self):
-        return iter(self._found)
+        return iter(self._measurements)
 
     def __len__(self):
-        return len(self._found)
+        return len(self._measurements)
 
     def frame(self):
         """Return the rows as a pandas ``DataFrame`` by event or quantity."""
         return _frame(self.rows, index="event" if "event" in self.rows[0] else "quantity")
 
     def __str__(self):
-        lines = [COLUMNS, *(one.cells() for one in self.values())]
+        lines = [COLUMNS, *(measurement.cells() for measurement in self.values())]
         return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
 
     __repr__ = __str__
@@ -160,7 +162,7 @@ class Intervals:
     def __init__(self, scene, point):
         self.scene, self.hop = scene, point["event"]
         self.intervals, self.overflow = point["intervals"], point["overflow"]
-        self.rows = rows.histogram_rows(_exact(scene), [point])
+        self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
         self.edges = [row["left"] for row in self.rows] + [self.rows[-1]["right"]]
         self.counts = point["counts"]
         first, z = self.rows[0], self.rows[0]["z"]
@@ -169,13 +171,13 @@ class Intervals:
             f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
             point["intervals"], status, "time",
         )  # fmt: skip
-        found = density_at_zero(self.counts, self.intervals, point["bin_width"])
-        few = min(self.counts[:2]) < HONEST
+        at_zero = density_at_zero(self.counts, self.intervals, point["bin_width"])
+        few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if scene.has_effects else tails.density_at_zero(scene, self.hop)
-        error, status = (None, "too-few") if few else (found.stderr, "extrapolated")
+        error, status = (None, "too-few") if few else (at_zero.stderr, "extrapolated")
         self.at_zero = Measurement(
             "density_at_zero",
-            found.value, error, exact, None, sum(self.counts[:2]), status, "1/time",
+            at_zero.value, error, exact, None, sum(self.counts[:2]), status, "1/time",
         )  # fmt: skip
 
     @property
@@ -195,8 +197,9 @@ class Intervals:
     __repr__ = __str__
 
 
-def _exact(scene):
-    return rows.exact_values(theory_rows(Box.of(scene), [scene.radius]))
+def _theory(scene):
+    """Return the rows of theory.csv of one ``Scene``."""
+    return Theory.rows(Box.of(scene), [scene.radius])
 
 
 # What is done -----------------------------------------------------------------------------------
@@ -253,7 +256,8 @@ def simulate(scene, error, seed, budget, events, name):
     from twodiscs.dynamics.counting import count_events
 
     point = count_events(scene, target, budget, seed, _progress())
-    return Measurements(scene, rows.mean_time_rows(scene, _exact(scene), [point]))
+    rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
+    return Measurements(scene, rows)
 
 
 def sample(scene, samples, seed, quantities, shell, name):
@@ -266,10 +270,10 @@ def sample(scene, samples, seed, quantities, shell, name):
     from twodiscs.sampling.starts import require_share
 
     require_share(scene)
-    point, exact = better_point(scene, quantities, samples, shell, seed), _exact(scene)
-    areas = [event for event in EVENTS if f"{event}_area" in quantities]
-    found = rows.volume_rows(exact, [point]) + rows.area_rows(scene, exact, [point], areas)
-    return Measurements(scene, found)
+    points = {"monte_carlo": [better_point(scene, quantities, samples, shell, seed)]}
+    theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
+    rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
+    return Measurements(scene, rows)
 
 
 def intervals(scene, hop, number, seed, name):
@@ -319,25 +323,25 @@ def exact_table(width, height, radii, effects):
     scenes = [box.scene(radius) for radius in radii]
     if not scenes:
         raise InputError("radii must hold one radius at least, not none")
-    found = [
+    rows = [
         {
             "radius": scene.radius,
             "regime": scene.regime,
             "ergodic_components": scene.ergodic_components,
-            **{row["quantity"]: row["exact"] for row in theory_rows(box, [scene.radius])},
+            **{row["quantity"]: row["exact"] for row in Theory.rows(box, [scene.radius])},
         }
         for scene in scenes
     ]
-    frame = pd.DataFrame(found).set_index("radius")
+    frame = pd.DataFrame(rows).set_index("radius")
     times = [f"{event}_time" for event in EVENTS]
     frame[times] = frame[times].astype(float)
     frame.attrs["box"] = box
     return frame
 
 
-def the_scene(found):
+def the_scene(result):
     """Return the ``Scene`` of a result, or that of a trajectory; None for anything else."""
-    attributes = getattr(found, "attrs", None)
-    scene = found if isinstance(found, Scene) else getattr(found, "scene", None)
+    attributes = getattr(result, "attrs", None)
+    scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
     scene = attributes.get("scene") if isinstance(attributes, dict) else scene
     return scene if isinstance(scene, Scene) else None

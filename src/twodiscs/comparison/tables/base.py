@@ -1,4 +1,4 @@
-"""Tables: CSV files whose columns, units and meaning are declared once, as a class.
+"""Tables: CSV files whose columns, units, meaning and rows are declared once, as a class.
 
     class Tails(Table):
         '''One row per time t: how probable an interval T longer than t is.'''
@@ -6,9 +6,10 @@
         radius: LENGTH
         '''radius of the discs'''
 
-declares tails.csv. Floats are written with all their digits, integers as integers, truth values as
-``true`` and ``false``; an empty cell is a value that does not exist. The texts are docstrings: to
-edit one makes no job run again.
+declares tails.csv; beside its columns a class has a function ``rows`` that makes its rows. Floats
+are written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
+empty cell is a value that does not exist. The texts are docstrings: to edit one makes no job run
+again.
 """
 
 import csv
@@ -71,7 +72,9 @@ class Table:
     def columns(cls):
         """Return {name: ``Column``} in the order of the file."""
         derived = cls.__mro__[: cls.__mro__.index(Table)]
-        return {n: column for one in reversed(derived) for n, column in one.__annotations__.items()}
+        return {
+            n: column for table in reversed(derived) for n, column in table.__annotations__.items()
+        }
 
     @classmethod
     def write(cls, path, rows):
@@ -129,24 +132,24 @@ class Table:
     def meanings(cls):
         """Return {name: what the column means}."""
         texts = {}
-        for one in reversed(cls.__mro__[:-1]):
-            texts |= _texts(one)
+        for table in reversed(cls.__mro__[:-1]):
+            texts |= _texts(table)
         return {name: texts[name] for name in cls.columns()}
 
 
 def _texts(table):
-    """Return {column: its text} that the statement of one class has."""
+    """Return {column: its text} that the statement of a class has, without those it inherits."""
     import ast
     import inspect
     from textwrap import dedent
 
     (statement,) = ast.parse(dedent(inspect.getsource(table))).body
-    found, last = {}, None
+    texts, column = {}, None
     for part in statement.body:
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and last:
-            found[last] = inspect.cleandoc(part.value.value)
-        last = part.target.id if isinstance(part, ast.AnnAssign) else None
-    return {name: " ".join(text.split()) for name, text in found.items()}
+        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and column:
+            texts[column] = " ".join(part.value.value.split())
+        column = part.target.id if isinstance(part, ast.AnnAssign) else None
+    return texts
 
 
 def _text(name, column, value):
