@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
+from twodiscs.comparison.tables.exact import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
-from twodiscs.pipeline import jobs
 from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
@@ -22,7 +22,7 @@ def scenes(radii=RADII):
 
 def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
-    return exact.theory_rows(BOX, radii)
+    return Theory.rows(BOX, radii)
 
 
 class Laws:
@@ -144,9 +144,3 @@ def command(monkeypatch, module, *arguments):
             run(module.main)
         except SystemExit as leave:
             return leave.code or 0
-
-
-def make_table(monkeypatch, study, parameters, output, *words):
-    """Run the job of the table of a ``study`` with more ``words`` and return its exit status."""
-    words = ["--parameters", parameters, *words, "--output", output]
-    return command(monkeypatch, jobs, "table", f"studies.{study}.measure", *words)

@@ -7,8 +7,13 @@ import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
 
-from twodiscs.comparison import check, rows, scores
-from twodiscs.comparison.scene_tables import Check
+from twodiscs.comparison import check, scores
+from twodiscs.comparison.tables import monte_carlo
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.exact import ExactValues, Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.pipeline import jobs
@@ -36,20 +41,26 @@ def points(laws):
 
 
 def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
-    found = check.comparisons(
-        scene,
-        rows.volume_rows(theory, points.get("monte_carlo", [])),
-        rows.area_rows(scene, theory, points.get("monte_carlo", [])),
-        rows.mean_time_rows(scene, theory, points.get("dynamics", [])),
-        rows.histogram_rows(theory, points.get("intervals", [])),
+    box, theory = Box.of(scene), rows_of(theory)
+    compared = check.comparisons(
+        box,
+        Volume.rows(theory, points),
+        Areas.rows(box, theory, points),
+        MeanTimes.rows(box, theory, points),
+        HopHistogram.rows(theory, points),
         points.get("dynamics", []),
     )
-    return check.check_rows(found, alarm)
+    return check.check_rows(compared, alarm)
+
+
+def rows_of(theory):
+    """Return the rows of theory.csv that say what ``theory`` does, {(radius, quantity): value}."""
+    return [{"radius": r, "quantity": q, "exact": value} for (r, q), value in theory.items()]
 
 
 @pytest.fixture
 def theory():
-    return rows.exact_values(theory_rows())
+    return ExactValues(theory_rows())
 
 
 def failed(rows):
@@ -104,7 +115,7 @@ def test_false_alarms_are_as_rare_as_stated(laws, theory, monkeypatch):
         probability, measure, _ = shells[scene.radius, event]
         return probability * measure
 
-    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
     rng = np.random.default_rng(2)
     chosen = [law for law in laws if law.scene.radius in radii]
     alarms = 0
@@ -146,7 +157,7 @@ def test_an_area_off_by_one_percent_is_named(points, theory, event, monkeypatch)
     def shell_expectation(scene, name, epsilon):
         return exact.shell_expectation(scene, name, epsilon) * (1.01 if name == event else 1)
 
-    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
     found = failed(table_of(points, theory))
     radii = possible_radii(event) if event in HOPS else set(RADII)
     assert {("area", f"{event}_area", radius) for radius in radii} <= found
@@ -218,7 +229,7 @@ def errors_times(factor, point):
 def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(4)
-    theory = rows.exact_values(theory_rows(radii))
+    theory = ExactValues(theory_rows(radii))
     dynamics = [
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
@@ -238,7 +249,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
 def test_a_common_shift_below_one_error_shows_in_the_mean():
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(5)
-    theory = rows.exact_values(theory_rows(radii))
+    theory = ExactValues(theory_rows(radii))
     dynamics = [
         Laws(scene).dynamics(rng, 1024, 3e-4, ("disc_collision",)) for scene in scenes(radii)
     ]
@@ -265,14 +276,14 @@ def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
 
 
 def theory_of(scene):
-    return rows.exact_values(exact.theory_rows(Box.of(scene), [scene.radius]))
+    return ExactValues(Theory.rows(Box.of(scene), [scene.radius]))
 
 
 def test_the_sum_rule_is_for_equal_discs_between_walls():
     cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
     for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
-        found = check.comparisons(scene, [], [], [], [], [point])
+        found = check.comparisons(Box.of(scene), [], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
 
 

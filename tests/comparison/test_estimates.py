@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import linregress, sem
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import Estimate, Line, mean_of
+from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.model.scene import Scene
 from twodiscs.theory.reference import exact_numbers
 
@@ -103,7 +103,7 @@ Y = 0.3 - 2 * X + np.array([0.1, -0.2, 0.05, 0.0, 0.1])
 
 
 def test_a_line_without_errors_is_that_of_scipy():
-    line, expected = Line(X, Y), linregress(X, Y)
+    line, expected = LinearFit(X, Y), linregress(X, Y)
     assert line.slope.value == pytest.approx(expected.slope, rel=1e-13)
     assert line.slope.stderr == pytest.approx(expected.stderr, rel=1e-12)
     assert line.constant == pytest.approx(expected.intercept, rel=1e-12)
@@ -112,7 +112,7 @@ def test_a_line_without_errors_is_that_of_scipy():
 
 def test_a_line_with_errors_is_that_of_the_normal_equations():
     errors = np.array([0.1, 0.2, 0.1, 0.4, 0.3])
-    line, w = Line(X, Y, errors), errors**-2
+    line, w = LinearFit(X, Y, errors), errors**-2
     mean_x, mean_y = np.average(X, weights=w), np.average(Y, weights=w)
     curvature = w @ (X - mean_x) ** 2
     slope = w @ ((X - mean_x) * (Y - mean_y)) / curvature
@@ -124,22 +124,22 @@ def test_a_line_with_errors_is_that_of_the_normal_equations():
 
 
 def test_one_error_for_all_changes_the_error_of_the_slope_only():
-    line, same = Line(X, Y, 0.1), Line(X, Y, [0.1] * 5)
-    assert line.slope.value == pytest.approx(Line(X, Y).slope.value, rel=1e-13)
+    line, same = LinearFit(X, Y, 0.1), LinearFit(X, Y, [0.1] * 5)
+    assert line.slope.value == pytest.approx(LinearFit(X, Y).slope.value, rel=1e-13)
     assert line.slope.stderr == pytest.approx(0.1 / math.sqrt(5 * X.var()), rel=1e-13)
     assert (line.slope, line.constant, line.chi2) == (same.slope, same.constant, same.chi2)
 
 
 def test_a_point_with_a_large_error_hardly_counts():
-    line = Line([1, 2, 3, 4], [3.0, 5.0, 7.0, 99.0], [0.1, 0.1, 0.1, 1e6])
+    line = LinearFit([1, 2, 3, 4], [3.0, 5.0, 7.0, 99.0], [0.1, 0.1, 0.1, 1e6])
     assert line.slope.value == pytest.approx(2.0)
 
 
 def test_two_points_have_a_line_whose_error_needs_theirs():
-    line = Line([1.0, 3.0], [2.0, 6.0])
+    line = LinearFit([1.0, 3.0], [2.0, 6.0])
     assert line.slope.value == pytest.approx(2.0, rel=1e-14)
     assert line.slope.stderr == 0
-    line = Line([1.0, 3.0], [2.0, 6.0], 0.5)
+    line = LinearFit([1.0, 3.0], [2.0, 6.0], 0.5)
     assert line.slope.stderr == pytest.approx(0.5 * math.sqrt(2) / 2, rel=1e-13)
     assert line.chi2 == pytest.approx(0, abs=1e-20)
 
@@ -147,7 +147,7 @@ def test_two_points_have_a_line_whose_error_needs_theirs():
 @pytest.mark.parametrize(("x", "y"), [([], []), ([1.0], [1.0]), ([1.0, 2.0], [1.0])])
 def test_one_point_has_no_line(x, y):
     with pytest.raises(ValueError, match="two points at least"):
-        Line(x, y)
+        LinearFit(x, y)
 
 
 # Counts ---------------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ def test_no_event_and_no_spread_divide_by_nothing():
     assert estimates.mean_time(0, 0, 1000, 10.0) is None
     assert estimates.effective_count(0, 0, 1000) == 0
     assert estimates.effective_count(3000, 9000, 1000) == 0
-    assert not estimates.is_honest(3000, 9000, 1000)
+    assert not estimates.has_error_bar(3000, 9000, 1000)
     z, test = scores.mean_time_z(0, 0, 1000, 10.0, 1e6)
     assert test == "cluster-bound"
     assert 0 <= z < 1

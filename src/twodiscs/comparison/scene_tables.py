@@ -4,14 +4,16 @@ Quick to import, for the Snakefile reads it: what needs NumPy is imported when r
 """
 
 from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.cost import Cost
+from twodiscs.comparison.tables.cost import Cost, Forecast
 from twodiscs.comparison.tables.exact import Grid, Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.comparison.tables.trajectory import Trajectory
 
-#: {name: table}
+__all__ = ["SCENE_TABLES", "Check", "Cost", "Forecast", "Grid"]
+
+#: {name: table}; the forecast is one of all scenes.
 SCENE_TABLES = {
     table.name(): table
     for table in (Grid, Theory, Volume, Areas, MeanTimes, HopHistogram, Check, Cost, Trajectory)

@@ -1,14 +1,20 @@
 """Rows say honestly what the points hold, of plain scenes and of those with effects."""
 
 import math
+from inspect import signature
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
 from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
-from twodiscs.comparison import estimates, rows
-from twodiscs.comparison.scene_tables import Areas, Grid, MeanTimes, Theory, Volume
+from twodiscs.comparison import estimates
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Cost
+from twodiscs.comparison.tables.exact import Grid, Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.comparison.tables.mean_times import MeanTimes, seen_anywhere
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume, _sampled_row
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -16,12 +22,10 @@ from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 from twodiscs.theory.exact import rate
 
-SCENE = BOX.scene(0.2)
-
 
 @pytest.fixture(scope="module")
 def theory():
-    return rows.exact_values(theory_rows())
+    return theory_rows()
 
 
 @pytest.fixture(scope="module")
@@ -32,13 +36,23 @@ def laws():
 def test_an_exact_value_that_is_not_there_is_named(theory, laws):
     point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
     with pytest.raises(ValueError, match=r"theory\.csv has no volume at radius 0\.11"):
-        rows.volume_rows(theory, [{**point, "radius": 0.11}])
+        Volume.rows(theory, {"monte_carlo": [{**point, "radius": 0.11}]})
 
 
-def test_a_radius_must_not_come_twice(theory, laws):
-    point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
-    with pytest.raises(ValueError, match=r"points must not contain radius 0\.02 twice"):
-        rows.volume_rows(theory, [point, point])
+def test_the_order_of_points_is_of_no_consequence(theory, laws):
+    rng = np.random.default_rng(6)
+    points = {
+        "monte_carlo": [law.monte_carlo(rng, 10**7) for law in laws],
+        "dynamics": [law.dynamics(rng, replicas=256, relative=1e-2) for law in laws],
+        "intervals": [law.intervals(rng) for law in laws[:3]],
+    }
+    turned = {stage: some[::-1] for stage, some in points.items()}
+    for name in ("volume", "areas", "mean_times", "hop_histogram", "check"):
+        make = SCENE_TABLES[name].rows
+        given = {"box": BOX} if "box" in signature(make).parameters else {}
+        rows = make(theory=theory, points=points, **given)
+        assert rows == make(theory=theory, points=turned, **given)
+        assert rows
 
 
 # Exact rows -------------------------------------------------------------------------------------
@@ -47,7 +61,7 @@ def test_a_radius_must_not_come_twice(theory, laws):
 @pytest.mark.parametrize("box", [BOX, Box(1.5, 1.0, {"periodic": "x", "field": 0.3})])
 def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
     radii = (0.3, 0.1)
-    found = exact.theory_rows(box, radii)
+    found = Theory.rows(box, radii)
     Theory.write(tmp_path / "theory.csv", found)
     assert Theory.read(tmp_path / "theory.csv") == found
     values = iter(found)
@@ -62,7 +76,7 @@ def test_exact_rows_are_the_exact_numbers_radius_by_radius(box, tmp_path):
 
 
 def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
-    found = exact.grid_rows(BOX, RADII)
+    found = Grid.rows(BOX, RADII)
     Grid.write(tmp_path / "grid.csv", found)
     assert [row["radius"] for row in found] == list(RADII)
     regimes = {row["radius"]: (row["regime"], row["ergodic_components"]) for row in found}
@@ -78,9 +92,9 @@ def test_rows_of_the_grid_say_what_is_open_where(tmp_path):
 def test_rows_of_monte_carlo(theory, laws):
     rng = np.random.default_rng(1)
     points = [law.monte_carlo(rng, 10**8) for law in laws]
-    volume = rows.volume_rows(theory, points[::-1])
+    volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
     assert [row["radius"] for row in volume] == list(RADII)
-    areas = rows.area_rows(SCENE, theory, points[::-1])
+    areas = Areas.rows(BOX, theory, {"monte_carlo": points[::-1]})
     assert [(row["radius"], row["quantity"]) for row in areas] == [
         (radius, f"{event}_area") for radius in RADII for event in EVENTS
     ]
@@ -98,7 +112,7 @@ def test_rows_of_monte_carlo(theory, laws):
 
 def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**7)
-    found = {row["quantity"]: row for row in rows.area_rows(SCENE, theory, [point])}
+    found = {row["quantity"]: row for row in Areas.rows(BOX, theory, {"monte_carlo": [point]})}
     right, top, whole = (found[f"{e}_area"] for e in ("right_wall", "top_wall", "any_wall"))
     assert whole["estimate"] == pytest.approx(4 * (right["estimate"] + top["estimate"]), rel=1e-14)
     assert whole["expectation"] == 4 * (right["expectation"] + top["expectation"])
@@ -107,21 +121,21 @@ def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
         4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
     )
     correlated = {**point, "right_and_top": min(right["hits"], top["hits"])}
-    found = {row["quantity"]: row for row in rows.area_rows(SCENE, theory, [correlated])}
+    found = {row["quantity"]: row for row in Areas.rows(BOX, theory, {"monte_carlo": [correlated]})}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
 
 
 def test_only_watched_areas_have_rows(theory, laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
-    found = rows.area_rows(SCENE, theory, [point], ("any_wall", "vertical_hop"))
+    found = Areas.rows(BOX, theory, {"monte_carlo": [point]}, ("any_wall", "vertical_hop"))
     assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
-    assert rows.volume_rows(theory, [{**point, "quantities": {}}]) == []
+    assert Volume.rows(theory, {"monte_carlo": [{**point, "quantities": {}}]}) == []
 
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
     part = {"hits": hits, "measure": 1.0, "epsilon": 0.1}
     point = {"radius": 0.1, "method": "monte_carlo", "samples": samples, "quantities": {"it": part}}
-    return rows._sampled_row(point, "it", exact, expectation)
+    return _sampled_row(point, "it", exact, expectation)
 
 
 @pytest.mark.parametrize(
@@ -163,8 +177,8 @@ def time_row(event="vertical_hop", radius=0.37, exact=50.0, **change):
     }
     for key, value in change.items():
         point[key] = {**point[key], **value} if isinstance(value, dict) else value
-    exact = {(radius, f"{event}_time"): exact}
-    (row,) = rows.mean_time_rows(BOX.scene(radius), exact, [point])
+    theory = [{"radius": radius, "quantity": f"{event}_time", "exact": exact}]
+    (row,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]})
     return row
 
 
@@ -175,7 +189,7 @@ def counted(total, squares, event="vertical_hop"):
 def test_rows_of_mean_times(theory, laws):
     rng = np.random.default_rng(3)
     points = [law.dynamics(rng) for law in laws]
-    found = rows.mean_time_rows(SCENE, theory, points[::-1])
+    found = MeanTimes.rows(BOX, theory, {"dynamics": points[::-1]})
     assert [(row["radius"], row["event"]) for row in found] == [
         (r, e) for r in RADII for e in EVENTS
     ]
@@ -201,7 +215,7 @@ def test_walls_that_symmetry_makes_equal_have_one_row(theory, laws):
     for radius, copies in ((0.2, 4), (0.3, 2)):
         law = laws[RADII.index(radius)]
         point = law.dynamics(np.random.default_rng(4))
-        found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
+        found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}
         row = found["right_wall"]
         assert row["copies"] == copies
         assert abs(row["z"]) < 5
@@ -225,7 +239,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
         "squares": [[slow, fast]],
     }  # fmt: skip
     point["strips"] = {"horizontal_hop": strip | {"squares": strip["count"]}}
-    found = {row["event"]: row for row in rows.mean_time_rows(SCENE, theory, [point])}
+    found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
     assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, strip["count"])
@@ -236,7 +250,7 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
-    (other,) = rows.seen_anyway(SCENE, theory, [point])
+    (other,) = seen_anywhere(BOX, theory, {"dynamics": [point]})
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
     assert other["count"] == point["counts"]["horizontal_hop"]
     assert other["replicas"] == point["replicas"]
@@ -283,7 +297,7 @@ def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
 def test_rows_of_the_histogram(theory, laws):
     rng = np.random.default_rng(5)
     points = [laws[i].intervals(rng) for i in (2, 1)]
-    found = rows.histogram_rows(theory, points)
+    found = HopHistogram.rows(theory, {"intervals": points})
     assert [row["radius"] for row in found] == [0.1] * 17 + [0.2] * 17
     for row in found:
         tau = row["exact_mean"]
@@ -293,20 +307,47 @@ def test_rows_of_the_histogram(theory, laws):
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
     empty = {**points[0], "counts": [0, 5], "squares": [0, 5]}
-    first, second = [row for row in rows.histogram_rows(theory, [empty]) if row["bins"] == "equal"]
+    first, second = [
+        row for row in HopHistogram.rows(theory, {"intervals": [empty]}) if row["bins"] == "equal"
+    ]
     assert (first["density"], first["stderr"]) == (0.0, None)
     assert second["stderr"] > 0
-    few = rows.histogram_rows(theory, [laws[2].intervals(rng, chains=99)])
+    few = HopHistogram.rows(theory, {"intervals": [laws[2].intervals(rng, chains=99)]})
     assert few[0]["z"] is few[0]["mean_stderr"] is None
+
+
+# What jobs took -------------------------------------------------------------------------------
+
+
+def test_cost_is_by_stage_and_radius_and_set_against_the_forecast():
+    """The total is of what was forecast alone."""
+    points = {
+        "monte_carlo": [{"radius": 0.1, "samples": 3}],
+        "dynamics": [{"radius": 0.2, "events": 5}, {"radius": 0.1, "events": 7}],
+        "intervals": [{"radius": 0.1, "intervals": 11}],
+    }
+    jobs = [(stage, point["radius"]) for stage, some in points.items() for point in some]
+    rows = Cost.rows(points, dict.fromkeys(jobs, 0.5), {})
+    assert [tuple(row.values())[:4] for row in rows] == [
+        ("dynamics", 0.1, 7, 0.5),
+        ("dynamics", 0.2, 5, 0.5),
+        ("intervals", 0.1, 11, 0.5),
+        ("monte_carlo", 0.1, 3, 0.5),
+    ]
+    assert all(row["forecast_seconds"] is row["ratio"] is None for row in rows)
+    forecast = {("dynamics", 0.1): 0.25, ("monte_carlo", 0.1): 1.0, ("dynamics", 0.3): 7.0}
+    again = Cost.rows(points, dict.fromkeys(jobs, 0.5), forecast)
+    assert [row["ratio"] for row in again] == [2.0, None, None, 0.5, 0.8]
+    assert tuple(again[-1].values()) == ("total", None, 10, 1.0, 1.25, 0.8)
 
 
 # With effects -----------------------------------------------------------------------------------
 
 
 def exact_of(*scenes):
-    """Return the exact values as theory.csv has them: of all events, whatever has a place."""
+    """Return the rows of theory.csv of scenes of one box."""
     radii = [scene.radius for scene in scenes]
-    return rows.exact_values(exact.theory_rows(Box.of(scenes[0]), radii))
+    return Theory.rows(Box.of(scenes[0]), radii)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -316,8 +357,8 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
     scenes = [scene.with_radius(radius) for radius in (0.1, scene.radius)]
     points = [montecarlo.better_point(s, quantities, 1, 0.1, 7) for s in scenes]
     theory = exact_of(*scenes)
-    volume = rows.volume_rows(theory, points[::-1])
-    areas = rows.area_rows(scene, theory, points[::-1])
+    volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
+    areas = Areas.rows(Box.of(scene), theory, {"monte_carlo": points[::-1]})
     Volume.write(tmp_path / "volume.csv", volume)
     Areas.write(tmp_path / "areas.csv", areas)
     assert [row["radius"] for row in volume] == [s.radius for s in scenes]
@@ -336,11 +377,11 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
 def test_all_walls_have_counts_of_their_own():
     scene = SCENES["unequal"]
     point = montecarlo.better_point(scene, ["any_wall_area"], 1, 0.1, 7)
-    (row,) = rows.area_rows(scene, exact_of(scene), [point], ("any_wall",))
+    (row,) = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("any_wall",))
     part = point["quantities"]["any_wall_area"]
     assert (row["hits"], row["epsilon"]) == (part["hits"], part["epsilon"])
     assert row["estimate"] == part["measure"] * part["hits"] / point["samples"]
-    watched = rows.area_rows(scene, exact_of(scene), [point], ("right_wall",))
+    watched = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("right_wall",))
     assert watched == []
 
 
@@ -348,7 +389,7 @@ def test_all_walls_have_counts_of_their_own():
 def test_mean_times_of_what_is_counted(name, tmp_path):
     scene = SCENES[name]
     point = Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)
-    found = rows.mean_time_rows(scene, exact_of(scene), [point])
+    found = MeanTimes.rows(Box.of(scene), exact_of(scene), {"dynamics": [point]})
     MeanTimes.write(tmp_path / "mean_times.csv", found)
     assert [row["event"] for row in found] == list(scene.events)
     for row in found:
@@ -366,10 +407,10 @@ def test_an_event_out_of_reach_must_not_be_seen():
     events = ("top_wall", "right_wall")
     point = Laws(scene).dynamics(np.random.default_rng(3), events=events)
     theory = exact_of(scene)
-    _, row = rows.mean_time_rows(scene, theory, [point])
+    _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
     assert (row["event"], row["status"], row["z"]) == ("top_wall", "impossible", 0.0)
     point["counts"]["top_wall"] = point["products"]["top_wall*top_wall"] = 1
-    _, row = rows.mean_time_rows(scene, theory, [point])
+    _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
     assert row["z"] == -math.inf
 
 
@@ -378,5 +419,5 @@ def test_plain_points_keep_to_right_and_top():
     plain = BOX.scene(0.2)
     point = montecarlo.better_point(plain, ["any_wall_area"], 1, 0.1, 7)
     assert "any_wall_area" not in point["quantities"]
-    (row,) = rows.area_rows(plain, exact_of(plain), [point], ("any_wall",))
+    (row,) = Areas.rows(Box.of(plain), exact_of(plain), {"monte_carlo": [point]}, ("any_wall",))
     assert row["epsilon"] is None
