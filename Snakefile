@@ -1,2 +1,10 @@
 # `snakemake` in this folder builds everything; the workflow itself stands in workflow/Snakefile.
 include: "workflow/Snakefile"
+
+
+rule default:
+    default_target: True
+    input:
+        rules.all.input,
+    """What is built without a target: everything that the configuration asks for."""
+    localrule: True

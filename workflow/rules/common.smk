@@ -1,14 +1,16 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
 import sys
+from dataclasses import replace
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.arguments import box_arguments, word, words
 from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.sources import fingerprint
+from twodiscs.pipeline.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
+from twodiscs.studies.effects.study import SCENES as EFFECTS
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 
@@ -20,12 +22,16 @@ def source(path):
 
 
 # The scenes of the configuration by their folders, and those of the study of effects.
+EFFECT_FILES = [source(f"config/scenes/{name}.yaml") for name in EFFECTS]
+CONFIGURATION = replace(
+    CONFIGURATION,
+    effect_scenes=[
+        load({"seed": CONFIGURATION.seed} | read(file)).scenes[0]
+        for file in EFFECT_FILES
+    ],
+)
 SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
-EFFECTS = []
-for folder, _ in STUDIES["effects"].reads(CONFIGURATION).values():
-    EFFECTS.append(os.path.basename(folder))
-    file = source(f"config/scenes/{EFFECTS[-1]}.yaml")
-    (SCENES[folder],) = load({"seed": CONFIGURATION.seed} | read(file)).scenes
+SCENES |= {f"effects/{scene.name}": scene for scene in CONFIGURATION.effect_scenes}
 
 FILES = Files(CONFIGURATION, SCENES)
 RESULTS = FILES.folder
@@ -80,3 +86,73 @@ def seed(w, stage):
 def minutes(stage=None):
     """Return how long a job of a stage may take, more when it is retried."""
     return lambda w, attempt: attempt * cost.minutes(SCENES[w.scene], stage or w.stage)
+
+
+def shards_of(stage):
+    """Return an input function: the shards of a point of a stage, none where one job does it all."""
+
+    def files(w):
+        folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
+        pieces = cost.shards(SCENES[w.scene], stage, float(w.radius))
+        return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
+
+    return files
+
+
+def argument(stage, name):
+    """Return a function of the wildcards: an argument of the job of a stage at a radius."""
+    return lambda w: word(SCENES[w.scene].arguments(stage, w.radius)[name])
+
+
+# The module of each stage is imported by its own jobs alone.
+POINT = {
+    stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
+    for stage, module in STAGES.items()
+}
+
+ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
+
+
+def about(w):
+    """Return the scene that a figure is about: the main one, if there is one, for one of none."""
+    return SCENES[w.scene] if "scene" in w.keys() else MAIN
+
+
+def origin(w):
+    """Return what a figure says in its metadata of what made it."""
+    scene = about(w)
+    return (f"scene {scene.name}, " if scene else "") + f"seed {CONFIGURATION.seed}"
+
+
+def radius_of(w):
+    """Return the argument that says the radius of a trajectory, for figures of one."""
+    shown = "trajectory" in ENTRIES[w.figure].tables
+    return f"--radius {about(w).watch.trajectory}" if shown else ""
+
+
+def figure_code(w):
+    """Return the fingerprint of the code that draws a figure."""
+    return code("pipeline.jobs.figure", "figures.kit.style", ENTRIES[w.figure].module)
+
+
+def figure_tables(w, input):
+    """Return the tables that a figure reads as arguments."""
+    reads = FILES.figure_reads(ENTRIES[w.figure], w.get("scene"))
+    return assigned(reads, input.tables)
+
+
+def caption(w):
+    """Return the caption of a figure in Snakemake's report."""
+    return ENTRIES[w.figure].full_caption(getattr(about(w), "effects", ()))
+
+
+def study_table(table):
+    """Return the file of a table of a study, with its place in the report; the errata say more."""
+    name = table.name()
+    return report(
+        ensure(FILES.table(name), non_empty=True),
+        caption=f"../report/{'errata' if name == 'errata' else 'shared_table'}.rst",
+        category="Tables",
+        subcategory="all scenes",
+        labels={"table": name, "what a row says": table.meaning()},
+    )

@@ -143,9 +143,13 @@ rule crate:
         ],
         provenance=rules.provenance.output,
         citation=source("CITATION.cff"),
-        snakefile=source("workflow/Snakefile"),
+        texts=[
+            source("workflow/Snakefile"),
+            *(source(f"workflow/rules/{name}.smk") for name in RULES),
+        ],
     output:
         json=f"{RESULTS}/ro-crate-metadata.json",
+        texts=directory(f"{RESULTS}/_workflow"),
     log:
         f"{RESULTS}/logs/crate.log",
     benchmark:
@@ -155,7 +159,7 @@ rule crate:
         code=code("pipeline.documents.crate"),
     shell:
         "python -m twodiscs.pipeline.documents.crate {input.files} --provenance {input.provenance}"
-        " --citation {input.citation} --workflow {input.snakefile} --output {output.json} > {log} 2>&1"
+        " --citation {input.citation} --texts {input.texts} --output {output.json} > {log} 2>&1"
 
 
 # What builds nothing has no output, so that it is done whenever it is asked for. Where the results are, the
@@ -210,8 +214,8 @@ rule benchmark:
         f"{RESULTS}/logs/benchmark.log",
     benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
-    threads: workflow.cores  # it must run alone
     localrule: True
+    threads: workflow.cores  # it must run alone
     params:
         code=code("benchmark"),
     shell:

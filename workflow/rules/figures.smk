@@ -2,42 +2,6 @@
 # of studies, which are made once; and the animation, a GIF for any program and a PNG because the report
 # shows no other animated image.
 
-ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
-
-
-def about(w):
-    """Return the scene that a figure is about: the main one, if there is one, for one of none."""
-    return SCENES[w.scene] if "scene" in w.keys() else MAIN
-
-
-def origin(w):
-    """Return what a figure says in its metadata of what made it."""
-    scene = about(w)
-    return (f"scene {scene.name}, " if scene else "") + f"seed {CONFIGURATION.seed}"
-
-
-def radius_of(w):
-    """Return the argument that says the radius of a trajectory, for figures of one."""
-    shown = "trajectory" in ENTRIES[w.figure].tables
-    return f"--radius {about(w).watch.trajectory}" if shown else ""
-
-
-def figure_code(w):
-    """Return the fingerprint of the code that draws a figure."""
-    return code("pipeline.jobs.figure", "figures.kit.style", ENTRIES[w.figure].module)
-
-
-def figure_tables(w, input):
-    """Return the tables that a figure reads as arguments."""
-    reads = FILES.figure_reads(ENTRIES[w.figure], w.get("scene"))
-    return assigned(reads, input.tables)
-
-
-def caption(w):
-    """Return the caption of a figure in Snakemake's report."""
-    return ENTRIES[w.figure].full_caption(getattr(about(w), "effects", ()))
-
-
 for name, folder, entries in (
     ("figure", "{scene}/", FIGURES),
     ("shared_figure", "", STUDY_FIGURES),
@@ -46,8 +10,6 @@ for name, folder, entries in (
     rule:
         name:
             name
-        message:
-            "Draw the figure {wildcards.figure} of tables."
         input:
             tables=lambda w: FILES.figure_reads(
                 ENTRIES[w.figure], w.get("scene")
@@ -76,6 +38,8 @@ for name, folder, entries in (
             caption=caption,
             options=lambda w: str(ENTRIES[w.figure].options),
             code=figure_code,
+        message:
+            "Draw the figure {wildcards.figure} of tables."
         shell:
             "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
             " --tables {params.tables} --origin '{params.origin}, code {params.code}'"
@@ -114,10 +78,10 @@ rule animate:
 
 
 rule animation:
-    """The animations of all scenes that watch a trajectory."""
-    localrule: True
     input:
         [FILES.animation(scene) for scene in CONFIGURED],
+    """The animations of all scenes that watch a trajectory."""
+    localrule: True
 
 
 # A figure's name is a target: that figure, for every scene that calls for it.
@@ -126,6 +90,6 @@ for figure in FIGURES:
     rule:
         name:
             figure
-        localrule: True
         input:
             [FILES.figures(scene).get(figure, []) for scene in CONFIGURED],
+        localrule: True

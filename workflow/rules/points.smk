@@ -22,39 +22,16 @@ rule exact:
         " --output {output.table} > {log} 2>&1"
 
 
-def shards_of(stage):
-    """Return an input function: the shards of a point of a stage, none where one job does it all."""
-
-    def files(w):
-        folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
-        pieces = cost.shards(SCENES[w.scene], stage, float(w.radius))
-        return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
-
-    return files
-
-
-def argument(stage, name):
-    """Return a function of the wildcards: an argument of the job of a stage at a radius."""
-    return lambda w: word(SCENES[w.scene].arguments(stage, w.radius)[name])
-
-
-# The module of each stage is imported by its own jobs alone.
-POINT = {
-    stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
-    for stage, module in STAGES.items()
-}
-
 for stage, does, names in (
     ("monte_carlo", "Sample volume and areas", ("quantities", "samples", "shell")),
     ("dynamics", "Count events by molecular dynamics", ("target", "budget")),
     ("intervals", "Record intervals between hops", ("event", "intervals", "budget")),
 ):
+    options = " ".join(f"--{name} {{params.{name}}}" for name in (*names, "seed"))
 
     rule:
         name:
             stage
-        message:
-            does + " at the radius {wildcards.radius} of {wildcards.scene}."
         input:
             shards=shards_of(stage),
         output:
@@ -66,15 +43,16 @@ for stage, does, names in (
         resources:
             runtime=minutes(stage),
         params:
-            box=box,
             **{name: argument(stage, name) for name in names},
+            box=box,
             seed=argument(stage, "seed"),
             shards=lambda w, input: braced(input.shards),
             code=POINT[stage],
+        message:
+            f"{does} at the radius {{wildcards.radius}} of {{wildcards.scene}}."
         shell:
             f"python -m twodiscs.pipeline.jobs.point {stage} {{params.box}} --radius {{wildcards.radius}}"
-            + "".join(f" --{name} {{params.{name}}}" for name in (*names, "seed"))
-            + " --shards {params.shards} --output {output.point} > {log} 2>&1"
+            f" {options} --shards {{params.shards}} --output {{output.point}} > {{log}} 2>&1"
 
 
 rule shard:

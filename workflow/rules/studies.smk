@@ -6,25 +6,11 @@ ALLOWED = {
 }
 
 
-def study_table(table):
-    """Return the file of a table of a study, with its place in the report; the errata say more."""
-    name = table.name()
-    return report(
-        ensure(FILES.table(name), non_empty=True),
-        caption=f"../report/{'errata' if name == 'errata' else 'shared_table'}.rst",
-        category="Tables",
-        subcategory="all scenes",
-        labels={"table": name, "what a row says": table.meaning()},
-    )
-
-
 for name, study in ALLOWED.items():
 
     rule:
         name:
             f"{name}_table"
-        message:
-            f"Find out {study.builds}."
         input:
             tables=FILES.study_reads(study).values(),
         output:
@@ -44,8 +30,9 @@ for name, study in ALLOWED.items():
             code=code(
                 "pipeline.jobs.study",
                 study.tables[0].__module__.partition(".")[2],
-                study.code,
             ),
+        message:
+            f"Find out {study.builds}."
         shell:
             "python -m twodiscs.pipeline.jobs.study {params.table} --parameters {params.parameters:q}"
             " --tables {params.tables} --output {output.table} > {log} 2>&1"
@@ -54,7 +41,7 @@ for name, study in ALLOWED.items():
 rule effects_cost:
     """Measure what each effect costs, in seconds for an event."""
     input:
-        scenes=[source(f"config/scenes/{name}.yaml") for name in EFFECTS],
+        scenes=EFFECT_FILES,
         # The compiler has run by then.
         tables=FILES.study_reads(STUDIES["effects"]).values(),
     output:
@@ -76,6 +63,6 @@ for name in ALLOWED:
     rule:
         name:
             name
-        localrule: True
         input:
             FILES.study(name),
+        localrule: True

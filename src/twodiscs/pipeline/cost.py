@@ -82,6 +82,16 @@ def minutes(scene, stage):
     return math.ceil(MINUTES + PATIENCE * _seconds(scene, stage, most) / 60)
 
 
+def study_seconds(study, configuration):
+    """Return what the tables of a ``Study`` take, roughly."""
+    return study.seconds(configuration) if callable(study.seconds) else study.seconds
+
+
+def study_minutes(study, configuration):
+    """Return the limit of time of the job of a ``Study``, in minutes."""
+    return math.ceil(MINUTES + PATIENCE * study_seconds(study, configuration) / 60)
+
+
 def days(scenes):
     """Return the processor time of all jobs of ``scenes`` at their radii, roughly, in days.
 

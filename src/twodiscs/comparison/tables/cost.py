@@ -16,9 +16,9 @@ class Cost(Table):
     events: COUNT
     """events simulated, configurations or intervals drawn"""
     seconds: SECONDS
-    """processor time of the work itself: compiled code is loaded, Python has started"""
+    """how long the job took, and its shards, as Snakemake measured it; empty where it did not"""
     forecast_seconds: SECONDS
-    """the same, forecast before the run; empty without one"""
+    """processor time that was forecast before the run; empty without a forecast"""
     ratio: NUMBER
     """seconds/forecast_seconds"""
 
@@ -27,15 +27,14 @@ class Cost(Table):
         """Return the rows of the jobs by stage and radius.
 
         ``points`` is {stage: [point, …]}; ``seconds`` and ``forecast`` are {(stage, radius): time},
-        the latter as far as there was a forecast. The last row is the total of what was forecast,
-        if anything was.
+        as far as they are known. The last row is the total of what was forecast, if anything was.
         """
         jobs = [(stage, p) for stage in sorted(points) for p in by_radius(points[stage])]
         rows = []
         for stage, point in jobs:
             job = stage, point["radius"]
-            rows.append(_row(*job, point[WORK[stage]], seconds[job], forecast.get(job)))
-        known = [row for row in rows if row["forecast_seconds"]]
+            rows.append(_row(*job, point[WORK[stage]], seconds.get(job), forecast.get(job)))
+        known = [row for row in rows if row["forecast_seconds"] and row["seconds"] is not None]
         if known:
             columns = "events", "seconds", "forecast_seconds"
             rows.append(_row("total", None, *(sum(row[c] for row in known) for c in columns)))
@@ -49,7 +48,7 @@ def _row(stage, radius, events, seconds, forecast):
         "events": events,
         "seconds": seconds,
         "forecast_seconds": forecast,
-        "ratio": seconds / forecast if forecast else None,
+        "ratio": seconds / forecast if forecast and seconds is not None else None,
     }
 
 

@@ -162,7 +162,8 @@ class Configuration:
     """A whole configuration: the folder of results, the root seed and the scenes in their order.
 
     ``accuracy_cost`` is the block of this name, and ``shared`` names what is built once, in the
-    order of the schema, with all that the manuscript reads.
+    order of the schema, with all that the manuscript reads. ``effect_scenes`` are the scenes of the
+    study of effects, whatever ``scenes`` are.
     """
 
     results: str
@@ -170,6 +171,7 @@ class Configuration:
     shared: tuple
     scenes: tuple
     accuracy_cost: dict = field(default_factory=dict)
+    effect_scenes: tuple = ()
 
     @property
     def plain(self):

@@ -10,7 +10,8 @@ import json
 from pathlib import Path
 
 from twodiscs.comparison import check
-from twodiscs.comparison.scene_tables import SCENE_TABLES, Forecast
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document, schema

@@ -12,11 +12,11 @@ import subprocess
 from pathlib import Path
 from shutil import copyfile
 
-from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import panels, style
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.jobs import call, function_of, module_of, read_tables
-from twodiscs.studies.catalogue import STUDY_FIGURES
+from twodiscs.pipeline.jobs.figure import ENTRIES, drawn
+from twodiscs.pipeline.jobs.study import read_tables
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
@@ -34,18 +34,15 @@ WHOLE = ("model",)
 HEIGHT, TOP, DPI = 2.5, 0.3, 200
 
 
-def drawn(name, results, box):
-    """Return the figure ``name`` of a ``Box``, from the tables in the folders ``results``."""
-    entry = (FIGURES | STUDY_FIGURES)[name]
-    names = (*entry.tables, *entry.main_tables)
-    found = [f"{n}={f / n}.csv" for n in names for f in results if (f / f"{n}.csv").exists()]
-    draw = function_of(entry.module, "draw")
-    return call(draw, entry.options, tables=read_tables(found), box=box)
+def tables_of(name, results):
+    """Return {name: rows} of the tables of the figure ``name``, in the folders ``results``."""
+    names = (*ENTRIES[name].tables, *ENTRIES[name].main_tables)
+    paths = [f"{n}={f / n}.csv" for n in names for f in results if (f / f"{n}.csv").exists()]
+    return read_tables(paths)
 
 
 def alone(figure, number, abscissa):
     """Leave one panel of a figure, as wide as a column."""
-    panels, style = module_of("figures.kit.panels"), module_of("figures.kit.style")
     kept = figure.axes[number]
     for axes in figure.axes:
         axes.set_visible(axes is kept)
@@ -89,9 +86,9 @@ def main():
     configuration = json.loads((options.results / "configuration.json").read_text(encoding="utf-8"))
     scene = load(configuration).main
     folders = (options.results / scene.name, options.results)
-    with module_of("figures.kit.style").context():
+    with style.context():
         for picture, (name, *panel) in (PANELS | {name: (name,) for name in WHOLE}).items():
-            figure = drawn(name, folders, scene.box)
+            figure = drawn(name, tables_of(name, folders), scene.box)
             if panel:
                 alone(figure, *panel)
             figure.savefig(options.output / f"{picture}.png", dpi=DPI, metadata={"Software": None})

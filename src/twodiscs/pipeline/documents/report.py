@@ -13,7 +13,9 @@ from pathlib import Path, PurePosixPath
 
 from markupsafe import Markup, escape
 
-from twodiscs.comparison.scene_tables import Check, Cost, Grid
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.cost import Cost
+from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.architecture import direct

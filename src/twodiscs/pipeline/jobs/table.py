@@ -10,7 +10,8 @@ import inspect
 from pathlib import Path
 
 from twodiscs.comparison.points import checked_point
-from twodiscs.comparison.scene_tables import SCENE_TABLES, Forecast
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.pipeline.arguments import Parser, add_box, box_of, number, run, whole_number
 from twodiscs.pipeline.jobs.point import STAGES
 from twodiscs.pipeline.results.digests import read_json

@@ -15,15 +15,12 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.pipeline.documents.pages import TABLES
 from twodiscs.pipeline.results.digests import digest, read_json
-from twodiscs.studies.catalogue import STUDY_TABLES
-
-TABLES = SCENE_TABLES | STUDY_TABLES
 
 #: How far floats may differ, relative to their size.
 RELATIVE = 1e-12

@@ -5,6 +5,10 @@ from twodiscs.studies.effects.table import Effects, EffectsCost
 from twodiscs.studies.study import Study
 
 
+#: The files of config/scenes, a scene each.
+SCENES = ("balls", "channel", "field", "rough", "torus", "unequal")
+
+
 def _parameters(configuration):
     boxes = {scene.name: scene.box.parameters() for scene in configuration.effect_scenes}
     return {"scenes": boxes, "seed": configuration.seed}
