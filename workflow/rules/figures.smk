@@ -8,6 +8,7 @@ for name, folder, entries in (
 ):
 
     rule:
+        """Draw a figure of its tables."""
         name:
             name
         input:
@@ -38,8 +39,6 @@ for name, folder, entries in (
             caption=caption,
             options=lambda w: str(ENTRIES[w.figure].options),
             code=figure_code,
-        message:
-            "Draw the figure {wildcards.figure} of tables."
         shell:
             "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
             " --tables {params.tables} --origin '{params.origin}, code {params.code}'"
@@ -88,6 +87,7 @@ rule animation:
 for figure in FIGURES:
 
     rule:
+        """A figure, in every scene that calls for it."""
         name:
             figure
         input:

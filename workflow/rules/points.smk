@@ -22,14 +22,15 @@ rule exact:
         " --output {output.table} > {log} 2>&1"
 
 
-for stage, does, names in (
-    ("monte_carlo", "Sample volume and areas", ("quantities", "samples", "shell")),
-    ("dynamics", "Count events by molecular dynamics", ("target", "budget")),
-    ("intervals", "Record intervals between hops", ("event", "intervals", "budget")),
+for stage, names in (
+    ("monte_carlo", ("quantities", "samples", "shell")),
+    ("dynamics", ("target", "budget")),
+    ("intervals", ("event", "intervals", "budget")),
 ):
     options = " ".join(f"--{name} {{params.{name}}}" for name in (*names, "seed"))
 
     rule:
+        """One radius: volume and areas by Monte Carlo, events counted, or intervals between hops."""
         name:
             stage
         input:
@@ -48,8 +49,6 @@ for stage, does, names in (
             seed=argument(stage, "seed"),
             shards=lambda w, input: braced(input.shards),
             code=POINT[stage],
-        message:
-            f"{does} at the radius {{wildcards.radius}} of {{wildcards.scene}}."
         shell:
             f"python -m twodiscs.pipeline.jobs.point {stage} {{params.box}} --radius {{wildcards.radius}}"
             f" {options} --shards {{params.shards}} --output {{output.point}} > {{log}} 2>&1"

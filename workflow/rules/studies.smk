@@ -9,6 +9,7 @@ ALLOWED = {
 for name, study in ALLOWED.items():
 
     rule:
+        """The table of a study."""
         name:
             f"{name}_table"
         input:
@@ -31,8 +32,6 @@ for name, study in ALLOWED.items():
                 "pipeline.jobs.study",
                 study.tables[0].__module__.partition(".")[2],
             ),
-        message:
-            f"Find out {study.builds}."
         shell:
             "python -m twodiscs.pipeline.jobs.study {params.table} --parameters {params.parameters:q}"
             " --tables {params.tables} --output {output.table} > {log} 2>&1"
@@ -61,6 +60,7 @@ rule effects_cost:
 for name in ALLOWED:
 
     rule:
+        """The tables and figures of a study."""
         name:
             name
         input:
