@@ -3,8 +3,8 @@ include: "workflow/Snakefile"
 
 
 rule default:
+    """What is built without a target: everything that the configuration asks for."""
     default_target: True
     input:
         rules.all.input,
-    """What is built without a target: everything that the configuration asks for."""
     localrule: True

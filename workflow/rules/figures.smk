@@ -77,9 +77,9 @@ rule animate:
 
 
 rule animation:
+    """The animations of all scenes that watch a trajectory."""
     input:
         [FILES.animation(scene) for scene in CONFIGURED],
-    """The animations of all scenes that watch a trajectory."""
     localrule: True
 
 
