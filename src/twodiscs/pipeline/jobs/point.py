@@ -65,11 +65,16 @@ def shard(work, part, first, stop):
     return {"part": part, "first": first, "stop": stop, "sums": sums}
 
 
-def joined(work, shards):
-    """Return the point that is the sum of ``shards``, in any order."""
+def joined(work, paths):
+    """Return the point that is the sum of the shards at ``paths``, in any order."""
     from twodiscs.sampling.rounds import joined
 
-    parts = {name: [one for one in shards if one["part"] == name] for name in work.parts}
+    parts = {name: [] for name in work.parts}
+    for path in paths:
+        content = read_json(path)
+        if content.get("part") not in parts:
+            raise InputError(f"{path} must be a shard of one of {', '.join(parts)}")
+        parts[content["part"]].append(content)
     return work.point({name: joined(run, parts[name]) for name, run in work.parts.items()})
 
 
@@ -97,7 +102,7 @@ def main():
     if options.blocks:
         content = shard(work, options.part, *options.blocks)
     elif options.shards:
-        content = joined(work, [read_json(path) for path in options.shards])
+        content = joined(work, options.shards)
     else:
         content = work.alone(print_progress())
     write_json(options.output, content)
