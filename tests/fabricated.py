@@ -144,3 +144,10 @@ def command(monkeypatch, module, *arguments):
             run(module.main)
         except SystemExit as leave:
             return leave.code or 0
+
+
+def written(folder, table, **given):
+    """Return the rows that a ``table`` makes of what is ``given``, written and read again."""
+    path = folder / f"{table.name()}.csv"
+    table.write(path, table.rows(**given))
+    return table.read(path)
