@@ -76,6 +76,9 @@ class Laws:
             if event in self.times:
                 mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
+        walls = {"right_wall", "top_wall", "any_wall"}
+        if walls <= {*events} and not self.scene.has_effects:  # as symmetry has it
+            counts["any_wall"] = counts["right_wall"] + counts["top_wall"]
         return {
             "radius": self.scene.radius,
             "duration": duration,

@@ -321,7 +321,7 @@ def test_a_verdict_sums_up_what_passed(good):
     failures, text = verdict.verdict({"good": good, "again": good})
     assert failures == []
     largest = max(abs(row["z"]) for row in good)
-    line = f"132 comparisons passed, 80 of them independent tests, largest |z| {largest:.3g}; "
+    line = f"132 comparisons passed, 73 of them tests, largest |z| {largest:.3g}; "
     few = sum(row["status"] in ("too-few", "none-seen") for row in good)
     line += f"{few} had too few events for an error, 0 more could not be compared\n"
     assert text == f"good: {line}again: {line}"
@@ -343,9 +343,20 @@ def test_independent_rows_could_fail_and_follow_from_no_other(good):
     others = [row for row in good if not row["independent"]]
     for row in others:
         derived = row["comparison"] in ("sum_rule", "z_mean", "z_spread")
-        assert derived or row["test"] == "certain" or row["quantity"] == "any_wall_area"
+        summed = row["quantity"] in ("any_wall_area", "any_wall_time")
+        assert derived or summed or row["test"] == "certain"
     assert not any(row["test"] == "certain" for row in independent)
-    assert len(independent) == 80
+    assert len(independent) == 80 - len(RADII)
+
+
+def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(laws, theory):
+    """The whole of the walls is a sum of others only if those are watched, too."""
+    rng = np.random.default_rng(7)
+    for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
+        found = table_of({"dynamics": [laws[1].dynamics(rng, events=events)]}, theory)
+        assert [row["quantity"] for row in found if row["independent"]] == [
+            f"{event}_time" for event in events
+        ]
 
 
 def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):

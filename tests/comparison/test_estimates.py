@@ -10,6 +10,7 @@ from scipy.stats import linregress, sem
 
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
+from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.reference import exact_numbers
 
@@ -69,6 +70,34 @@ def test_combination_keeps_its_digits_where_terms_cancel():
     variance = sum((x - mean) ** 2 for x in noise) / (n - 1)
     assert found.value == float(1000 * mean)
     assert found.stderr == pytest.approx(1000 * math.sqrt(variance / n), rel=1e-15)
+
+
+def sums_of(counts):
+    """Return sums and products of counts by replica, {event: array}, in the order of EVENTS."""
+    names = [event for event in EVENTS if event in counts]
+    products = {
+        f"{a}*{b}": int(counts[a] @ counts[b]) for i, a in enumerate(names) for b in names[i:]
+    }
+    return {event: int(counts[event].sum()) for event in names}, products, 100
+
+
+def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():
+    rng = np.random.default_rng(8)
+    right, top, hop = rng.poisson(9, (3, 100))
+    whole = {"right_wall": right, "top_wall": top, "any_wall": right + top}
+    sums_of_others = estimates.sums_of_others
+    assert sums_of_others(*sums_of(whole)) == {"any_wall"}
+    assert sums_of_others(*sums_of(whole | {"vertical_hop": hop})) == {"any_wall"}
+    # The channel has no wall to the right.
+    assert sums_of_others(*sums_of({"top_wall": top, "any_wall": top})) == {"any_wall"}
+    assert sums_of_others(*sums_of({"right_wall": right, "top_wall": top})) == set()
+    # The same sum over all replicas, by chance.
+    moved = np.roll(right + top, 1)
+    assert sums_of_others(*sums_of(whole | {"any_wall": moved})) == set()
+    assert sums_of_others(sums_of(whole | {"any_wall": moved})[0]) == {"any_wall"}
+    # None of either is no sum.
+    none = np.zeros(100, int)
+    assert sums_of_others(*sums_of({"vertical_hop": none, "horizontal_hop": none})) == set()
 
 
 def test_combination_names_what_is_missing():

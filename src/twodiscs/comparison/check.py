@@ -13,9 +13,10 @@ by design and would look too narrow.
 A row without an error bar says so in `status`. It is still compared wherever a bound holds: no
 hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
 
-A row is `independent` if it could fail and follows from no other: not one of an event that is
-certain or impossible, of an area or a sum rule put together from other rows, or of the scores of
-others. Rows of one method at one radius still share their samples or trajectories.
+A row is `independent`, a test, if it could fail and follows from no other: not one of an event that
+is certain or impossible, of a count that is the sum of other rows' counts in every replica, of an
+area or a sum rule put together from other rows, or of the scores of others. Tests of one method at
+one radius still share their samples or trajectories, so their scores are correlated.
 """
 
 import math
@@ -79,7 +80,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics):
     """Return a comparison for every estimate at a radius of a ``Box``, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, for the sum rule of virials wherever its three events were counted.
+    points, which say whose counts are sums of others, and have the sum rule of virials wherever its
+    three events were counted.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
@@ -87,9 +89,15 @@ def comparisons(box, volume, areas, times, histogram, dynamics):
             values = {**row, "exact": row["expectation"]}
             joined = name == "area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
+    summed = {
+        (point["radius"], event)
+        for point in dynamics
+        for event in estimates.sums_of_others(point["counts"], point["products"], point["replicas"])
+    }
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]
-        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row))
+        derived = method == "dynamics" and (row["radius"], row["event"]) in summed
+        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row, derived))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         values = _normal_values(

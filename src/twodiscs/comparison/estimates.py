@@ -7,10 +7,12 @@ rounded.
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain, combinations
 
 import numpy as np
 
 from twodiscs.model.checks import InputError, length, proportion, whole
+from twodiscs.model.events import EVENTS
 from twodiscs.theory import virial
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
@@ -232,6 +234,26 @@ def mean_time_bound(replicas, duration, confidence=0.95):
     replicas, duration = whole("replicas", replicas, 1), real("duration", duration)
     confidence = proportion("confidence", confidence)
     return duration * replicas / (CLUSTER * -math.log1p(-confidence))
+
+
+def sums_of_others(counts, products=None, replicas=None):
+    """Return the events whose number is the sum of the numbers of others, a set.
+
+    ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event. It is so if the difference is zero
+    in every replica, that is, if it has no mean and no variance; without ``products`` the sums over
+    all replicas decide. Of events that are related in this way the last one in the order of
+    ``EVENTS`` is named: any_wall where right_wall and top_wall count all that symmetry makes equal.
+    """
+    found = set()
+    for event in reversed(EVENTS):
+        rest = [e for e in EVENTS if e != event and e not in found and counts.get(e)]
+        terms = chain.from_iterable(combinations(rest, n) for n in range(1, len(rest) + 1))
+        for some in terms if counts.get(event) else ():
+            if sum(counts[e] for e in some) == counts[event]:
+                weights = {e: -1 if e in some else 1 for e in EVENTS if e in (*some, event)}
+                if not products or combination(weights, counts, products, replicas).stderr == 0:
+                    found.add(event)
+    return found
 
 
 def sum_rule(scene, duration, replicas, counts, products):

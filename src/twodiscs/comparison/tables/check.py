@@ -36,9 +36,10 @@ class Check(Table):
     """whether |z| ≤ bound; empty where nothing can be compared"""
     independent: TRUTH
     """
-    whether the row could fail and follows from no other row: false for what is certain, for what is
-    put together from other rows (any_wall_area of two shells, the sum rule) and for z_mean and
-    z_spread
+    whether the row is a test, which could fail and follows from no other row: false for what is
+    certain, for counts that are sums of other counts (any_wall of right_wall and top_wall), for
+    what is put together from other rows (any_wall_area of two shells, the sum rule) and for z_mean
+    and z_spread
     """
     status: TEXT
     """status of the estimate in its own table"""

@@ -22,11 +22,11 @@ def failure(scene, row):
 def summary(scene, rows):
     """Return the sentence on a scene that passed, with how much of it says little."""
     tested = [row for row in rows if row["passed"] is not None]
-    independent = sum(row["independent"] for row in tested)
+    tests = sum(row["independent"] for row in tested)
     few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
     largest = max((abs(row["z"]) for row in tested), default=0.0)
     return (
-        f"{scene}: {len(tested)} comparisons passed, {independent} of them independent tests, "
+        f"{scene}: {len(tested)} comparisons passed, {tests} of them tests, "
         f"largest |z| {largest:.3g}; {few} had too few events for an error, "
         f"{len(rows) - len(tested)} more could not be compared"
     )
