@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pages import described_tables
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import base
@@ -16,7 +17,6 @@ from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, 
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost, Forecast
 from twodiscs.comparison.tables.exact import Theory
-from twodiscs.pipeline.documents.pages import described_tables
 from twodiscs.studies.catalogue import STUDY_TABLES
 from twodiscs.studies.effects.table import Benchmark
 

@@ -3,10 +3,10 @@
 import pytest
 from fabricated import BOX, command
 
+from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.jobs.point import monte_carlo
 from twodiscs.pipeline.jobs.table import rows_of
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline.results import audit, manifest
 from twodiscs.pipeline.results.digests import write_json
 
@@ -62,9 +62,9 @@ def test_undamaged_results_pass(results, monkeypatch, capsys):
     assert capsys.readouterr().out == "of 5 files 0 are not what their jobs wrote\n"
 
 
-
 @pytest.mark.parametrize(
-    "name", ["small/volume.csv", "small/check.csv", "errata.csv", "small/points/monte_carlo/0.1.json"]
+    "name",
+    ["small/volume.csv", "small/check.csv", "errata.csv", "small/points/monte_carlo/0.1.json"],
 )
 @pytest.mark.parametrize("harm", ["edited", "cut short", "deleted"])
 def test_damage_is_named(results, monkeypatch, capsys, name, harm):

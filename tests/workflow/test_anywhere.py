@@ -9,7 +9,7 @@ import shutil
 
 import pytest
 import yaml
-from checkout import BELOW, Checkout, fresh, use
+from checkout import BELOW, Checkout, use
 
 TINY = {
     "shared": ["errata", "report"],

@@ -21,10 +21,13 @@ if MAIN:
                 for scene in CONFIGURATION.plain
                 for files in FILES.figures(scene.name).values()
             ],
+            drawn=FILES.studied("figures"),
             tables=[
-                [FILES.tables(scene.name).values() for scene in CONFIGURATION.plain],
-                FILES.studied(),
+                path
+                for scene in CONFIGURATION.plain
+                for path in FILES.tables(scene.name).values()
             ],
+            studied=FILES.studied("tables"),
         output:
             pdf=report(
                 f"{RESULTS}/paper.pdf",
@@ -32,20 +35,25 @@ if MAIN:
                 category="Manuscript",
                 labels={"document": "manuscript"},
             ),
+            numbers=FILES.table("paper_numbers"),
         log:
             f"{RESULTS}/logs/paper.log",
         benchmark:
             f"{RESULTS}/benchmarks/paper.tsv"
         localrule: True
         params:
-            scenes=[scene.name for scene in CONFIGURATION.plain],
-            configuration=FILES.configuration_hash(),
+            boxes=" ".join(
+                f"{scene.name}={scene.box.width}x{scene.box.height}"
+                for scene in CONFIGURATION.plain
+            ),
             seed=CONFIGURATION.seed,
+            configuration=FILES.configuration_hash(),
             code=code("pipeline.documents.manuscript"),
         shell:
-            "python -m twodiscs.pipeline.documents.manuscript --template {input.template}"
-            " --scenes {params.scenes} --seed {params.seed} --configuration {params.configuration}"
-            " --output {output.pdf} > {log} 2>&1"
+            "python -m twodiscs.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
+            " {input.studied} --template {input.template} --boxes {params.boxes} --seed {params.seed}"
+            " --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
+            " > {log} 2>&1"
 
 
 # The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one

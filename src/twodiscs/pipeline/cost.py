@@ -7,7 +7,6 @@ in clusters of K takes K/ε² of them. Rare hops are counted from strips, at a p
 
 import math
 
-from twodiscs.model.checks import InputError
 from twodiscs.pipeline.jobs.point import STAGES
 from twodiscs.theory import exact
 
@@ -138,5 +137,7 @@ def shards(scene, stage, radius):
     return [
         (name, *piece)
         for name, run in parts.items()
-        for piece in pieces(run.planned, 1 << max(0, math.floor(math.log2(scene.shard_events / work[name]))))
+        for piece in pieces(
+            run.planned, 1 << max(0, math.floor(math.log2(scene.shard_events / work[name])))
+        )
     ]

@@ -141,7 +141,9 @@ def scene_rows(scene, cores, started):
             own.append(row(scene.name, stage, cores, number, *taken))
         jobs += own
         sums += [summed(scene.name, stage, cores, own)] if own else []
-    figures = sum(entry.is_called(scene.watch.quantities, scene.effects) for entry in FIGURES.values())
+    figures = sum(
+        entry.is_called(scene.watch.quantities, scene.effects) for entry in FIGURES.values()
+    )
     for kind, number in (("tables", len(scene.tables)), ("figures", figures)):
         sums.append(row(scene.name, kind, cores, number, startup=number * started[kind]))
     return [*jobs, *sums, summed(scene.name, "total", cores, sums)]

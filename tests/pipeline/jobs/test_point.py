@@ -59,7 +59,9 @@ def test_work_of_known_length_gives_the_same_bytes_in_shards(run, stage, tmp_pat
 
 
 def test_counts_are_the_same_bytes_in_any_number_of_shards(run, tmp_path):
-    stop = point.dynamics(SCENE, {"vertical_hop": 0.5, "top_wall": 0.1}, 10**6, 7).parts["all"].planned
+    stop = (
+        point.dynamics(SCENE, {"vertical_hop": 0.5, "top_wall": 0.1}, 10**6, 7).parts["all"].planned
+    )
     assert stop >= 3
     cuts = {"one": [(0, stop)], "some": [(i, i + 1) for i in range(stop)][::-1]}
     for name, pieces in cuts.items():

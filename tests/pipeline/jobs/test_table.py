@@ -48,7 +48,12 @@ def test_a_table_is_made_of_points(run, points, name):
 def test_cost_is_what_snakemake_measured_and_may_be_missing(run, points, tmp_path):
     folder = tmp_path / "benchmarks" / "scene" / "dynamics"
     folder.mkdir(parents=True)
-    for name, seconds in (("0.1", 2.5), ("0.2_all-0-64", 3.0), ("0.2_all-64-70", 1.0), ("0.2", 0.5)):
+    for name, seconds in (
+        ("0.1", 2.5),
+        ("0.2_all-0-64", 3.0),
+        ("0.2_all-64-70", 1.0),
+        ("0.2", 0.5),
+    ):
         (folder / f"{name}.tsv").write_text(f"s\th:m:s\n{seconds}\t0:00:02\n")
     (tmp_path / "scene").mkdir()
     words = *points, "--results", ".", "--output", "scene/cost.csv"

@@ -76,12 +76,12 @@ class Files:
         own = {name: self.table(name, scene) for name in entry.tables}
         return own | {name: of_main[name] for name in entry.main_tables if name in of_main}
 
-    def studied(self):
-        """Return all figures and tables of the studies that the manuscript reads."""
-        names = [table.name() for study in STUDIES.values() if study.shared for table in study.tables]
-        tables = [self.table(name) for name in names]
-        return tables, [f"{self.folder}/figures/{name}.pdf" for name in STUDY_FIGURES]
-
+    def studied(self, kind):
+        """Return all "tables", or all "figures" as PDF, of the studies that the manuscript reads."""
+        if kind == "figures":
+            return [f"{self.folder}/figures/{name}.pdf" for name in STUDY_FIGURES]
+        shared = (study for study in STUDIES.values() if study.shared)
+        return [self.table(table.name()) for study in shared for table in study.tables]
 
     def configuration_hash(self):
         """Return 16 hexadecimal digits of the configuration with every default filled in."""
@@ -118,5 +118,3 @@ def braced(paths):
     stems = [name.removesuffix(".json") for name in names]
     listed = f"{{{','.join(stems)}}}" if len(stems) > 1 else stems[0]
     return f"{folders[0]}/{listed}.json"
-
-

@@ -18,7 +18,6 @@ from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.documents.architecture import direct
 from twodiscs.pipeline.documents.captions import caption
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
@@ -83,6 +82,18 @@ def key_figures(paths):
     wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
     first = {path.stem: path for path in reversed(paths)}  # the first scene wins
     return [first[name] for name in dict.fromkeys(wanted) if name in first][: len(KEY)]
+
+
+def direct(feeds):
+    """Return ``feeds`` without the arrows that a chain of others makes up for."""
+
+    def reached(rule):
+        return {below for one in feeds[rule] for below in ({one} | reached(one))}
+
+    return {
+        rule: [one for one in below if not any(one in reached(o) for o in below)]
+        for rule, below in feeds.items()
+    }
 
 
 def rules(dot):

@@ -86,7 +86,10 @@ def main():
     parser.add_argument("--samples", type=whole_number, help="monte_carlo: how many at least")
     parser.add_argument("--shell", type=number, help="monte_carlo: thickness, a fraction")
     parser.add_argument(
-        "--target", nargs="+", type=assignment, metavar="EVENT=ERROR",
+        "--target",
+        nargs="+",
+        type=assignment,
+        metavar="EVENT=ERROR",
         help="dynamics: relative standard errors",
     )
     parser.add_argument("--event", help="intervals: the hop")

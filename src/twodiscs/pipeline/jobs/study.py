@@ -9,13 +9,11 @@ Parameters are one JSON object; their entry ``box`` becomes a ``Box``.
 import inspect
 from pathlib import Path
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, named, parameters, print_progress, run
+from twodiscs.pipeline.results.tables import TABLES
 from twodiscs.studies.catalogue import STUDY_TABLES
-
-TABLES = SCENE_TABLES | STUDY_TABLES
 
 
 class Tables(dict):

@@ -1,6 +1,6 @@
 """What the check tables of all scenes say together.
 
-    python -m twodiscs.pipeline.results.verdict results/paper/check.csv … --output check.passed
+python -m twodiscs.pipeline.results.verdict results/paper/check.csv … --output check.passed
 """
 
 import sys

@@ -4,7 +4,6 @@ from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs.studies.effects.table import Effects, EffectsCost
 from twodiscs.studies.study import Study
 
-
 #: The files of config/scenes, a scene each.
 SCENES = ("balls", "channel", "field", "rough", "torus", "unequal")
 

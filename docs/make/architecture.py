@@ -1,6 +1,6 @@
 """The picture of docs/architecture.md: the folders of the package and what they import.
 
-python -m twodiscs.pipeline.documents.architecture docs/architecture.svg
+python docs/make/architecture.py docs/architecture.svg
 """
 
 import ast
@@ -8,6 +8,7 @@ from pathlib import Path
 from textwrap import fill
 
 from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.pipeline.documents.report import direct
 from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
 
 #: The rooms of the package from the lowest floor up; one may import those before it, and itself.
@@ -28,18 +29,6 @@ def arrows():
             room = module[0]
             found[room] |= {target[0] for target in imports_of(module) if target} - {room}
     return {room: [other for other in ROOMS if other in found[room]] for room in ROOMS}
-
-
-def direct(found):
-    """Return ``found`` without the arrows that a chain of others makes up for."""
-
-    def reached(room):
-        return {below for one in found[room] for below in ({one} | reached(one))}
-
-    return {
-        room: [one for one in below if not any(one in reached(o) for o in below)]
-        for room, below in found.items()
-    }
 
 
 def floors(found):
@@ -116,9 +105,7 @@ def draw():
 
 
 def main():
-    parser = Parser(
-        prog="twodiscs.pipeline.documents.architecture", description=__doc__.split("\n")[0]
-    )
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.add_argument("output", type=Path, metavar="SVG")
     options = parser.parse_args()
     import matplotlib

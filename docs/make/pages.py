@@ -1,6 +1,6 @@
 """The pages that are made from declarations: tables, configuration, targets.
 
-    python -m twodiscs.pipeline.documents.pages
+    python docs/make/pages.py
 
 renews config/README.md, config/schema.json for editors, the end of results/README.md and the rows
 of studies in README.md, in the folder where it is called.
@@ -10,15 +10,11 @@ import json
 from pathlib import Path
 
 from twodiscs.comparison import check
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document, schema
-from twodiscs.studies.catalogue import STUDIES, STUDY_TABLES
-from twodiscs.studies.effects.table import Benchmark
-
-TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}
+from twodiscs.pipeline.results.tables import TABLES
+from twodiscs.studies.catalogue import STUDIES
 
 INTRODUCTION = """\
 Tables are CSV files with one row for each thing said. Floats are written with all their digits,
@@ -84,7 +80,7 @@ def pages(folder):
 
 
 def main():
-    parser = Parser(prog="twodiscs.pipeline.documents.pages", description=__doc__.split("\n")[0])
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.parse_args()
     for name, text in pages(".").items():
         Path(name).write_text(text, encoding="utf-8", newline="\n")

@@ -1,6 +1,6 @@
 """The pictures of README.md and docs: one panel each, drawn for the size at which it is shown.
 
-    python -m twodiscs.pipeline.documents.pictures results docs
+    python docs/make/pictures.py results docs
 
 draws them from a finished build; the first page of the manuscript and the top of the report are
 taken with ``pdftoppm`` and ``chromium``.
@@ -79,7 +79,7 @@ def first_pages(results, output):
 
 
 def main():
-    parser = Parser(prog="twodiscs.pipeline.documents.pictures", description=__doc__.split("\n")[0])
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.add_argument("results", type=Path, help="the folder of a finished build")
     parser.add_argument("output", type=Path, help="where the pictures go")
     options = parser.parse_args()

@@ -1,6 +1,6 @@
 """The tutorial: docs/python.md is its source, a notebook and the outputs on the page are made.
 
-    python -m twodiscs.pipeline.documents.tutorial docs/python.md docs/tutorial.ipynb
+    python docs/make/tutorial.py docs/python.md docs/tutorial.ipynb
 
 runs the blocks of Python one after the other, puts what each prints or returns as a block of text
 after it, and writes the same as a notebook.
@@ -63,7 +63,7 @@ def tutorial(page):
 def main():
     import nbformat
 
-    parser = Parser(prog="twodiscs.pipeline.documents.tutorial", description=__doc__.split("\n")[0])
+    parser = Parser(description=__doc__.split("\n")[0])
     parser.add_argument("page", type=Path)
     parser.add_argument("notebook", type=Path)
     options = parser.parse_args()
