@@ -78,11 +78,6 @@ def box(w):
     return box_arguments(scene.box) if scene else ""
 
 
-def seed(w, stage):
-    """Return the seed of the random streams of a job."""
-    return SCENES[w.scene].seed_of(stage, w.radius)
-
-
 def minutes(stage=None):
     """Return how long a job of a stage may take, more when it is retried."""
     return lambda w, attempt: attempt * cost.minutes(SCENES[w.scene], stage or w.stage)
@@ -99,9 +94,9 @@ def shards_of(stage):
     return files
 
 
-def argument(stage, name):
-    """Return a function of the wildcards: an argument of the job of a stage at a radius."""
-    return lambda w: word(SCENES[w.scene].arguments(stage, w.radius)[name])
+def work_of(stage):
+    """Return a function of the wildcards: what the job of a stage at a radius is told."""
+    return lambda w: words(SCENES[w.scene].arguments(stage, w.radius))
 
 
 # The module of each stage is imported by its own jobs alone.

@@ -22,12 +22,8 @@ rule exact:
         " --output {output.table} > {log} 2>&1"
 
 
-for stage, names in (
-    ("monte_carlo", ("quantities", "samples", "shell")),
-    ("dynamics", ("target", "budget")),
-    ("intervals", ("event", "intervals", "budget")),
-):
-    options = " ".join(f"--{name} {{params.{name}}}" for name in (*names, "seed"))
+# What the loop sets is not known any more when a shell starts, so it is among the parameters.
+for stage in STAGES:
 
     rule:
         """One radius: volume and areas by Monte Carlo, events counted, or intervals between hops."""
@@ -44,14 +40,14 @@ for stage, names in (
         resources:
             runtime=minutes(stage),
         params:
-            **{name: argument(stage, name) for name in names},
+            stage=stage,
             box=box,
-            seed=argument(stage, "seed"),
+            work=work_of(stage),
             shards=lambda w, input: braced(input.shards),
             code=POINT[stage],
         shell:
-            f"python -m twodiscs.pipeline.jobs.point {stage} {{params.box}} --radius {{wildcards.radius}}"
-            f" {options} --shards {{params.shards}} --output {{output.point}} > {{log}} 2>&1"
+            "python -m twodiscs.pipeline.jobs.point {params.stage} {params.box} --radius {wildcards.radius}"
+            " {params.work} --shards {params.shards} --output {output.point} > {log} 2>&1"
 
 
 rule shard:
