@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
+from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
 from twodiscs.comparison import check, scores
 from twodiscs.comparison.tables import monte_carlo
@@ -16,7 +16,6 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.pipeline import jobs
 from twodiscs.pipeline.results import verdict
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
@@ -374,23 +373,3 @@ def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad
     assert verdict.failure("bad", row).startswith(
         "bad: z_mean of top_wall_time over all radii by dynamics has z = "
     )
-
-
-def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, good, bad):
-    out, tables = tmp_path / "check.passed", []
-    for name, found in {"good": good, "bad": bad}.items():
-        (tmp_path / name).mkdir()
-        path = tmp_path / name / "check.csv"
-        Check.write(path, found)
-        tables.append(f"{name}={path}")
-
-    def judge(*tables):
-        words = ["verdict", "pipeline.results.verdict", "--table", *tables, "--output", out]
-        return command(monkeypatch, jobs, *words)
-
-    assert judge(tables[0]) == 0
-    assert out.read_text() == capsys.readouterr().out == verdict.verdict({"good": good})[1]
-    out.unlink()
-    assert judge(*tables) == 1
-    assert capsys.readouterr().err.splitlines() == verdict.verdict({"bad": bad})[0]
-    assert not out.exists()

@@ -29,7 +29,7 @@ def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
 
 DRAW = """
 import sys
-from figure_cases import PAPER, draw
+from figure_cases import PAPER, draw, tables_of
 from twodiscs.figures.kit import style
 with style.context():
     figure = draw(sys.argv[1], PAPER, tables_of("paper"))

@@ -25,9 +25,9 @@ def branches(box, others=()):
     The first one starts at 1e-4 of its length, where the law for small radii has long set in.
     ``others`` are more limits, such as those of a box that this one is compared with.
     """
-    found = [radius for radius, _ in limits(box)]
-    ends = sorted({0, *found, *(radius for radius in others if radius < found[-1])})
-    found = []
+    own = [radius for radius, _ in limits(box)]
+    ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
+    regimes = []
     for low, high in pairwise(ends):
         even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
         if box.effects:
@@ -38,8 +38,8 @@ def branches(box, others=()):
         start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
-        found.append(np.unique(radii[(radii > low) & (radii < high)]))
-    return found
+        regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
+    return regimes
 
 
 def exact(box, others=()):

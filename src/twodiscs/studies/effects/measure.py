@@ -68,8 +68,8 @@ def unmet(scene, times, blocks, seed):
     law, (draw, prism) = law_of(a_scene(scene)), origins(scene)
     values = ascending("times", times)
     blocks, seed = whole("blocks", blocks), np.uint64(whole("seed", seed, 0))
-    found = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
-    return [int(n) for n in found]
+    counts = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
+    return [int(n) for n in counts]
 
 
 # The table ----------------------------------------------------------------------------------------

@@ -112,8 +112,8 @@ def limits(box):
     Only those that the plain ``Box`` has; where both hops end at once the name is "h/4".
     """
     names = {box.threshold(hop): name for hop, name in zip(HOPS, ("w/4", "h/4"), strict=True)}
-    found = {names[radius]: radius for radius in box.thresholds}
-    return dict(sorted(found.items())) | {"largest radius": box.largest_radius}
+    by_name = {names[radius]: radius for radius in box.thresholds}
+    return dict(sorted(by_name.items())) | {"largest radius": box.largest_radius}
 
 
 def beside(box, distances):
@@ -135,9 +135,9 @@ def hard_radii(box):
     """
     short = box.shortest
     near = [
-        found
-        for found in beside(box, (-1e-3, -1e-6, -1e-9, 1e-9))
-        if found[0] == "largest radius" or abs(found[1]) == 1e-9
+        case
+        for case in beside(box, (-1e-3, -1e-6, -1e-9, 1e-9))
+        if case[0] == "largest radius" or abs(case[1]) == 1e-9
     ]
     return [("ordinary", None, short / 5), ("tiny", None, short * 1e-9), *near]
 
@@ -148,13 +148,15 @@ def ordinary_radii(box):
     For the box 1.5 × 1 they are 0.05, 0.2, 0.24, 0.3 and 0.38.
     """
     ends = sorted([0.0, *limits(box).values()])
-    places = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
-    places += [(*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)]
-    found = []
-    for low, high, share in places:
+    between = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
+    between += [
+        (*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)
+    ]
+    radii = []
+    for low, high, share in between:
         radius = low + share * (high - low)
-        found.append(shortest_decimal(radius, 0.1 * (high - low) * share))
-    return found
+        radii.append(shortest_decimal(radius, 0.1 * (high - low) * share))
+    return radii
 
 
 # Theory -----------------------------------------------------------------------------------------
@@ -305,7 +307,7 @@ def approaches(sigma, generator, cases):
             fast * c,
             fast * s,
         )
-        return [tuple(map(float, found)) for found in zip(*columns, strict=True)]
+        return [tuple(map(float, state)) for state in zip(*columns, strict=True)]
 
     def power(low, high):
         return 10 ** generator.uniform(low, high, cases)
@@ -325,8 +327,8 @@ def time_rows(box, seed, cases=400):
     """Yield the worst errors of predicted contacts and wall hits."""
     generator = np.random.default_rng(seed)
     radius = ordinary_radii(box)[1]
-    for case, found in approaches(2 * radius, generator, cases).items():
-        errors = [contact_error(*state, 2 * radius) for state in found]
+    for case, flights in approaches(2 * radius, generator, cases).items():
+        errors = [contact_error(*state, 2 * radius) for state in flights]
         known = [error for error in errors if error is not None]
         yield row("times", "contact_time", case, max(known), count=len(known), high=TIME_BOUND)
 
@@ -572,27 +574,29 @@ def reversal_rows(box, seed):
             count=REVERSED,
         )  # fmt: skip
 
-        found = {}  # the logarithm of the error of return by the number of events
+        log_errors = {}  # the logarithm of the error of return by the number of events
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
         for block, number in enumerate(numbers, start=1):
             starts = states(scene, REVERSED, seed, block)
             # A way back without any rounding is possible; it counts as an eighth of one.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
-            found[number] = log = mean_of(np.log(off))
+            log_errors[number] = log = mean_of(np.log(off))
             value = math.exp(log.value)
             yield row(
                 "reversal", "return_error", "return", value, radius=radius, count=number,
                 stderr=value * log.stderr,
             )  # fmt: skip
 
-        fitted = [(n, e.value, e.stderr) for n, e in found.items() if first <= n <= round(expected)]
+        fitted = [
+            (n, e.value, e.stderr) for n, e in log_errors.items() if first <= n <= round(expected)
+        ]
         slope = LinearFit(*zip(*fitted, strict=True)).slope
         yield row(
             "reversal", "exponent", "return", slope.value, radius=radius, exact=rate.value,
             stderr=slope.stderr, count=REVERSED,
             z=(slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr),
         )  # fmt: skip
-        logs = [log.value for log in found.values()]
+        logs = [log.value for log in log_errors.values()]
         yield row(
             "reversal", "events_retraced", "return",
             float(np.interp(math.log(RETRACED), logs, numbers)),

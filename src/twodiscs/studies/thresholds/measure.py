@@ -116,13 +116,13 @@ def rows(tables, scenes):
             if law is None:
                 continue
             times = tables.get(f"{name}/mean_times", [])
-            found = {"mean_time": [row for row in times if row["event"] == event]}
+            measured = {"mean_time": [row for row in times if row["event"] == event]}
             if law.power < 0:
-                found["first_passage"] = [
+                measured["first_passage"] = [
                     row | {"exact": row["exact_mean"]}
                     for row in passages(tables["distributions"], name, event)
                 ]
-            for quantity, seen in found.items():
+            for quantity, seen in measured.items():
                 kept = near(box, law, seen)
                 values = [[row[c] for row in kept] for c in COLUMNS]
                 for row in fits(law, quantity, *values):
