@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
+from twodiscs.comparison.tables.exact import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS
-from twodiscs.pipeline import jobs
 from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
@@ -22,7 +22,7 @@ def scenes(radii=RADII):
 
 def theory_rows(radii=RADII):
     """Return the rows of theory.csv."""
-    return exact.theory_rows(BOX, radii)
+    return Theory.rows(BOX, radii)
 
 
 class Laws:
@@ -76,6 +76,9 @@ class Laws:
             if event in self.times:
                 mean = self.scene.copies(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
+        walls = {"right_wall", "top_wall", "any_wall"}
+        if walls <= {*events} and not self.scene.has_effects:  # as symmetry has it
+            counts["any_wall"] = counts["right_wall"] + counts["top_wall"]
         return {
             "radius": self.scene.radius,
             "duration": duration,
@@ -146,7 +149,8 @@ def command(monkeypatch, module, *arguments):
             return leave.code or 0
 
 
-def make_table(monkeypatch, study, parameters, output, *words):
-    """Run the job of the table of a ``study`` with more ``words`` and return its exit status."""
-    words = ["--parameters", parameters, *words, "--output", output]
-    return command(monkeypatch, jobs, "table", f"studies.{study}.measure", *words)
+def written(folder, table, **given):
+    """Return the rows that a ``table`` makes of what is ``given``, written and read again."""
+    path = folder / f"{table.name()}.csv"
+    table.write(path, table.rows(**given))
+    return table.read(path)

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 import twodiscs as td
 from twodiscs import cli
-from twodiscs.comparison import rows, scene_tables
-from twodiscs.comparison.results import Measurement
+from twodiscs.comparison.measurements import Measurement
+from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
@@ -117,20 +117,20 @@ def point(stage):
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
     box = Box.of(SCENE)
-    exact = rows.exact_values(jobs.function_of("theory.exact", "theory_rows")(box, [0.2]))
-    assert simulated.rows == rows.mean_time_rows(SCENE, exact, [point("dynamics")])
-    found = point("monte_carlo")
-    areas = rows.area_rows(SCENE, exact, [found])
-    assert sampled.rows == rows.volume_rows(exact, [found]) + areas
-    assert intervals.rows == rows.histogram_rows(exact, [point("intervals")])
+    theory = SCENE_TABLES["theory"].rows(box, [0.2])
+    points = {stage: [point(stage)] for stage in ("dynamics", "monte_carlo", "intervals")}
+    assert simulated.rows == SCENE_TABLES["mean_times"].rows(box, theory, points)
+    areas = SCENE_TABLES["areas"].rows(box, theory, points)
+    assert sampled.rows == SCENE_TABLES["volume"].rows(theory, points) + areas
+    assert intervals.rows == SCENE_TABLES["hop_histogram"].rows(theory, points)
     given = load.load(CONFIGURATION).scenes[0].trajectory_job()
-    followed = jobs.call(jobs.function_of("dynamics.trajectory", "rows"), given)
+    followed = jobs.call(SCENE_TABLES["trajectory"].rows, given)
     assert [{**row, "z1": None, "z2": None} for row in trajectory.to_dict("records")] == followed
 
 
 def test_seeds_tell_methods_boxes_and_radii_apart():
     """A scan with one seed has independent errors, unless the scene has a name."""
-    from twodiscs.comparison.results import seed_of
+    from twodiscs.comparison.measurements import seed_of
 
     scenes = [SCENE, SCENE.with_radius(0.1), td.Scene(1.5, 1.1, 0.2), *SCENES.values()]
     found = [seed_of(scene, m, 1, None) for scene in scenes for m in ("dynamics", "monte_carlo")]
@@ -291,8 +291,8 @@ def test_what_cannot_be_shown_is_refused(call, said, simulated):
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):
     folder = tmp_path / "one"
     folder.mkdir()
-    scene_tables.MeanTimes.write(folder / "mean_times.csv", simulated.rows)
-    scene_tables.Volume.write(folder / "volume.csv", sampled.rows[:1])
+    SCENE_TABLES["mean_times"].write(folder / "mean_times.csv", simulated.rows)
+    SCENE_TABLES["volume"].write(folder / "volume.csv", sampled.rows[:1])
     (folder / "mine.csv").write_text("a,b\n1,2\n")
     (tmp_path / "configuration.json").write_text(
         json.dumps({"seed": 7, "scenes": [{"name": "one"}]})

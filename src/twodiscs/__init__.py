@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from twodiscs.comparison.results import Intervals, Measurement, Measurements
+    from twodiscs.comparison.measurements import Intervals, Measurement, Measurements
     from twodiscs.model.box import Box
     from twodiscs.model.checks import InputError
     from twodiscs.model.effects import EFFECTS
@@ -42,9 +42,9 @@ _HOMES = {
     "EFFECTS": "model.effects",
     "EVENTS": "model.events",
     "InputError": "model.checks",
-    "Intervals": "comparison.results",
-    "Measurement": "comparison.results",
-    "Measurements": "comparison.results",
+    "Intervals": "comparison.measurements",
+    "Measurement": "comparison.measurements",
+    "Measurements": "comparison.measurements",
     "Scene": "model.scene",
     "areas": "theory.exact",
     "exact": "theory.exact",
@@ -79,9 +79,9 @@ def exact_table(width: float, height: float, radii: Iterable[float], **effects) 
     Columns are regime, ergodic_components, volume, and <event>_area and <event>_time of every
     event; a time is NaN where the event is impossible. ``effects`` are those of ``Scene``.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.exact_table(width, height, radii, effects)
+    return measurements.exact_table(width, height, radii, effects)
 
 
 def simulate(
@@ -99,9 +99,9 @@ def simulate(
     simulated. ``events`` are those to watch, all that have a place in the scene if None. The first
     call compiles for some seconds; compiled code is kept.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.simulate(scene, error, seed, budget, events, name)
+    return measurements.simulate(scene, error, seed, budget, events, name)
 
 
 def sample(
@@ -118,9 +118,9 @@ def sample(
     are drawn, rounded up to whole blocks. Areas are those of shells, whose thickness is a share
     ``shell`` of the radius or of the room that is left: z is against the exact expectation of that.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.sample(scene, samples, seed, quantities, shell, name)
+    return measurements.sample(scene, samples, seed, quantities, shell, name)
 
 
 def intervals(
@@ -130,9 +130,9 @@ def intervals(
 
     ``hop`` is "vertical_hop" or "horizontal_hop". Numbers are rounded up to whole blocks of 2¹⁶.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.intervals(scene, hop, number, seed, name)
+    return measurements.intervals(scene, hop, number, seed, name)
 
 
 def starts(scene: Scene, number: float, seed: int = 1, name: str | None = None) -> np.ndarray:
@@ -141,9 +141,9 @@ def starts(scene: Scene, number: float, seed: int = 1, name: str | None = None) 
     x1, y1, x2, y2 are the centres, from that of the box; u1, v1, u2, v2 the velocities. Balls have
     z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their surfaces.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.starts(scene, number, seed, name)
+    return measurements.starts(scene, number, seed, name)
 
 
 def trajectory(
@@ -160,9 +160,9 @@ def trajectory(
     mean times of the rarest open hop, or some 6000 events. Hops are events here. ``attrs["scene"]``
     is the scene.
     """
-    from twodiscs.comparison import results
+    from twodiscs.comparison import measurements
 
-    return results.trajectory(scene, seed, start, duration, name)
+    return measurements.trajectory(scene, seed, start, duration, name)
 
 
 def plot(found, path: str | PathLike | None = None, figure: str | None = None) -> Figure:

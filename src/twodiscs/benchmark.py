@@ -25,7 +25,6 @@ from twodiscs.model.scene import Scene
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.results.record import write
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
@@ -285,7 +284,6 @@ def main():
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)
     (EffectsCost if quick else Benchmark).write(given.output, rows)
-    write([given.output], {"scenes": given.scenes}, job=given.table)
     for row in rows:
         print(
             f"{row['benchmark']:<34}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"

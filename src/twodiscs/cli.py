@@ -6,9 +6,7 @@ import os
 import sys
 
 import twodiscs
-from twodiscs.model.effects import EFFECTS
-from twodiscs.model.scene import Scene
-from twodiscs.pipeline.arguments import Parser, number, run, whole_number
+from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
 
 #: What the examples of ``--help`` are about.
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
@@ -25,10 +23,7 @@ def _main():
     if options.command is None:
         parser.print_help()
         return
-    named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
-    if "periodic" in named:
-        named["periodic"] = "".join(named["periodic"])
-    scene = Scene(options.width, options.height, options.radius, **named)
+    scene = scene_of(options)
     try:
         options.work(scene, options)
         sys.stdout.flush()
@@ -51,14 +46,7 @@ def _parser():
 
     def command(name, work, text):
         found = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        for side in ("width", "height", "radius"):
-            found.add_argument(f"--{side}", type=number, required=True, help="a length")
-        effects = found.add_argument_group("effects", "what the scene calls for besides")
-        for effect in EFFECTS.values():
-            option, kind = f"--{effect.name.replace('_', '-')}", {"type": number}
-            if not effect.is_number:
-                kind = {"nargs": "+", "metavar": "AXIS"}
-            effects.add_argument(option, help=effect.meaning, **kind)
+        add_scene(found)
         form = found.add_mutually_exclusive_group()
         form.add_argument("--json", action="store_true", help="print JSON")
         form.add_argument("--csv", action="store_true", help="print CSV, as the tables of results")
@@ -91,10 +79,10 @@ def _seed(command):
 def _exact(scene, options):
     numbers = twodiscs.exact(scene)
     if options.csv:
+        from twodiscs.comparison.tables.exact import Theory
         from twodiscs.model.box import Box
-        from twodiscs.theory.exact import theory_rows
 
-        _print_csv(theory_rows(Box.of(scene), [scene.radius]))
+        _print_csv(Theory.rows(Box.of(scene), [scene.radius]))
     elif options.json:
         _print_json(numbers)
     else:

@@ -5,13 +5,17 @@ import math
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from fabricated import BOX, RADII, Laws, command, scenes, theory_rows
+from fabricated import BOX, RADII, Laws, scenes, theory_rows
 
-from twodiscs.comparison import check, rows, scores
-from twodiscs.comparison.scene_tables import Check
+from twodiscs.comparison import check, scores
+from twodiscs.comparison.tables import monte_carlo
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.exact import ExactValues, Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.pipeline import jobs
 from twodiscs.pipeline.results import verdict
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
@@ -36,20 +40,26 @@ def points(laws):
 
 
 def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
-    found = check.comparisons(
-        scene,
-        rows.volume_rows(theory, points.get("monte_carlo", [])),
-        rows.area_rows(scene, theory, points.get("monte_carlo", [])),
-        rows.mean_time_rows(scene, theory, points.get("dynamics", [])),
-        rows.histogram_rows(theory, points.get("intervals", [])),
+    box, theory = Box.of(scene), rows_of(theory)
+    compared = check.comparisons(
+        box,
+        Volume.rows(theory, points),
+        Areas.rows(box, theory, points),
+        MeanTimes.rows(box, theory, points),
+        HopHistogram.rows(theory, points),
         points.get("dynamics", []),
     )
-    return check.check_rows(found, alarm)
+    return check.check_rows(compared, alarm)
+
+
+def rows_of(theory):
+    """Return the rows of theory.csv that say what ``theory`` does, {(radius, quantity): value}."""
+    return [{"radius": r, "quantity": q, "exact": value} for (r, q), value in theory.items()]
 
 
 @pytest.fixture
 def theory():
-    return rows.exact_values(theory_rows())
+    return ExactValues(theory_rows())
 
 
 def failed(rows):
@@ -104,7 +114,7 @@ def test_false_alarms_are_as_rare_as_stated(laws, theory, monkeypatch):
         probability, measure, _ = shells[scene.radius, event]
         return probability * measure
 
-    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
     rng = np.random.default_rng(2)
     chosen = [law for law in laws if law.scene.radius in radii]
     alarms = 0
@@ -146,7 +156,7 @@ def test_an_area_off_by_one_percent_is_named(points, theory, event, monkeypatch)
     def shell_expectation(scene, name, epsilon):
         return exact.shell_expectation(scene, name, epsilon) * (1.01 if name == event else 1)
 
-    monkeypatch.setattr(rows, "shell_expectation", shell_expectation)
+    monkeypatch.setattr(monte_carlo, "shell_expectation", shell_expectation)
     found = failed(table_of(points, theory))
     radii = possible_radii(event) if event in HOPS else set(RADII)
     assert {("area", f"{event}_area", radius) for radius in radii} <= found
@@ -218,7 +228,7 @@ def errors_times(factor, point):
 def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(4)
-    theory = rows.exact_values(theory_rows(radii))
+    theory = ExactValues(theory_rows(radii))
     dynamics = [
         errors_times(factor, Laws(scene).dynamics(rng, 128, 5e-3, ("right_wall", "any_wall")))
         for scene in scenes(radii)
@@ -238,7 +248,7 @@ def test_errors_of_the_wrong_size_show_in_the_spread(factor, sign):
 def test_a_common_shift_below_one_error_shows_in_the_mean():
     radii = tuple(np.linspace(0.05, 0.23, 40))
     rng = np.random.default_rng(5)
-    theory = rows.exact_values(theory_rows(radii))
+    theory = ExactValues(theory_rows(radii))
     dynamics = [
         Laws(scene).dynamics(rng, 1024, 3e-4, ("disc_collision",)) for scene in scenes(radii)
     ]
@@ -265,14 +275,14 @@ def test_what_cannot_be_compared_is_there_and_not_passed(laws, theory):
 
 
 def theory_of(scene):
-    return rows.exact_values(exact.theory_rows(Box.of(scene), [scene.radius]))
+    return ExactValues(Theory.rows(Box.of(scene), [scene.radius]))
 
 
 def test_the_sum_rule_is_for_equal_discs_between_walls():
     cases = (SCENE, ["sum_rule"]), (SCENES["rough"], ["sum_rule"]), (SCENES["unequal"], [])
     for scene, expected in cases:
         point = Laws(scene).dynamics(np.random.default_rng(3), events=check.SUM_RULE)
-        found = check.comparisons(scene, [], [], [], [], [point])
+        found = check.comparisons(Box.of(scene), [], [], [], [], [point])
         assert [row["comparison"] for row in found] == expected
 
 
@@ -310,7 +320,7 @@ def test_a_verdict_sums_up_what_passed(good):
     failures, text = verdict.verdict({"good": good, "again": good})
     assert failures == []
     largest = max(abs(row["z"]) for row in good)
-    line = f"132 comparisons passed, 80 of them independent tests, largest |z| {largest:.3g}; "
+    line = f"132 comparisons passed, 73 of them tests, largest |z| {largest:.3g}; "
     few = sum(row["status"] in ("too-few", "none-seen") for row in good)
     line += f"{few} had too few events for an error, 0 more could not be compared\n"
     assert text == f"good: {line}again: {line}"
@@ -332,9 +342,20 @@ def test_independent_rows_could_fail_and_follow_from_no_other(good):
     others = [row for row in good if not row["independent"]]
     for row in others:
         derived = row["comparison"] in ("sum_rule", "z_mean", "z_spread")
-        assert derived or row["test"] == "certain" or row["quantity"] == "any_wall_area"
+        summed = row["quantity"] in ("any_wall_area", "any_wall_time")
+        assert derived or summed or row["test"] == "certain"
     assert not any(row["test"] == "certain" for row in independent)
-    assert len(independent) == 80
+    assert len(independent) == 80 - len(RADII)
+
+
+def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(laws, theory):
+    """The whole of the walls is a sum of others only if those are watched, too."""
+    rng = np.random.default_rng(7)
+    for events in (("any_wall",), ("right_wall", "any_wall"), ("disc_collision", "any_wall")):
+        found = table_of({"dynamics": [laws[1].dynamics(rng, events=events)]}, theory)
+        assert [row["quantity"] for row in found if row["independent"]] == [
+            f"{event}_time" for event in events
+        ]
 
 
 def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):
@@ -352,23 +373,3 @@ def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad
     assert verdict.failure("bad", row).startswith(
         "bad: z_mean of top_wall_time over all radii by dynamics has z = "
     )
-
-
-def test_check_passes_and_fails_from_end_to_end(tmp_path, monkeypatch, capsys, good, bad):
-    out, tables = tmp_path / "check.passed", []
-    for name, found in {"good": good, "bad": bad}.items():
-        (tmp_path / name).mkdir()
-        path = tmp_path / name / "check.csv"
-        Check.write(path, found)
-        tables.append(f"{name}={path}")
-
-    def judge(*tables):
-        words = ["verdict", "pipeline.results.verdict", "--table", *tables, "--output", out]
-        return command(monkeypatch, jobs, *words)
-
-    assert judge(tables[0]) == 0
-    assert out.read_text() == capsys.readouterr().out == verdict.verdict({"good": good})[1]
-    out.unlink()
-    assert judge(*tables) == 1
-    assert capsys.readouterr().err.splitlines() == verdict.verdict({"bad": bad})[0]
-    assert not out.exists()

@@ -3,15 +3,20 @@
 import math
 import subprocess
 import sys
+from importlib import import_module
 from inspect import isclass
+from pathlib import Path
 
 import numpy as np
 import pytest
+from pages import described_tables
 
-from twodiscs.comparison import scene_tables
-from twodiscs.comparison.scene_tables import SCENE_TABLES, Check, Cost, Forecast, Theory
-from twodiscs.comparison.tables import LENGTH, NUMBER, TEXT, TIME, Column, Table
-from twodiscs.pipeline.documents.pages import described_tables
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import base
+from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.cost import Cost, Forecast
+from twodiscs.comparison.tables.exact import Theory
 from twodiscs.studies.catalogue import STUDY_TABLES
 from twodiscs.studies.effects.table import Benchmark
 
@@ -116,13 +121,19 @@ def test_every_column_is_described_on_a_line_of_its_own():
     assert "How to read check.csv" in text
 
 
-def test_every_table_of_a_scene_is_known():
+def test_every_table_of_a_scene_is_known_and_makes_its_rows():
     declared = {
         table.name()
-        for table in vars(scene_tables).values()
+        for path in Path(base.__file__).parent.glob("*.py")
+        for table in vars(import_module(f"{base.__package__}.{path.stem}")).values()
         if isclass(table) and issubclass(table, Table)
     }
     assert declared - {"table", "sampled"} == {*SCENE_TABLES, "forecast"}
+    assert all(
+        callable(table.rows)
+        for table in (SCENE_TABLES | STUDY_TABLES).values()
+        if table.name() != "effects_cost"
+    )
 
 
 def test_contract_columns_are_there():
@@ -250,7 +261,7 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
         ("comparison.scene_tables", ("numpy", "scipy", "pandas")),
         ("theory.exact", ("numpy", "scipy", "pandas")),
         ("pipeline.results.verdict", ("numpy", "scipy", "pandas")),
-        ("comparison.gather", ("scipy.stats", "pandas", "numba", "matplotlib")),
+        ("comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
     ],
 )
 def test_imports_stay_light(module, absent):

@@ -5,7 +5,7 @@ import math
 import pytest
 from effect_scenes import SCENES
 
-from twodiscs.comparison.scene_tables import Trajectory
+from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
@@ -41,9 +41,9 @@ def test_following_one_trajectory_is_the_kernel_in_slow_motion():
 def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
     """Eight mean times of the rarest hop that is open, or 6000 events, to a factor of √2."""
     scene = PAPER.with_radius(radius)
-    rows = trajectory.rows(Box(1.5, 1.0), radius, seed=3)
-    assert rows == trajectory.rows(Box(1.5, 1.0), radius, seed=3)
-    assert rows != trajectory.rows(Box(1.5, 1.0), radius, seed=4)
+    rows = Trajectory.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows == Trajectory.rows(Box(1.5, 1.0), radius, seed=3)
+    assert rows != Trajectory.rows(Box(1.5, 1.0), radius, seed=4)
     hops = [mean_times(scene)[hop] for hop in ("vertical_hop", "horizontal_hop")]
     eight = 8 * max((time for time in hops if time), default=math.inf)
     expected = min(eight, 6000 / event_rate(scene))
@@ -55,7 +55,7 @@ def test_a_trajectory_shows_some_hops_and_is_not_too_long(radius):
 @pytest.mark.parametrize("name", ["channel", "balls"])
 def test_rows_are_those_of_the_table(name, tmp_path):
     scene = SCENES[name]
-    rows = trajectory.rows(Box.of(scene), scene.radius, seed=1)
+    rows = Trajectory.rows(Box.of(scene), scene.radius, seed=1)
     Trajectory.write(tmp_path / "trajectory.csv", rows)
     assert Trajectory.read(tmp_path / "trajectory.csv") == rows
     deep = scene.depth is not None

@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+from importlib import import_module
 from inspect import signature
 from pathlib import Path
 
@@ -11,16 +12,9 @@ import pytest
 
 import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.figures.catalogue import (
-    ANIMATION,
-    FIGURES,
-    LINES,
-    LINES_WITH_EFFECTS,
-    NOTES,
-    Entry,
-)
+from twodiscs.figures.catalogue import ANIMATION, FIGURES, NOTES, Entry
+from twodiscs.figures.kit.captions import Sentence, Shown
 from twodiscs.model.events import EVENTS
-from twodiscs.pipeline.jobs import module_of
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 
 ALL = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
@@ -48,7 +42,7 @@ def test_the_modules_that_draw_are_those_of_the_entries():
 @pytest.mark.parametrize("name", FIGURES | STUDY_FIGURES)
 def test_the_options_are_those_that_the_module_takes(name):
     entry = ALL[name]
-    signature(module_of(entry.module).draw).bind(None, tables={}, **entry.options)
+    signature(import_module(f"twodiscs.{entry.module}").draw).bind(None, tables={}, **entry.options)
 
 
 @pytest.mark.parametrize(
@@ -56,11 +50,11 @@ def test_the_options_are_those_that_the_module_takes(name):
 )
 def test_a_study_of_any_scenes_is_drawn_without_a_box(name):
     entry = ALL[name]
-    signature(module_of(entry.module).draw).bind(tables={}, **entry.options)
+    signature(import_module(f"twodiscs.{entry.module}").draw).bind(tables={}, **entry.options)
 
 
 def test_only_the_animation_animates():
-    assert callable(module_of(ANIMATION.module).animate)
+    assert callable(import_module(f"twodiscs.{ANIMATION.module}").animate)
     assert (ANIMATION.tables, ANIMATION.of_plain) == (("trajectory",), True)
 
 
@@ -82,10 +76,11 @@ def test_an_entry_is_complete(name):
 @pytest.mark.parametrize("name", ALL)
 def test_captions_are_plain_text_in_whole_sentences(name, effects):
     entry = ALL[name]
-    own, full = entry.own_caption(effects), entry.full_caption(effects)
-    assert full.startswith(own)
-    assert own.startswith(entry.caption)
-    for caption in (own, full):
+    own, alike = entry.said(Shown(effects))
+    assert entry.full_caption(effects) == f"{own} {alike}".strip()
+    assert own.startswith(entry.caption[0].text)
+    assert bool(alike) == bool(entry.note)
+    for caption in (own, entry.full_caption(effects)):
         assert caption.endswith(".")
         assert not re.search(r"[\\${}_]{2}|\\|\$|\s\s|\n|\.\.|\. [a-z]", caption)
 
@@ -94,24 +89,43 @@ def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
     called = [entry for entry in FIGURES.values() if entry.needs]
     for entry in called:
         plain, other = entry.full_caption(), entry.full_caption(EFFECTS)
-        assert entry.plain in plain
-        assert entry.with_effects in other
         assert not re.search(r"[wh]/4|square box|Dashed|four times", other)
-        assert (LINES in plain) == ("r_v and horizontal ones" in other) == bool(entry.note)
+        assert ("lines mark h/4" in plain) == ("r_v and horizontal ones" in other)
+        assert ("lines mark h/4" in plain) == bool(entry.note)
         assert "r_v" not in plain
-    assert sum(bool(entry.plain) for entry in called) >= 4
-    assert any(entry.with_effects for entry in called)
+    assert sum("Dashed" in entry.full_caption() for entry in called) >= 4
+    assert "begins to keep to one side" in FIGURES["mean_wall_time"].full_caption(EFFECTS)
 
 
-def test_a_note_is_said_besides_the_own_caption():
-    entry = Entry("a", "b", "One\n  two.", "c", plain="Three.", with_effects="Four.", note="shells")
-    assert (entry.own_caption(), entry.own_caption(EFFECTS)) == (
-        "One two. Three.",
-        "One two. Four.",
-    )
-    assert entry.full_caption() == f"One two. Three. {NOTES['shells'].plain}"
-    assert entry.full_caption(EFFECTS) == f"One two. Four. {NOTES['shells'].with_effects}"
-    assert " ".join(LINES_WITH_EFFECTS.split()) in entry.full_caption(EFFECTS)
+def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
+    crosses = Sentence("Crosses are\n few.", mark=lambda row: row["count"] < 9)
+    monkeypatch.setitem(NOTES, "note", (Sentence("All alike."), crosses))
+    entry = Entry("a", "b", "One\n  two.", "c", note="note")
+    assert entry.said(Shown(rows=[{"count": 1}])) == ("One two. Crosses are few.", "All alike.")
+    assert entry.said(Shown(rows=[{"count": 9}])) == ("One two.", "All alike.")
+    assert entry.full_caption() == "One two. Crosses are few. All alike."
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence", "boxes"),
+    [
+        ("model", "are drawn shorter.", {(5, 1), (1, 5)}),
+        ("surface_shell", "are drawn shorter.", {(2, 1), (5, 1), (1, 5)}),
+        ("mean_hop_time", "In a square box", {(1, 1)}),
+        ("mean_hop_time", "Arrows", set()),
+        ("volume", "Crosses", set()),
+        ("stability", "Crosses", set()),
+        ("stability", "not run.", {(1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5)}),
+    ],
+)
+def test_captions_say_what_the_box_makes_of_a_figure(name, sentence, boxes):
+    said = {
+        sides
+        for sides in ((1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5))
+        if sentence in " ".join(ALL[name].said(Shown(sides=sides, rows=[])))
+    }
+    assert sentence in ALL[name].full_caption()
+    assert said == boxes
 
 
 def test_a_figure_is_called_for_by_what_it_shows():

@@ -2,10 +2,10 @@
 
 import pytest
 from figure_cases import PAPER, draw, tables_of, unclear
+from pictures import HEIGHT, PANELS, WHOLE, alone
 
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
-from twodiscs.pipeline.documents.pictures import HEIGHT, PANELS, WHOLE, alone
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 

@@ -124,7 +124,7 @@ def test_engines_name_what_they_count(method):
 
 @pytest.fixture(scope="module")
 def rows():
-    return accuracy_cost.rows(seconds=1.0, repetitions=2)
+    return [AccuracyCost.empty(**row) for row in accuracy_cost.rows(1.0, repetitions=2)]
 
 
 def of(rows, **where):

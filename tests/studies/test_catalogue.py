@@ -1,18 +1,22 @@
 """The catalogue of studies: what an entry names is there, and fits what the jobs do with it."""
 
+import dataclasses
 import inspect
 import json
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import twodiscs.studies
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables import Table
+from twodiscs.comparison.tables.base import Table
 from twodiscs.figures.catalogue import FIGURES, Entry
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.jobs import module_of, table_of
+from twodiscs.studies import catalogue
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs.studies.effects.table import Benchmark
 
@@ -21,18 +25,35 @@ FOLDERS = {path.parent.name for path in Path(twodiscs.studies.__path__[0]).glob(
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 
 #: What a job hands on of itself, if the function takes it.
-HANDED = {"tables": {}, "points": [], "report": None}
+HANDED = {"tables": {}, "report": None}
+
+
+@dataclass(frozen=True)
+class WithEffects:
+    """A configuration beside the scenes of ``config/scenes``, which the study of effects reads."""
+
+    configuration: object
+    effect_scenes: tuple
+
+    def __getattr__(self, name):
+        return getattr(self.configuration, name)
+
+
+def loaded(block):
+    paths = sorted((CONFIG / "scenes").glob("*.yaml"))
+    scenes = tuple(load({"seed": 1} | read(path)).scenes[0] for path in paths)
+    return WithEffects(load(block), scenes)
 
 
 @pytest.fixture(scope="module")
 def default():
-    return load(read(CONFIG / "config.yaml"))
+    return loaded(read(CONFIG / "config.yaml"))
 
 
 @pytest.fixture(scope="module")
 def only_effects():
     """A configuration without a plain scene."""
-    return load(read(CONFIG / "config.yaml") | read(CONFIG / "scenes" / "rough.yaml"))
+    return loaded(read(CONFIG / "config.yaml") | read(CONFIG / "scenes" / "rough.yaml"))
 
 
 def test_only_long_runs_are_built_when_asked_for():
@@ -41,11 +62,12 @@ def test_only_long_runs_are_built_when_asked_for():
 
 
 def test_every_folder_and_every_table_has_its_study():
-    assert {study.code.split(".")[1] for study in STUDIES.values()} == FOLDERS
+    modules = {study.tables[0].__module__.split(".")[2] for study in STUDIES.values()}
+    assert modules == FOLDERS
     declared = [
         value
         for folder in FOLDERS
-        for value in vars(module_of(f"studies.{folder}.table")).values()
+        for value in vars(import_module(f"twodiscs.studies.{folder}.table")).values()
         if isinstance(value, type) and issubclass(value, Table) and value is not Table
     ]
     assert set(declared) == {Benchmark, *STUDY_TABLES.values()}
@@ -53,25 +75,25 @@ def test_every_folder_and_every_table_has_its_study():
     assert not STUDY_TABLES.keys() & SCENE_TABLES.keys()
 
 
+def test_a_folder_that_declares_a_study_is_enough(tmp_path, monkeypatch):
+    """And studies stand in their order, those of the same by name."""
+    (tmp_path / "waits").mkdir()
+    (tmp_path / "waits" / "study.py").touch()
+    first = dataclasses.replace(STUDIES["errata"], name="waits", order=2)
+    modules = {"twodiscs.studies.waits.study": SimpleNamespace(STUDY=first, other=3)}
+    monkeypatch.setattr(catalogue, "__file__", str(tmp_path / "catalogue.py"))
+    monkeypatch.setattr(catalogue, "import_module", modules.__getitem__)
+    assert list(catalogue._declared()) == [first]
+    assert list(STUDIES) == sorted(STUDIES, key=lambda name: STUDIES[name].order)
+
+
 @every_study
-def test_the_module_makes_the_first_table(study):
-    """Which is named as the study is, and found beside the module, as its job looks for it."""
-    assert callable(getattr(module_of(study.code), study.function))
-    assert study.tables[0].name() == study.name
-    assert table_of(study.name, study.code) is study.tables[0]
-
-
-@pytest.mark.parametrize("name", sorted({n for e in STUDY_FIGURES.values() for n in e.tables}))
-def test_a_table_that_a_figure_reads_is_found_by_its_name_alone(name):
-    assert table_of(name) is STUDY_TABLES[name]
-
-
-@every_study
-def test_parameters_are_plain_values_that_the_function_takes(study, default):
+def test_parameters_are_plain_values_that_its_table_takes(study, default):
+    """The first table, which is named as the study is."""
     given = study.parameters(default)
     assert json.loads(json.dumps(given, allow_nan=False)) == given
-    function = getattr(module_of(study.code), study.function)
-    signature = inspect.signature(function)
+    assert study.tables[0].name() == study.name
+    signature = inspect.signature(study.tables[0].rows)
     handed = {name: value for name, value in HANDED.items() if name in signature.parameters}
     signature.bind(**given, **handed)
     assert bool(study.reads(default)) == ("tables" in handed)
@@ -88,7 +110,9 @@ def test_what_is_read_is_a_table_of_a_scene_or_of_a_study_before(study, default)
     before = list(STUDY_TABLES)[: list(STUDY_TABLES).index(study.name)]
     for name, (scene, table) in study.reads(default).items():
         assert name.endswith(table)
-        assert table in (default.scene(scene).tables if scene else before)
+        scenes = {scene.name: scene for scene in default.scenes}
+        scenes |= {f"effects/{scene.name}": scene for scene in default.effect_scenes}
+        assert table in (scenes[scene].tables if scene else before)
 
 
 def test_studies_read_only_what_there_is(default):
@@ -122,7 +146,7 @@ def test_a_configuration_without_plain_scenes_has_studies(only_effects):
     assert only_effects.main is None
     for study in kept:
         json.dumps(study.parameters(only_effects))
-        assert study.reads(only_effects) == {}
+        assert all(scene.startswith("effects/") for scene, _ in study.reads(only_effects).values())
 
 
 def test_figures_of_studies_are_entries_of_their_own():
@@ -138,7 +162,7 @@ def test_figures_are_drawn_from_tables_of_the_study_or_of_one_before(study):
     names = list(STUDY_TABLES)
     known = names[: names.index(study.tables[-1].name()) + 1]
     for entry in study.figures.values():
-        assert callable(module_of(entry.module).draw)
+        assert callable(import_module(f"twodiscs.{entry.module}").draw)
         assert entry.module.startswith(f"studies.{study.name}.")
         assert set(entry.tables) <= set(known)
         assert {table.name() for table in study.tables} <= set(entry.tables)

@@ -11,7 +11,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from fabricated import make_table
+from fabricated import written
 
 from twodiscs.comparison import estimates
 from twodiscs.dynamics import intervals
@@ -241,13 +241,10 @@ def test_without_any_rows_the_box_is_named(drawn):
 # The table and the figure -------------------------------------------------------------------------
 
 
-def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+def test_the_table_is_written_and_the_figure_reads_it(tmp_path):
     scene = {"name": "paper", "box": BOX.parameters(), "event": "vertical_hop", "radii": [0.2]}
     other = scene | {"name": "other", "box": Box(3.0, 1.0).parameters()}
-    parameters = {"events": 2**16, "scenes": [scene, other], "seed": 9}
-    path = tmp_path / "distributions.csv"
-    assert make_table(monkeypatch, "distributions", parameters, path) == 0
-    rows = Distributions.read(path)
+    rows = written(tmp_path, Distributions, events=2**16, scenes=[scene, other], seed=9)
     cases = list(dict.fromkeys((row["scene"], row["event"], row["radius"]) for row in rows))
     near = [
         ("paper", hop, radius)
@@ -256,7 +253,7 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch)
     ]
     assert cases == [("paper", "vertical_hop", 0.2), *near, ("other", "vertical_hop", 0.2)]
     # A case does not depend on the others.
-    alone = list(distributions.rows([scene], 9, 2**16))
+    alone = Distributions.rows([scene], 9, 2**16)
     assert alone == [row for row in rows if row["scene"] == "paper"]
     with style.context():
         rates, passages = figure.draw(None, {"distributions": rows}).axes

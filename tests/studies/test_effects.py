@@ -1,27 +1,26 @@
-"""What the figure of effects is made of: its counts, its table, its jobs, the figure itself."""
+"""What the figure of effects is made of: its counts, its table, the figure itself."""
 
 import ast
-import json
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from fabricated import Laws, command, make_table, store
+from fabricated import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
 from twodiscs import benchmark
-from twodiscs.comparison import estimates, scores
-from twodiscs.dynamics import counting
+from twodiscs.comparison import estimates
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
+from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import jobs
-from twodiscs.pipeline.configuration import scene_file
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.sampling.starts import draw_any_starts, origins
@@ -39,21 +38,6 @@ SEED = 1908
 
 
 # Scenes and counts --------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_a_scene_has_the_parameters_that_it_has_alone(path):
-    """Those of its file laid over config.yaml, as Snakemake lays it."""
-    below = read(path.parents[1] / "config.yaml")
-    (alone,) = load(below | read(path)).scenes
-    job = scene_file.effects_job(path, below["seed"])
-    box, dynamics = {"box": job["box"]}, job["dynamics"]
-    keys = alone.keys["dynamics"]
-    assert [box | one for one in dynamics] == [alone.job("dynamics", key) for key in keys]
-    assert (job["name"], job["seed"]) == (path.stem, below["seed"])
-    other = scene_file.effects_job(path, SEED + 1)
-    assert other["seed"] == SEED + 1
-    assert not {one["seed"] for one in other["dynamics"]} & {one["seed"] for one in dynamics}
 
 
 @pytest.mark.parametrize("scene", [ROUGH, ROUGH.with_radius(0.1), Scene(1.5, 1.0, 0.24)], ids=str)
@@ -124,61 +108,55 @@ def request(name):
     return scene
 
 
-def rows_of(found, folder):
-    """Return the rows of effects.csv of points, {name: what ``job`` returned}, as if from files."""
-    return list(effects.rows(store(folder, found)))
+def tables_of(names, rng):
+    """Return {<name>/mean_times: rows} of scenes, drawn from the exact theory."""
+    tables = {}
+    for name in names:
+        box, radii = request(name).box, request(name).radii
+        laws = [Laws(box.scene(radius)) for radius in radii]
+        points = [law.dynamics(rng, relative=1e-2, events=law.scene.events) for law in laws]
+        rows = MeanTimes.rows(box, Theory.rows(box, radii), {"dynamics": points})
+        tables[f"{name}/mean_times"] = rows
+    return tables
 
 
-@pytest.mark.parametrize("name", ["rough", "unequal"])
-def test_a_cheap_run_agrees_with_theory(name, tmp_path):
-    """A small budget at a third of the radii: within Bonferroni's bound for one alarm in 1e6."""
-    asked = scene_file.effects_job(FILES[NAMES.index(name)], SEED)
-    cheap = [one | {"event_budget": 10**6} for one in asked["dynamics"][1::3]]
-    box = Box(**asked["box"])
-    found = effects.job(**asked | {"box": box, "dynamics": cheap}, blocks=1)
-    rows = rows_of({name: found}, tmp_path)
-    z = [abs(row["z"]) for row in rows if row["z"] is not None]
-    assert max(z) < scores.bonferroni_bound(len(z), 1e-6)
-    measured = {(row["radius"], row["quantity"]) for row in rows if row["stderr"]}
-    for one in cheap:
-        assert {(one["radius"], f"{event}_time") for event in figure.SHOWN_EVENTS} <= measured
-    assert bool(found["unmet"]) == (name == "rough")
-    # The same job as that of the scene alone: seeds depend on nothing else.
-    alone = request(name)
-    given = alone.job("dynamics", list(alone.keys["dynamics"])[1]) | {"event_budget": 10**6}
-    assert found["dynamics"][0] == counting.job(**given | {"box": box})
-
-
-def fabricated(rng, name):
-    """Return what ``job`` would of a scene, drawn from the exact theory."""
-    asked = request(name)
-    points = [
-        Laws(scene).dynamics(rng, relative=1e-2, events=scene.events)
-        for scene in map(asked.box.scene, asked.radii)
-    ]
-    unmet = [
-        {"radius": 0.24, "effects": some, "starts": 10**6, "counts": counts}
-        for some, counts in ((asked.effects, [2400, 2000, 1900]), ({}, [15, 1, 0]))
-    ]
-    return {
-        "name": name,
-        "box": asked.box.parameters(),
-        "dynamics": points,
-        "unmet": unmet if name == "rough" else [],
-    }
+BOXES = {name: request(name).box.parameters() for name in NAMES}
 
 
 @pytest.fixture(scope="module")
-def found():
-    """What is counted of the six scenes, fabricated."""
-    rng = np.random.default_rng(1)
-    return {name: fabricated(rng, name) for name in NAMES}
+def rows(tmp_path_factory):
+    """The rows of effects.csv of the six scenes, with fabricated counts."""
+
+    def unmet(scene, times, blocks, seed):
+        return [2400, 2000, 1900] if scene.has_effects else [15, 1, 0]
+
+    tables = tables_of(NAMES, np.random.default_rng(1))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(effects, "unmet", unmet)
+        return written(
+            tmp_path_factory.mktemp("effects"), Effects, tables=tables, scenes=BOXES, seed=SEED
+        )
 
 
-@pytest.fixture(scope="module")
-def rows(found, tmp_path_factory):
-    """The rows of effects.csv of the six scenes."""
-    return rows_of(found, tmp_path_factory.mktemp("points"))
+def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_soon():
+    """By streams of the scene's name and of the radius, for rough and for smooth discs."""
+    tables = tables_of(["rough"], np.random.default_rng(1))
+    given = {"scenes": {"rough": BOXES["rough"]}, "seed": SEED, "blocks": 1}
+    rows = [row for row in effects.rows(tables, **given) if row["quantity"] == "never_met_share"]
+    pairs = [
+        scene
+        for radius in request("rough").radii
+        for scene in (Box(**BOXES["rough"]).scene(radius), PLAIN.scene(radius))
+        if exact.mean_times(scene)["disc_collision"] <= 5
+    ]
+    assert [(row["radius"], row["effects"]) for row in rows] == [
+        (scene.radius, repr(scene.effects)) for scene in pairs for _ in effects.TIMES
+    ]
+    assert {row["replicas"] for row in rows} == {REPLICAS}
+    for i, scene in enumerate(pairs[:2]):
+        stream = stream_seed(SEED, "rough", "unmet", key(scene.radius))
+        counts = effects.unmet(scene, effects.TIMES, 1, stream)
+        assert [row["count"] for row in rows[3 * i : 3 * i + 3]] == counts
 
 
 def test_rows_have_the_exact_times_with_and_without_effects(rows):
@@ -203,10 +181,12 @@ def test_rows_have_the_exact_times_with_and_without_effects(rows):
 def test_rows_of_shares(rows):
     rows = [row for row in rows if row["quantity"] == "never_met_share"]
     assert {row["scene"] for row in rows} == {"rough"}
+    rows = [row for row in rows if row["radius"] == 0.24]
     assert [row["duration"] for row in rows] == 2 * [1e2, 1e3, 1e4]
-    rough, smooth = rows[2], rows[3]
-    assert rough["estimate"] == pytest.approx(1.9e-3)
-    assert rough["stderr"] == pytest.approx((1.9e-3 * (1 - 1.9e-3) / 1e6) ** 0.5)
+    rough, smooth, starts = rows[2], rows[3], effects.BLOCKS * REPLICAS
+    share = 1900 / starts
+    assert rough["estimate"] == pytest.approx(share)
+    assert rough["stderr"] == pytest.approx((share * (1 - share) / starts) ** 0.5)
     assert [row["status"] for row in rows] == 3 * ["sampled"] + 2 * ["too-few"] + ["none-seen"]
     assert smooth["stderr"] is None
     assert rows[5]["estimate"] is None
@@ -216,26 +196,6 @@ def test_rows_of_shares(rows):
     assert smooth["plain"] == pytest.approx(
         np.trapezoid(tail * s, np.log(s)) / exact.mean_times(scene)["disc_collision"], rel=1e-4
     )
-
-
-def test_the_job_of_a_scene_is_that_of_its_file(tmp_path, monkeypatch):
-    """Parameters as the rule hands them on: in a file, with one radius and few events."""
-    asked = scene_file.effects_job(FILES[NAMES.index("unequal")], SEED)
-    asked["dynamics"] = [asked["dynamics"][0] | {"event_budget": 10**5}]
-    parameters, output = tmp_path / "parameters.json", tmp_path / "unequal.json"
-    parameters.write_text(json.dumps(asked))
-    words = ["point", "studies.effects.measure", "--parameters", f"@{parameters}"]
-    assert command(monkeypatch, jobs, *words, "--output", output) == 0
-    point = json.loads(output.read_text())
-    assert point == effects.job(**asked | {"box": Box(**asked["box"])})
-
-
-def test_the_job_of_the_table_gathers_the_points(found, rows, tmp_path, monkeypatch):
-    paths = store(tmp_path / "points", found)
-    output = tmp_path / "effects.csv"
-    assert make_table(monkeypatch, "effects", {}, output, "--points", *paths) == 0
-    assert Effects.read(output) == rows
-    assert list(dict.fromkeys(row["scene"] for row in rows)) == NAMES
 
 
 # The figure ---------------------------------------------------------------------------------------

@@ -10,11 +10,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fabricated import BOX, Laws, make_table, scenes, theory_rows
+from fabricated import BOX, Laws, scenes, theory_rows, written
 from mpmath import mp, mpf
 
-from twodiscs.comparison.rows import area_rows, exact_values, mean_time_rows, volume_rows
-from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
@@ -290,13 +290,16 @@ def measured():
     """Return tables of the source's box, as drawn from the exact laws."""
     rng = np.random.default_rng(11)
     laws = [Laws(scene) for scene in scenes()]
-    true, scene = exact_values(theory_rows()), scenes()[0]
-    sampled = [law.monte_carlo(rng, 10**9) for law in laws]
+    theory = theory_rows()
+    points = {
+        "monte_carlo": [law.monte_carlo(rng, 10**9) for law in laws],
+        "dynamics": [law.dynamics(rng) for law in laws],
+    }
     return {
-        "theory": list(theory_rows()),
-        "volume": volume_rows(true, sampled),
-        "areas": area_rows(scene, true, sampled),
-        "mean_times": mean_time_rows(scene, true, [law.dynamics(rng) for law in laws]),
+        "theory": theory,
+        "volume": Volume.rows(theory, points),
+        "areas": Areas.rows(BOX, theory, points),
+        "mean_times": MeanTimes.rows(BOX, theory, points),
     }
 
 
@@ -403,18 +406,13 @@ def test_errors_in_brackets(value, error, text):
     assert errata.shown(value, error) == text
 
 
-# The job ------------------------------------------------------------------------------------------
+# The table ----------------------------------------------------------------------------------------
 
 
 def test_the_table_is_written(tmp_path, monkeypatch, measured):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
-    paths = {name: tmp_path / f"{name}.csv" for name in measured}
-    for name, path in paths.items():
-        SCENE_TABLES[name].write(path, measured[name])
-    words = [f"{name}={path}" for name, path in paths.items()]
-    output, given = tmp_path / "errata.csv", {"box": BOX.parameters()}
-    assert make_table(monkeypatch, "errata", given, output, "--table", *words) == 0
-    assert Errata.read(output) == errata.rows(measured, BOX)
+    found = written(tmp_path, Errata, tables=measured, box=BOX)
+    assert found == errata.rows(measured, BOX)
 
 
 def test_every_statement_says_where():

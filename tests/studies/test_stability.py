@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from fabricated import make_table
+from fabricated import written
 from matplotlib.text import Text
 from mpmath import mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.rows import volume_rows
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.monte_carlo import Volume
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
@@ -178,7 +179,7 @@ def test_the_better_sampler_is_chosen():
     for distance in (1e-3, 1e-6, 1e-9):
         scene = PAPER.scene(PAPER.largest_radius * (1 - distance))
         point = montecarlo.better_point(scene, QUANTITIES, 2**24, 0.02, 1)
-        rows = volume_rows({(scene.radius, "volume"): exact.volume(scene)}, [point])
+        rows = Volume.rows(Theory.rows(PAPER, [scene.radius]), {"monte_carlo": [point]})
         assert abs(rows[0]["estimate"] / exact.volume(scene) - 1) < 1e-3
         assert point["quantities"]["disc_collision_area"]["hits"] > 1000
 
@@ -242,21 +243,13 @@ def quick(monkeypatch):
     monkeypatch.setattr(stability, "coverage_rows", lambda box, seed: rows(box, seed, 3))
 
 
-def run(monkeypatch, path, function="rows", **changes):
-    """Run the job of a table and return its exit status."""
-    given = {"box": PAPER.parameters(), "seed": 1, "ordinary": 2000, "hard": 1000} | changes
-    return make_table(monkeypatch, "stability", given, path, "--function", function)
+GIVEN = {"box": PAPER, "seed": 1, "ordinary": 2000, "hard": 1000}
 
 
 @pytest.mark.parametrize("box", [PAPER, Box(1e-6, 1e6)], ids=str)
-def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
-    path = tmp_path / "stability.csv"
-    contents = []
-    for _ in range(2):
-        assert run(monkeypatch, path, box=box.parameters()) == 0
-        contents.append(path.read_bytes())
-    assert contents[0] == contents[1]
-    rows = Stability.read(path)
+def test_table_and_figure_of_any_box(box, quick, tmp_path):
+    rows, again = (written(tmp_path, Stability, **GIVEN | {"box": box}) for _ in range(2))
+    assert rows == again
     parts = {row["part"] for row in rows}
     assert parts == {
         "theory", "sampling", "estimates", "times", "dynamics", "reversal", "coverage"
@@ -270,7 +263,11 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path, monkeypatch):
 def test_the_figure_says_how_long_runs_are():
     runs = [("ordinary", 0.2, 50_000_000), ("tiny", 1e-9, 1_000_000)]
     rows = [
-        stability.row("dynamics", "energy_error", case, 0.0, radius=radius, count=count, high=1e-12)
+        Stability.empty(
+            **stability.row("dynamics", "energy_error", case, 0.0, high=1e-12),
+            radius=radius,
+            count=count,
+        )
         for case, radius, count in runs
     ]
     with style.context():
@@ -284,10 +281,8 @@ def test_a_table_without_rows_is_drawn_empty(tmp_path):
         style.save(figure.draw(PAPER, {"stability": []}), tmp_path / "figure.png")
 
 
-def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path, monkeypatch):
-    path = tmp_path / "long_runs.csv"
-    assert run(monkeypatch, path, "dynamics_rows") == 0
-    rows = LongRuns.read(path)
+def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path):
+    rows = written(tmp_path, LongRuns, **GIVEN)
     assert {row["part"] for row in rows} == {"dynamics"}
     assert {row["quantity"] for row in rows} == {
         "energy_error", "smallest_gap", "excess", "lanes_lost"
@@ -304,11 +299,7 @@ def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path, monkeypatch):
         ({"hard": 1e6}, "hard must be an integer of at least 1, not 1000000.0"),
     ],
 )
-def test_mistakes_are_one_sentence(change, sentence, capsys, tmp_path, monkeypatch):
-    for name, function in (("stability", "rows"), ("long_runs", "dynamics_rows")):
-        assert run(monkeypatch, tmp_path / f"{name}.csv", function, **change) == 2
-        said = capsys.readouterr().err
-        assert said.startswith("error: ")
-        assert sentence in said
-        assert said.count("\n") == 1
-    assert not any(tmp_path.iterdir())
+def test_mistakes_are_named_before_anything_is_computed(change, sentence):
+    for table in (Stability, LongRuns):
+        with pytest.raises(ValueError, match=sentence):
+            table.rows(**GIVEN | change)

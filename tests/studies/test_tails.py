@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from fabricated import make_table
+from fabricated import written
 
 from twodiscs.dynamics import trajectory
 from twodiscs.dynamics.law import law_of
@@ -159,14 +159,12 @@ def test_cases_of_other_boxes():
     assert [event for event, _ in tails.cases(Box(1e6, 1.0))] == 2 * [HOPS[0]]
 
 
-PARAMETERS = {"box": BOX.parameters(), "samples": 5, "replicas": 2000, "seed": 1}
+PARAMETERS = {"box": BOX, "samples": 5, "replicas": 2000, "seed": 1}
 
 
-def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch):
+def test_the_table_is_written_and_the_figure_reads_it(tmp_path, monkeypatch):
     monkeypatch.setattr(tails, "WEIGHTED", (5, 50))
-    path = tmp_path / "tails.csv"
-    assert make_table(monkeypatch, "tails", PARAMETERS, path) == 0
-    rows = Tails.read(path)
+    rows = written(tmp_path, Tails, **PARAMETERS)
     assert [row["quantity"] for row in rows].count("rate") == 1
     assert {row["law"] is None for row in rows if row["radius"] == 0.3} == {True, False}
     with style.context():

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from fabricated import make_table
+from fabricated import written
 
-from twodiscs.comparison.scene_tables import MeanTimes
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.figures.kit import style
 from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.box import Box
@@ -140,22 +140,8 @@ def read(box):
     return {"a/mean_times": rows, "distributions": passages_of("a", box, rows)}
 
 
-def run(monkeypatch, folder, box, read):
-    """Run the job of the table and return its exit status; ``read`` is {name: rows}."""
-    words = []
-    for name, rows in read.items():
-        path = folder / f"{name}.csv"
-        path.parent.mkdir(exist_ok=True)
-        (MeanTimes if name.endswith("mean_times") else Distributions).write(path, rows)
-        words.append(f"{name}={path}")
-    given, output = {"scenes": {"a": box.parameters()}}, folder / "thresholds.csv"
-    return make_table(monkeypatch, "thresholds", given, output, "--table", *words)
-
-
-def test_the_job_writes_the_table_and_the_figure_reads_it(box, read, tmp_path, monkeypatch):
-    assert run(monkeypatch, tmp_path, box, read) == 0
-    found = Thresholds.read(tmp_path / "thresholds.csv")
-    assert found == list(thresholds.rows(read, {"a": box.parameters()}))
+def test_the_table_is_written_and_the_figure_reads_it(box, read, tmp_path):
+    found = written(tmp_path, Thresholds, tables=read, scenes={"a": box.parameters()})
     assert {row["quantity"] for row in found} == {"mean_time", "first_passage"}
     shown = read | {"thresholds": found, "mean_times": read["a/mean_times"]}
     entry = STUDY_FIGURES["thresholds"]
@@ -185,11 +171,10 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(box, read, tmp_path, m
     assert "first passages" in hops.get_legend_handles_labels()[1]
 
 
-def test_without_times_there_are_first_passages(box, read, tmp_path, monkeypatch):
+def test_without_times_there_are_first_passages(box, read, tmp_path):
     """The main scene may measure no mean times; then the fits are those of the passages."""
     passages = {"distributions": read["distributions"]}
-    assert run(monkeypatch, tmp_path, box, passages) == 0
-    found = Thresholds.read(tmp_path / "thresholds.csv")
+    found = written(tmp_path, Thresholds, tables=passages, scenes={"a": box.parameters()})
     assert {row["quantity"] for row in found} == {"first_passage"}
     with style.context():
         figure.draw(box, passages | {"thresholds": found}).draw_without_rendering()

@@ -130,7 +130,9 @@ class Checkout:
                 found.append([start[1], ()])
             elif wildcards := re.match(r"    wildcards: (.+)$", line):
                 found[-1][1] = tuple(wildcards[1].split(", "))
-        return sorted((rule, wildcards) for rule, wildcards in found if rule != "all")
+        return sorted(
+            (rule, wildcards) for rule, wildcards in found if rule not in ("all", "default")
+        )
 
     def edit(self, path, text):
         """Append ``text`` to a file."""

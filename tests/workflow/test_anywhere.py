@@ -9,7 +9,7 @@ import shutil
 
 import pytest
 import yaml
-from checkout import BELOW, Checkout, fresh, use
+from checkout import BELOW, Checkout, use
 
 TINY = {
     "shared": ["errata", "report"],
@@ -138,18 +138,3 @@ def test_as_a_module_it_plans_every_job_of_the_default_configuration(
     use(place, yaml.safe_load(unbuilt.configuration.read_text()), "discs_", more)
     alone = [(f"discs_{rule}", wildcards) for rule, wildcards in planned]
     assert place.jobs("discs_all") == sorted([*alone, ("discs_all", ())])
-
-
-def test_neither_home_nor_temporary_folder_nor_user_is_needed(tmp_path, monkeypatch):
-    def missing(user):
-        raise KeyError(user)
-
-    checkout = fresh(tmp_path / "checkout")
-    (tmp_path / "file").touch()
-    for name in ("HOME", "TMPDIR", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR"):
-        monkeypatch.setenv(name, str(tmp_path / "file" / "below"))
-    checkout.snakemake("--cores", "1", "results/six/grid.csv")
-    for name in ("LOGNAME", "USER", "LNAME", "USERNAME"):
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr("pwd.getpwuid", missing)
-    assert checkout.jobs("results/six/grid.csv") == []

@@ -17,7 +17,6 @@ TIMED = (
     "provenance.json",
     "benchmarks/",
     "logs/",
-    "points/cost/",
 )
 
 
@@ -31,8 +30,13 @@ def test_everything_that_is_called_for_is_built(complete):
     walls = {name for name in results if name.startswith("walls/") and name.endswith(".csv")}
     assert walls == {f"walls/{n}.csv" for n in ("grid", "theory", "mean_times", "check", "cost")}
     assert {"check.passed", "paper.pdf", "report.html", "configuration.json"} <= set(results)
-    may_be_empty = ("logs/", ".compiled/")
-    assert [n for n, text in results.items() if not text and not n.startswith(may_be_empty)] == []
+    assert [n for n, text in results.items() if not text and not n.startswith("logs/")] == []
+
+
+def test_every_file_is_made_by_a_rule(complete):
+    """Each may be asked for by its path."""
+    names = [f"results/{name}" for name in complete.results()]
+    assert complete.jobs("--", *names) == []
 
 
 def test_report_holds_every_figure_and_table_and_asks_for_nothing_from_outside(complete):
@@ -62,7 +66,7 @@ def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
     built.replace("src/twodiscs/theory/exact.py", '"exact": x}', wrong)
     # Points are as they were: exact values are made again, and what is compared with them.
-    again = "--rerun-triggers", "mtime", "--forcerun", "theory"
+    again = "--rerun-triggers", "mtime", "--forcerun", "exact"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
     assert run.returncode != 0
     said = run.stdout + run.stderr
@@ -86,28 +90,62 @@ def test_what_is_deleted_comes_back(built):
     assert made <= {*built.jobs(*(f"results/{name}" for name in lost))}
 
 
-def test_a_deleted_point_comes_back_with_what_was_made_of_it(built):
-    (built.path / "results/six/points/monte_carlo/0.2.json").unlink()
-    (built.path / "results/six/points/cost/dynamics-0.3.json").unlink()
-    bundle = ("scene=six", "bundle=0000")
-    assert {("monte_carlo", bundle), ("dynamics", bundle)} <= {*built.jobs()}
+def test_a_deleted_point_comes_back_with_its_table(built):
+    point = built.path / "results/six/points/monte_carlo/0.2.json"
+    content = point.read_bytes()
+    point.unlink()
+    assert built.jobs() == []  # nothing that is asked for is missing
+    built.snakemake("--cores", "1", "results/six/points/monte_carlo/0.2.json")
+    assert point.read_bytes() == content
 
 
-def test_what_is_damaged_is_made_again(built):
+def test_an_edited_point_is_refused_and_an_edited_table_is_named(built):
     point = built.path / "results/six/points/dynamics/0.2.json"
-    point.write_text(point.read_text().replace("1", "2", 1))
-    drawn = built.path / "results/six/figures/volume.pdf"
-    drawn.write_bytes(drawn.read_bytes()[:1000])
-    jobs = built.jobs("check", "results/six/figures/volume.pdf")
-    assert ("dynamics", ("scene=six", "bundle=0000")) in jobs
-    assert ("figure", ("scene=six", "figure=volume")) in jobs
+    text = point.read_text()
+    point.write_text(text.replace("1", "2", 1))
+    run = built.snakemake("--cores", "1", "results/six/mean_times.csv", passes=False)
+    assert run.returncode != 0
+    log = (built.path / "results/logs/six/mean_times.log").read_text()
+    assert log.endswith("0.2.json is not what its job wrote; delete it, and it is made again\n")
+    assert log.count("\n") == 1
+    point.unlink()
+    built.snakemake("--cores", "1", "results/six/mean_times.csv")
+    assert point.read_text() == text
+
+    table = built.path / "results/six/volume.csv"
+    table.write_text(table.read_text().replace("sampled", "too-few", 1))
+    run = built.snakemake("--cores", "1", "audit", passes=False)
+    assert run.returncode != 0
+    assert "six/volume.csv is not what its job wrote" in run.stdout
+
+
+def test_a_dry_run_changes_nothing(built):
+    def everything():
+        return {
+            path: path.read_bytes()
+            for path in built.path.rglob("*")
+            if path.is_file() and ".snakemake/log" not in str(path)
+        }
+
+    (built.path / "results/six/points/dynamics/0.2.json").unlink()
+    before = everything()
+    for words in (("--dry-run",), ("--lint",), ("--list-rules",), ("--dry-run", "--forceall")):
+        built.snakemake(*words)
+    assert everything() == before
+
+
+def test_lint_is_clean_and_every_rule_says_what_it_does(unbuilt):
+    unbuilt.snakemake("--lint")
+    listed = unbuilt.snakemake("--list-rules").stdout.splitlines()
+    assert len(listed) > 40
+    assert [line for line in listed if "(" not in line] == []
 
 
 def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     rocrate = pytest.importorskip(
         "rocrate.rocrate", reason="rocrate, of the extra workflow, is not installed"
     )
-    others = ("logs/", ".compiled/", "benchmarks/", ".record/", "points/")
+    others = ("logs/", "benchmarks/", "points/", "effects/")
     called = {name for name in built.results() if not any(one in name for one in others)}
     built.snakemake("--cores", "1", "crate")
     crate = rocrate.ROCrate(built.path / "results")
@@ -115,5 +153,5 @@ def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     assert set(files) == called
     for name, one in files.items():
         assert one["sha256"] == sha256((built.path / "results" / name).read_bytes()).hexdigest()
-        assert one["description"] != crate.get("_workflow/workflow/rules/points.smk")["description"]
+        assert one["description"] != crate.get("_workflow/points.smk")["description"]
     assert built.jobs("crate") == []

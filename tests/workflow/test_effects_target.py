@@ -1,35 +1,44 @@
-"""Effects as a target: a job for each file of config/scenes, and what is made of them."""
+"""Effects as a target: the mean times of the scenes of config/scenes, and what is made of them."""
 
 from checkout import REPOSITORY
 
 FILES = sorted(path.stem for path in (REPOSITORY / "config" / "scenes").glob("*.yaml"))
-POINTS = [("effects_point", (f"file={name}",)) for name in FILES]
 FIGURE = ("shared_figure", ("figure=effects",))
 MADE = [("effects_cost", ()), ("effects_table", ()), FIGURE]
 
 
-def effects(jobs):
-    """Return the jobs about effects."""
-    return [job for job in jobs if job[0].startswith("effects_") or job == FIGURE]
+def of_effects(jobs, rule):
+    """Return the scenes of the study that have jobs of a ``rule``."""
+    parts = (part for name, wildcards in jobs for part in wildcards if name == rule)
+    return sorted({part.partition("effects/")[2] for part in parts if "=effects/" in part})
 
 
-def test_the_target_is_a_job_for_each_scene_and_what_is_made_of_them(unbuilt):
+def test_the_target_counts_every_scene_as_any_other(unbuilt):
     jobs = unbuilt.jobs("effects")
-    assert jobs == sorted([*POINTS, *MADE, ("effects", ()), ("compile", ("kernels=dynamics",))])
+    assert {rule for rule, _ in jobs} == {
+        *("dynamics", "exact", "table", "effects", "effects_cost", "effects_table"),
+        "shared_figure",
+    }
+    for rule in ("dynamics", "exact", "table"):
+        assert of_effects(jobs, rule) == FILES
+    assert {*MADE} <= {*jobs}
 
 
 def test_it_is_part_of_all(planned):
-    assert effects(planned) == sorted([*POINTS, *MADE])
+    assert {*MADE} <= {*planned}
 
 
 def test_edit_of_a_scene_counts_that_one_again(built):
     built.edit("config/scenes/torus.yaml", "# a remark\n")
+    assert {rule for rule, _ in built.jobs()} == {"effects_cost", *FOLLOWING}
+    built.replace("config/scenes/torus.yaml", "accuracy: draft", "accuracy: 2e-2")
     jobs = built.jobs()
-    assert [job for job in jobs if job[0] == "effects_point"] == [
-        ("effects_point", ("file=torus",))
-    ]
-    assert FIGURE in jobs
+    assert of_effects(jobs, "dynamics") == ["torus"]
     assert {rule for rule, _ in jobs} == {
-        *("effects_point", "effects_table", "effects_cost", "shared_figure"),
-        *("paper", "report", "manifest", "provenance"),
+        *("dynamics", "table", "effects_cost", "effects_table"),
+        *FOLLOWING,
     }
+
+
+#: What is made of the tables of the study.
+FOLLOWING = {"shared_figure", "paper", "report", "manifest", "provenance"}

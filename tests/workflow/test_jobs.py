@@ -29,25 +29,25 @@ def test_edits_of_comments_and_docstrings_rerun_nothing(built):
     source = "src/twodiscs"
     built.edit(f"{source}/dynamics/counting.py", "# a remark\n")
     built.edit(f"{source}/figures/hop_histogram.py", "\n\n# a remark\n")
-    counting = '"""Return ``count_events`` for plain values: the job of one radius."""'
-    built.replace(f"{source}/dynamics/counting.py", counting, '"""The job\n\n    of a radius."""')
+    law = '"""Return the ``Law`` of a ``Scene``."""'
+    built.replace(f"{source}/dynamics/law.py", law, '"""The law\n\n    of a scene."""')
     meaning = '"""expectation − exact: what the thickness of the shell adds"""'
-    built.replace(f"{source}/comparison/scene_tables.py", meaning, '"""how far off"""')
+    built.replace(f"{source}/comparison/tables/monte_carlo.py", meaning, '"""how far off"""')
     table = '"""One row per radius and quantity: the exact values."""'
-    built.replace(f"{source}/comparison/scene_tables.py", table, '"""The exact values."""')
+    built.replace(f"{source}/comparison/tables/exact.py", table, '"""The exact values."""')
     assert built.jobs() == []
 
 
 def test_one_more_radius_runs_one_job_of_each_kind(built):
     built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
     jobs = built.jobs()
-    bundle = SIX, "bundle=0000"
-    assert [job for job in jobs if any("bundle=" in part for part in job[1])] == expected(
-        ("monte_carlo", *bundle), ("dynamics", *bundle)
+    radius = SIX, "radius=0.1234"
+    assert [job for job in jobs if any("radius=" in part for part in job[1])] == expected(
+        ("monte_carlo", *radius), ("dynamics", *radius)
     )
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
-        *("monte_carlo", "dynamics", "grid", "theory", "table", "check"),
+        *("monte_carlo", "dynamics", "exact", "table", "check"),
         *("errata_table", "figure", "paper", "report", "manifest", "provenance"),
         *("thresholds_table", "shared_figure"),
     }
@@ -55,7 +55,7 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 
 CODE = "\n\nREMARK = 1\n"
 DOCUMENTS = [("paper",), ("report",), ("manifest",), ("provenance",)]
-COUNTED = {"monte_carlo", "dynamics", "intervals", "compile", "effects_point", "effects_cost"}
+COUNTED = {"monte_carlo", "dynamics", "intervals", "effects_cost"}
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,9 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
 
 
 def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
-    built.edit("src/twodiscs/comparison/scene_tables.py", CODE)
+    built.edit("src/twodiscs/comparison/tables/base.py", CODE)
     rules = {rule for rule, _ in built.jobs()}
-    assert {"grid", "theory", "trajectory", "table", "check", "figure", "paper"} <= rules
+    assert {"exact", "trajectory", "table", "check", "figure", "paper"} <= rules
     assert not COUNTED & rules
 
 
@@ -108,7 +108,7 @@ def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
 
 def test_edit_of_a_caption_counts_nothing_again(built):
     built.replace(
-        "src/twodiscs/studies/catalogue.py", "How often a hop comes", "How often hops come"
+        "src/twodiscs/studies/distributions/study.py", "How often a hop", "How often hops"
     )
     jobs = built.jobs()
     assert ("shared_figure", ("figure=distributions",)) in jobs
@@ -128,10 +128,10 @@ def test_edit_of_the_engine_reruns_dynamics_and_what_follows(built, module):
     rules = {rule for rule, _ in jobs}
     # A trajectory follows the law of events and counts nothing.
     assert ("trajectory" in rules) == (module == "law")
-    assert {"compile", "dynamics", "intervals", "effects_point", "check", "paper"} <= rules
-    assert not {"monte_carlo", "grid", "theory"} & rules
-    assert ("compile", ("kernels=montecarlo",)) not in jobs
-    assert len([job for job in jobs if job[0] == "dynamics"]) == 2  # a bundle of each scene
+    assert {"dynamics", "effects_table", "check", "paper"} <= rules
+    assert ("intervals" in rules) == (module == "law")
+    assert not {"monte_carlo", "exact"} & rules
+    assert len([job for job in jobs if job[0] == "dynamics" and SIX in job[1]]) == 6
     assert ("table", (SIX, "table=volume")) not in jobs
     assert ("figure", (SIX, "figure=volume")) not in jobs
 
@@ -140,8 +140,8 @@ def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):
     built.configure(lambda mapping: mapping["scenes"][0].update(accuracy=9e-4))
     jobs = built.jobs()
     rules = {rule for rule, _ in jobs}
-    assert len([job for job in jobs if job[0] == "dynamics"]) == 1
-    assert not {"monte_carlo", "intervals", "trajectory", "grid", "theory", "compile"} & rules
+    assert len([job for job in jobs if job[0] == "dynamics"]) == 6
+    assert not {"monte_carlo", "intervals", "trajectory", "exact"} & rules
     assert not [job for job in jobs if WALLS in job[1]]
 
 
@@ -167,7 +167,7 @@ def test_a_third_box_leaves_the_others_alone(built):
 def test_a_scene_that_watches_wall_times_runs_nothing_else(planned):
     jobs = [job for job in planned if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
-        *("grid", "theory", "dynamics", "table", "figure"),
+        *("exact", "dynamics", "table", "figure"),
     }
     drawn = {part for rule, wildcards in jobs for part in wildcards if part.startswith("figure=")}
     assert "figure=mean_wall_time" in drawn

@@ -14,7 +14,7 @@ FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
 #: Rules for all scenes together, whatever else is built once.
-ALWAYS = {"check", "compile", "manifest", "provenance"}
+ALWAYS = {"check", "manifest", "provenance"}
 
 DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
 
@@ -58,7 +58,7 @@ def of(jobs, scene):
         parts = (part for _, wildcards in mine for part in wildcards)
         return {part.partition("=")[2] for part in parts if part.startswith(f"{kind}=")}
 
-    return {rule for rule, _ in mine}, named("table"), named("figure")
+    return {rule for rule, _ in mine}, named("table"), named("figure") - {"animation"}
 
 
 @pytest.mark.parametrize("effects", [{}, {"field": 0.5, "mass_ratio": 2}])
@@ -82,20 +82,14 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
             rules -= {"animate"}
-            rules |= {"compile_effects"} if rules & {*STAGES} else set()
             figures -= {"pressure"}  # there is none in a field
         else:
             figures |= DRAWINGS
         if tables:
             rules |= {"table"}
             tables |= {"check", "cost"}
-        assert of(found, f"s{i}") == (rules | {"grid", "theory", "figure"}, tables, figures)
-
-
-def test_kernels_that_nothing_needs_are_not_compiled(unbuilt, tmp_path):
-    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
-    found = jobs(unbuilt, tmp_path / "one.yaml", [scene])
-    assert [w for rule, w in found if rule == "compile"] == [("kernels=montecarlo",)]
+        tables |= {"grid", "theory"}
+        assert of(found, f"s{i}") == (rules | {"exact", "figure"}, tables, figures)
 
 
 def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
@@ -104,21 +98,20 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
     assert {*CALLED} <= {*BLOCKS}
     found = jobs(unbuilt, tmp_path / "six.yaml", scenes)
     shared = {rule for rule, wildcards in found if "scene" not in repr(wildcards)}
-    assert shared == ALWAYS - {"compile"}  # nothing without effects is compiled
+    assert shared == ALWAYS
     for request in load({"scenes": scenes}).scenes:
         rules, tables, figures = of(found, request.name)
         assert figures == CALLED.get(request.name, ALL)
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
         assert rules - {"intervals", "trajectory"} == {
-            *("grid", "theory", "compile_effects", "monte_carlo", "dynamics"),
-            *("table", "figure"),
+            *("exact", "monte_carlo", "dynamics", "table", "figure"),
         }
-        assert tables == {*request.tables} - {"grid", "theory", "trajectory"}
+        assert tables == {*request.tables} - {"trajectory"}
         for stage in STAGES:
-            bundles = [w for r, w in found if r == stage and f"scene={request.name}" in w]
-            expected = request.bundles[stage]
-            assert {(f"scene={request.name}", f"bundle={one}") for one in expected} == {*bundles}
+            points = [w for r, w in found if r == stage and f"scene={request.name}" in w]
+            expected = {(f"scene={request.name}", f"radius={key}") for key in request.keys[stage]}
+            assert {*points} == expected
 
 
 @pytest.mark.parametrize("name", BLOCKS)
@@ -154,7 +147,7 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
         for name, study in STUDIES.items()
         if study.shared
     }
-    made["effects"] |= {"effects_point", "effects_cost"}
+    made["effects"] |= {"effects_cost"}
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path = tmp_path / "shared.yaml"
     for names in (["errata", "report"], ["paper"]):

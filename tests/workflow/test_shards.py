@@ -1,4 +1,6 @@
-"""Points in shards: plans go on until the accuracy is reached, and no shard is done twice."""
+"""Points in shards: jobs that are known beforehand, and none is done twice."""
+
+import shutil
 
 import pytest
 import yaml
@@ -13,8 +15,8 @@ TINY = {
             "box": {"width": 1.5, "height": 1.0},
             "radii": [0.24],
             "watch": {"mean_times": ["horizontal_hop", "top_wall"]},
-            "accuracy": 0.01,
-            "event_budget": 4e7,
+            "accuracy": 1e-3,
+            "event_budget": 1e10,
         }
     ],
 }
@@ -29,67 +31,82 @@ def change(place, **keys):
     place.configuration.write_text(yaml.safe_dump(content))
 
 
-def build(place, *arguments):
-    """Build the mean times; return (the bytes of them, what was written below points)."""
-    before = written(place)
-    place.snakemake("--cores", "2", *arguments, "--", TABLE)
-    after = written(place)
-    new = {name: stamp for name, stamp in after.items() if before.get(name) != stamp}
-    return (place.path / TABLE).read_bytes(), new
+def build(place):
+    """Build the mean times; return them."""
+    place.snakemake("--cores", "2", "--", TABLE)
+    return (place.path / TABLE).read_bytes()
 
 
-def written(place):
-    """Return {path: time stamp} of the files of points, shards and plans."""
-    folder = place.path / "results" / "tiny" / "points"
-    files = (
-        path for path in folder.rglob("*.json") if not {"cost", ".record", "needed"} & {*path.parts}
-    )
-    return {path.relative_to(folder).as_posix(): path.stat().st_mtime_ns for path in files}
+def shards(place):
+    """Return {path: time stamp} of the shards."""
+    folder = place.path / "results" / "tiny" / "shards"
+    return {path: path.stat().st_mtime_ns for path in folder.rglob("*.json")}
 
 
-def shards(new):
-    """Return those of the files ``new`` that are shards."""
-    return {name: new[name] for name in new if name.split("/")[-1][0] in "ah"}
+def test_shards_are_jobs_that_a_dry_run_shows(unbuilt, tmp_path):
+    place = Checkout(tmp_path, unbuilt)
+    change(place)
+    found = {}
+    for rule, wildcards in place.jobs(TABLE):
+        found.setdefault(rule, []).append(dict(word.split("=") for word in wildcards))
+    assert len(found["dynamics"]) == 1
+    assert {one["part"] for one in found["shard"]} == {"all", "horizontal_hop"}
+    assert len(found["shard"]) > 5
 
 
 @pytest.mark.slow
 def test_no_shard_is_done_twice(unbuilt, tmp_path):
     place = Checkout(tmp_path, unbuilt)
     change(place)
-    table, new = build(place)
-    first = shards(new)
-    assert {name.split("/")[-1].split("-")[0] for name in first} == {"all", "horizontal_hop"}
+    table = build(place)
+    assert table.count(b",0.001,reached,") == 2
+    first = shards(place)
 
-    # A tighter accuracy takes more shards, however its build was interrupted.
-    change(place, accuracy=0.001)
-    build(place, "--until", "plan")
-    assert (place.path / TABLE).read_bytes() == table
-    tighter = build(place)[0]
-    assert tighter.count(b",0.001,reached,") == 2
-    assert all(written(place)[name] == stamp for name, stamp in first.items())
-    more = shards(written(place)).keys() - first.keys()
-    assert more
+    # A tighter accuracy takes more shards: of each part the last one alone may be another.
+    change(place, accuracy=5e-4)
+    assert build(place).count(b",0.0005,reached,") == 2
+    second = shards(place)
+    assert all(second[path] == stamp for path, stamp in first.items())
+    assert len(second) > len(first)
 
     # Another radius is of no consequence to the point there is; the old accuracy is still known.
     change(place, radii=[0.24, 0.3])
-    rows, new = build(place)
-    assert all("0.3" in name for name in new if "/plan-" not in name and "0.24.json" not in name)
-    assert not {name for name in shards(new) if "/0.24/" in name}
-    assert rows.startswith(table)
+    assert build(place).startswith(table)
+    assert all(shards(place)[path] == stamp for path, stamp in second.items())
 
 
 @pytest.mark.slow
-def test_points_go_from_shards_to_bundles_and_back(unbuilt, tmp_path):
-    place = Checkout(tmp_path, unbuilt)
-    change(place)
-    sharded = build(place)[0]
-    change(place, shard_events=1e9, accuracy=0.02)
-    bundled = build(place)[0]
-    assert b",0.02,reached," in bundled
-    change(place)
-    assert build(place)[0] == sharded
-    change(place, shard_events=1e9, accuracy=0.02)
-    assert build(place)[0] == bundled
+def test_the_size_of_shards_is_of_no_consequence(unbuilt, tmp_path):
+    tables = []
+    for size in (1e7, 3e7, 1e8):
+        place = Checkout(tmp_path / f"{size:g}", unbuilt)
+        place.path.mkdir()
+        change(place, shard_events=size)
+        tables.append(build(place))
+        assert shards(place)
+    assert tables[0] == tables[1] == tables[2]
+
+
+@pytest.mark.slow
+def test_shards_of_two_sites_are_joined_by_copying(unbuilt, tmp_path):
+    """One site does the first shards, another one the rest; a third one joins them."""
+    whole = Checkout(tmp_path / "whole", unbuilt)
+    whole.path.mkdir()
+    change(whole)
+    table = build(whole)
+    files = [path.relative_to(whole.path) for path in sorted(shards(whole))]
+    sites = [files[: len(files) // 2], files[len(files) // 2 :]]
+    joined = Checkout(tmp_path / "joined", unbuilt)
+    joined.path.mkdir()
+    change(joined)
+    for i, some in enumerate(sites):
+        site = Checkout(tmp_path / f"site-{i}", unbuilt)
+        site.path.mkdir()
+        change(site)
+        site.snakemake("--cores", "2", "--", *map(str, some))
+        shutil.copytree(site.path / "results", joined.path / "results", dirs_exist_ok=True)
+    assert "shard" not in {rule for rule, _ in joined.jobs(TABLE)}
+    assert build(joined) == table
 
 
 @pytest.mark.slow
@@ -101,4 +118,4 @@ def test_as_a_module_shards_are_found_below_a_prefix(unbuilt, tmp_path):
     place.path.mkdir()
     use(place, TINY, "discs_", BELOW)
     place.snakemake("--cores", "2", "--", f"below/{TABLE}")
-    assert (place.path / "below" / TABLE).read_bytes() == build(alone)[0]
+    assert (place.path / "below" / TABLE).read_bytes() == build(alone)

@@ -1,113 +1,144 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
 import sys
-from hashlib import blake2b
-from itertools import count
+from dataclasses import replace
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs.pipeline.configuration.files import (
-    GATHERED,
-    KERNELS,
-    Files,
-    as_json,
-    contents,
-    figure_job,
-    kept,
-    named_tables,
-    shared_tables,
-)
+from twodiscs.pipeline.arguments import box_arguments, word, words
+from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
+from twodiscs.studies.effects.study import SCENES as EFFECTS
 
-FILES = Files(CONFIGURATION, BUILT)
-RESULTS = FILES.folder
-SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 
-# Who reads a configuration reads this catalogue too, for the names of what is built once. Captions
-# are in it and columns of tables, which are of no consequence for what is counted in a scene.
-NAMES_ALONE = ("studies.catalogue",)
 
-# The Python that runs Snakemake also runs the jobs, which end when it does.
+def source(path):
+    """Return where a text of this workflow is: in a checkout, or where Snakemake fetched it to."""
+    here = os.path.relpath(os.path.join(str(workflow.current_basedir), "../..", path))
+    return here if os.path.exists(here) else workflow.source_path(f"../../{path}")
+
+
+# The scenes of the configuration by their folders, and those of the study of effects.
+EFFECT_FILES = [source(f"config/scenes/{name}.yaml") for name in EFFECTS]
+CONFIGURATION = replace(
+    CONFIGURATION,
+    effect_scenes=[
+        load({"seed": CONFIGURATION.seed} | read(file)).scenes[0]
+        for file in EFFECT_FILES
+    ],
+)
+SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
+SCENES |= {f"effects/{scene.name}": scene for scene in CONFIGURATION.effect_scenes}
+
+FILES = Files(CONFIGURATION, SCENES)
+RESULTS = FILES.folder
+CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
+
+if cost.days(CONFIGURATION.scenes) > 1:
+    logger.warning(
+        f"This configuration takes some {cost.days(CONFIGURATION.scenes):.2g} days of processor time;"
+        " snakemake forecast says it better."
+    )
+
+# The Python that runs Snakemake also runs the jobs, which end when it does and import nothing from
+# the folder that they are run in.
 os.environ.update(
     TWODISCS_WORKFLOW=str(os.getpid()),
+    PYTHONSAFEPATH="1",
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
     ),
 )
 
 
-NUMBER, KEY = "[0-9]+", r"[0-9][0-9.e+-]*"
-
-
 wildcard_constraints:
     scene="|".join(SCENES),
-    table="|".join(GATHERED),
-    kernels="|".join(KERNELS),
     stage="|".join(STAGES),
-    # A radius, or the number of a bundle of them.
-    key=KEY,
-    bundle=KEY,
-    # A plan of shards; a shard, by its part of the work and its pieces of that; names of shards.
-    round=NUMBER,
+    radius=r"[0-9][0-9.e+-]*",
     part="[a-z_]+",
-    first=NUMBER,
-    stop=NUMBER,
-    name="[0-9a-f]+",
-
-
-def one_of(names):
-    """Return the pattern of a wildcard that is one of ``names``; without any nothing matches."""
-    return "|".join(names) or "(?!)"
-
-
-def log_of(name):
-    """Return the path of the log of a job."""
-    return f"{RESULTS}/logs/{name}.log"
-
-
-def benchmark_of(name):
-    """Return the path of what Snakemake measures of a job."""
-    return f"{RESULTS}/benchmarks/{name}.tsv"
+    first="[0-9]+",
+    stop="[0-9]+",
 
 
 def code(*modules, without=()):
-    """Return the fingerprint of modules that a job runs, and of all that they import.
+    """Return the fingerprint of the code that a job runs: modules, and all that they import.
 
-    To be named are those that ``jobs`` finds by their name: what does the work, and besides how a
-    figure looks and how tables are read, or the columns of the table that is written.
+    Catalogues are left out: of them a job uses the entry that its parameters name.
     """
-    return fingerprint("pipeline.jobs", *modules, without=without)
+    catalogues = ("figures.catalogue", "studies.catalogue", "comparison.scene_tables")
+    return fingerprint(*modules, without=(*catalogues, *without))
 
 
-def figure_code(module):
-    """Return the fingerprint of what draws a figure."""
-    return code(module, "comparison.tables", "figures.kit.style")
-
-
-def table_code(module, table):
-    """Return the fingerprint of what makes a table, a class, and of what declares its columns."""
-    return code(module, table.__module__.partition(".")[2])
-
-
-def about(scene, seed=CONFIGURATION.seed):
-    """Return what the record of a job calls the scene and the root seed; None for what is not used."""
-    words = {"scene": scene, "seed": seed}
-    return ", ".join(f"{k} {v}" for k, v in words.items() if v is not None)
+def box(w):
+    """Return the arguments that say what the box of the scene of a job is."""
+    scene = SCENES[w.scene] if "scene" in w.keys() else MAIN
+    return box_arguments(scene.box) if scene else ""
 
 
 def minutes(stage=None):
-    """Return how long a job of a stage, or of the one among its wildcards, may take: more when retried."""
-    return lambda w, attempt: attempt * SCENES[w.scene].minutes(
-        stage or w.stage, w.get("bundle")
-    )
+    """Return how long a job of a stage may take, more when it is retried."""
+    return lambda w, attempt: attempt * cost.minutes(SCENES[w.scene], stage or w.stage)
 
 
-def drawn(w):
-    """Return the scene that a figure is about: the main one, if there is one, for one of no scene."""
-    return SCENES.get(w.get("scene"), MAIN)
+def shards_of(stage):
+    """Return an input function: the shards of a point of a stage, none where one job does it all."""
+
+    def files(w):
+        folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
+        pieces = cost.shards(SCENES[w.scene], stage, float(w.radius))
+        return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
+
+    return files
+
+
+def work_of(stage):
+    """Return a function of the wildcards: what the job of a stage at a radius is told."""
+    return lambda w: words(SCENES[w.scene].arguments(stage, w.radius))
+
+
+# The module of each stage is imported by its own jobs alone.
+POINT = {
+    stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
+    for stage, module in STAGES.items()
+}
+
+ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
+
+
+def about(w):
+    """Return the scene that a figure is about: the main one, if there is one, for one of none."""
+    return SCENES[w.scene] if "scene" in w.keys() else MAIN
+
+
+def origin(w):
+    """Return what a figure says in its metadata of what made it."""
+    scene = about(w)
+    return (f"scene {scene.name}, " if scene else "") + f"seed {CONFIGURATION.seed}"
+
+
+def radius_of(w):
+    """Return the argument that says the radius of a trajectory, for figures of one."""
+    shown = "trajectory" in ENTRIES[w.figure].tables
+    return f"--radius {about(w).watch.trajectory}" if shown else ""
+
+
+def figure_code(w):
+    """Return the fingerprint of the code that draws a figure."""
+    return code("pipeline.jobs.figure", "figures.kit.style", ENTRIES[w.figure].module)
+
+
+def figure_tables(w, input):
+    """Return the tables that a figure reads as arguments."""
+    reads = FILES.figure_reads(ENTRIES[w.figure], w.get("scene"))
+    return assigned(reads, input.tables)
+
+
+def caption(w):
+    """Return the caption of a figure in Snakemake's report."""
+    return ENTRIES[w.figure].full_caption(getattr(about(w), "effects", ()))
 
 
 def study_table(table):
@@ -120,43 +151,3 @@ def study_table(table):
         subcategory="all scenes",
         labels={"table": name, "what a row says": table.meaning()},
     )
-
-
-SHARDS = f"{RESULTS}/{{scene}}/points/shards/{{stage}}"
-
-
-def planned(scene, stage, rounds=None):
-    """Return {key: names of the shards} that plans ask for: so many of them, or all there are."""
-    names = {}
-    for n in count(1) if rounds is None else range(1, rounds + 1):
-        job = checkpoints.plan.get(scene=scene, stage=stage, round=n)
-        found = json.loads(Path(job.output.plan).read_text(encoding="utf-8"))
-        if found == names:
-            break
-        names = found
-    return names
-
-
-def shard_files(scene, stage, keys):
-    """Return the files of shards; ``keys`` is {key: their names}."""
-    folder = SHARDS.format(scene=scene, stage=stage)
-    return [
-        f"{folder}/{key}/{name}.json" for key, names in keys.items() for name in names
-    ]
-
-
-def needed(w):
-    """Return {key: names of the shards} of the point of these wildcards."""
-    return {w.key: planned(w.scene, w.stage)[w.key]}
-
-
-def needed_before(w):
-    """Return {key: names of the shards} that the plans before the one of these wildcards ask for."""
-    return planned(w.scene, w.stage, int(w.round) - 1)
-
-
-def names_of(scene, stage, key):
-    """Return the path of the names of the shards of a point."""
-    job = json.dumps(SCENES[scene].job(stage, key)) + code(STAGES[stage])
-    name = blake2b(job.encode(), digest_size=8).hexdigest()
-    return f"{SHARDS.format(scene=scene, stage=stage)}/{key}/needed/{name}.json"

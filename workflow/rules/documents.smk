@@ -1,32 +1,33 @@
 # What is made of all results: the manuscript, the report, fingerprints and the comparison with what is
 # expected; and what is measured of this machine, a forecast and the speed of the engines.
 from twodiscs.pipeline.results.manifest import is_reproducible
-from twodiscs.pipeline.results.record import WORKFLOW
 
 if MAIN:
 
-    localrules:
-        paper,
-
     rule paper:
+        """Typeset the manuscript; every number in it is read from these results."""
         input:
-            template=str(HERE / "paper/paper.typ"),
-            others=[
-                str(HERE / "paper" / name)
-                for name in ("results.typ", "references.bib", "../CITATION.cff")
+            template=source("paper/paper.typ"),
+            texts=[
+                source(name)
+                for name in (
+                    "paper/results.typ",
+                    "paper/references.bib",
+                    "CITATION.cff",
+                )
             ],
             figures=[
                 files[0]
                 for scene in CONFIGURATION.plain
-                for files in FILES.figures(scene).values()
+                for files in FILES.figures(scene.name).values()
             ],
+            drawn=FILES.studied("figures"),
             tables=[
                 path
                 for scene in CONFIGURATION.plain
-                for path in FILES.tables(scene).values()
+                for path in FILES.tables(scene.name).values()
             ],
-            shared=[FILES.table(name) for name in shared_tables()],
-            drawn=[f"{RESULTS}/figures/{name}.pdf" for name in STUDY_FIGURES],
+            studied=FILES.studied("tables"),
         output:
             pdf=report(
                 f"{RESULTS}/paper.pdf",
@@ -34,30 +35,37 @@ if MAIN:
                 category="Manuscript",
                 labels={"document": "manuscript"},
             ),
+            numbers=FILES.table("paper_numbers"),
         log:
-            log_of("paper"),
+            f"{RESULTS}/logs/paper.log",
         benchmark:
-            benchmark_of("paper")
+            f"{RESULTS}/benchmarks/paper.tsv"
+        localrule: True
         params:
-            contents=lambda w, output: as_json(
-                FILES.manuscript(os.path.dirname(output.pdf))
+            boxes=" ".join(
+                f"{scene.name}={scene.box.width}x{scene.box.height}"
+                for scene in CONFIGURATION.plain
             ),
-            texts=lambda w, input: contents(input.template, *input.others),
+            seed=CONFIGURATION.seed,
+            configuration=FILES.configuration_hash(),
             code=code("pipeline.documents.manuscript"),
         shell:
-            "python -m twodiscs.pipeline.documents.manuscript --template {input.template:q}"
-            " --parameters {params.contents:q} --output {output.pdf:q} > {log:q} 2>&1"
+            "python -m twodiscs.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
+            " {input.studied} --template {input.template} --boxes {params.boxes} --seed {params.seed}"
+            " --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
+            " > {log} 2>&1"
 
 
-# The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one still
-# runs: it takes no lock, for it builds nothing, and finds the record of every job that has ended. It is given
-# the whole configuration, however that was put together, and the folder in which results came to be.
+# The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one
+# still runs: it takes no lock, for it builds nothing, and finds the record of every job that has ended. It is
+# given the whole configuration, however that was put together.
 
 
 report: "../report/workflow.rst"
 
 
 rule report:
+    """Write the report: verdict, agreement and key figures, with links to everything else."""
     input:
         results=[
             rules.check.output,
@@ -66,198 +74,157 @@ rule report:
                 for name in CONFIGURATION.shared
                 if name != "report"
             ],
-            [list(FILES.tables(scene).values()) for scene in SCENES.values()],
-            [list(FILES.figures(scene).values()) for scene in SCENES.values()],
+            [list(FILES.tables(scene).values()) for scene in CONFIGURED],
+            [list(FILES.figures(scene).values()) for scene in CONFIGURED],
             rules.animation.input,
         ],
-        texts=sorted(map(str, HERE.glob("workflow/report/*.rst"))),
-        style=str(HERE / "workflow/report/style.css"),
-        front=str(HERE / "workflow/report/front.html"),
+        style=source("workflow/report/style.css"),
+        front=source("workflow/report/front.html"),
     output:
         html=f"{RESULTS}/report.html",
         workflow=f"{RESULTS}/report-workflow.html",
         configuration=f"{RESULTS}/configuration.json",
     log:
-        log_of("report"),
+        f"{RESULTS}/logs/report.log",
     benchmark:
-        benchmark_of("report")
+        f"{RESULTS}/benchmarks/report.tsv"
+    localrule: True
     params:
-        configuration=lambda w, output: kept(
-            json.dumps(
-                config | {"results": os.path.dirname(output.html)},
-                indent=1,
-                sort_keys=True,
-            )
-        ),
-        snakefile=str(HERE / "Snakefile"),
-        scenes=as_json(FILES.report()),
-        files=lambda w, input: kept("\n".join(input.results)),
-        texts=lambda w, input: contents(*input.texts, input.style, input.front),
+        snakefile=workflow.main_snakefile,
+        configuration=json.dumps(config, indent=1, sort_keys=True),
+        scenes=json.dumps(FILES.report()),
         code=code("pipeline.documents.report"),
     shell:
-        "{{ cp {params.configuration:q} {output.configuration:q}; mapfile -t files < {params.files:q};"
+        "{{ printf '%s\\n' {params.configuration:q} > {output.configuration};"
         " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
-        ' "$@" --configfile {output.configuration:q} -- "${{files[@]}}"; }};'
-        " again --report {output.workflow:q} --report-stylesheet {input.style:q};"
-        ' again --rulegraph dot | python -m twodiscs.pipeline.documents.report "${{files[@]}}"'
-        " --template {input.front:q} --parameters {params.scenes:q}"
-        " --workflow report-workflow.html --output {output.html:q}; }} > {log:q} 2>&1"
+        ' "$@" --configfile {output.configuration} -- {input.results}; }};'
+        " again --report {output.workflow} --report-stylesheet {input.style};"
+        " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results}"
+        " --template {input.front} --scenes {params.scenes:q} --workflow report-workflow.html"
+        " --output {output.html}; }} > {log} 2>&1"
 
 
 rule manifest:
+    """List the SHA-256 of everything that holds no run times."""
     input:
         files=[path for path in rules.report.input.results if is_reproducible(path)],
     output:
         manifest=f"{RESULTS}/manifest.sha256",
     log:
-        log_of("manifest"),
+        f"{RESULTS}/logs/manifest.log",
     benchmark:
-        benchmark_of("manifest")
+        f"{RESULTS}/benchmarks/manifest.tsv"
+    localrule: True
     params:
-        files=lambda w, input: f"@{kept(chr(10).join(input.files))}",
         code=code("pipeline.results.manifest"),
     shell:
-        "python -m twodiscs.pipeline.results.manifest {params.files:q} --output {output.manifest:q}"
-        " > {log:q} 2>&1"
-
-
-# Where and when: this alone says what differs between two runs of the same.
+        "python -m twodiscs.pipeline.results.manifest {input.files} --output {output.manifest}"
+        " > {log} 2>&1"
 
 
 rule provenance:
+    """Say where and when the results came to be: all that differs between two runs of the same."""
     input:
         files=rules.report.input.results,
     output:
         json=f"{RESULTS}/provenance.json",
     log:
-        log_of("provenance"),
+        f"{RESULTS}/logs/provenance.log",
     benchmark:
-        benchmark_of("provenance")
+        f"{RESULTS}/benchmarks/provenance.tsv"
+    localrule: True
     params:
-        sources=str(HERE),
+        sources=os.path.dirname(source("CITATION.cff")) or ".",
         code=code("pipeline.results.provenance"),
     shell:
-        "python -m twodiscs.pipeline.results.provenance --sources {params.sources:q}"
-        " --output {output.json:q} > {log:q} 2>&1"
-
-
-# An RO-Crate of it all, with the texts of the workflow in it. Not part of `all`.
+        "python -m twodiscs.pipeline.results.provenance {input.files} --sources {params.sources}"
+        " --output {output.json} > {log} 2>&1"
 
 
 rule crate:
+    """Describe the results as an RO-Crate, to be published."""
     input:
         files=[
             rules.report.input.results,
             rules.report.output if "report" in CONFIGURATION.shared else [],
             rules.manifest.output,
-            rules.provenance.output,
         ],
+        provenance=rules.provenance.output,
+        citation=source("CITATION.cff"),
         texts=[
-            str(HERE / "Snakefile"),
-            *sorted(map(str, HERE.glob("workflow/rules/*.smk"))),
+            source("workflow/Snakefile"),
+            *(source(f"workflow/rules/{name}.smk") for name in RULES),
         ],
-        citation=str(HERE / "CITATION.cff"),
     output:
         json=f"{RESULTS}/ro-crate-metadata.json",
-        texts=directory(f"{RESULTS}/{WORKFLOW}"),
+        texts=directory(f"{RESULTS}/_workflow"),
     log:
-        log_of("crate"),
+        f"{RESULTS}/logs/crate.log",
     benchmark:
-        benchmark_of("crate")
+        f"{RESULTS}/benchmarks/crate.tsv"
+    localrule: True
     params:
-        files=lambda w, input: f"@{kept(chr(10).join(input.files))}",
-        sources=str(HERE),
-        contents=lambda w, input: contents(*input.texts, input.citation),
         code=code("pipeline.documents.crate"),
     shell:
-        "python -m twodiscs.pipeline.documents.crate {params.files:q} --sources {params.sources:q}"
-        " --texts {input.texts:q} --output {output.json:q} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.documents.crate {input.files} --provenance {input.provenance}"
+        " --citation {input.citation} --texts {input.texts} --output {output.json} > {log} 2>&1"
 
 
-# All results against the record of the jobs that wrote them.
+# What builds nothing has no output, so that it is done whenever it is asked for. Where the results are, the
+# path of its log says: a module of another workflow may prefix it.
 
 
 rule audit:
+    """Name every result that is no longer what its job wrote."""
     log:
-        log_of("audit"),
+        f"{RESULTS}/logs/audit.log",
+    localrule: True
     params:
-        results=BUILT,
+        configuration=json.dumps(config, sort_keys=True),
     shell:
-        "python -m twodiscs.pipeline.results.record {params.results:q} 2> {log:q}"
-
-
-# It builds nothing: it has no input that could be out of date, and no output, so that it is done
-# whenever it is asked for.
+        "python -m twodiscs.pipeline.results.audit --results $(dirname {log})/.."
+        " --configuration {params.configuration:q} 2> {log}"
 
 
 rule verify:
+    """Compare the results with those that are expected of the default configuration."""
     log:
-        log_of("verify"),
+        f"{RESULTS}/logs/verify.log",
+    localrule: True
     params:
-        configuration=as_json(config),
-        expected=str(HERE / "paper/expected"),
-        results=BUILT,
+        configuration=json.dumps(config, sort_keys=True),
+        expected=os.path.dirname(source("paper/expected/configuration.json")),
     shell:
-        "python -m twodiscs.pipeline.results.verify --results {params.results:q}"
-        " --expected {params.expected:q} --configuration {params.configuration:q} 2> {log:q}"
-
-
-# What the configuration is going to take on this machine, said before it is paid for. A forecast is of
-# the moment: it is made anew whenever it is asked for and never otherwise, so it is no output that
-# Snakemake would keep up to date. cost.csv compares what jobs took with the last one there is.
+        "python -m twodiscs.pipeline.results.verify --results $(dirname {log})/.."
+        " --expected {params.expected} --configuration {params.configuration:q} 2> {log}"
 
 
 rule forecast:
-    input:
-        compiled=sorted(
-            {
-                FILES.compiled(scene, stage)
-                for scene in SCENES.values()
-                for stage in STAGES
-                if scene.keys[stage]
-            }
-        ),
+    """Forecast what the configuration takes on this machine."""
     log:
-        log_of("forecast"),
-    threads: 64  # all that there are
+        f"{RESULTS}/logs/forecast.log",
+    localrule: True
+    threads: workflow.cores
     params:
-        configuration=as_json(config),
-        table=f"{BUILT}/forecast.csv",
+        configuration=json.dumps(config, sort_keys=True),
     shell:
         "python -m twodiscs.pipeline.forecast --configuration {params.configuration:q}"
-        " --cores {threads} --output {params.table:q} 2> {log:q}"
-
-
-# What survives kills and damage, tried on a build of its own in a temporary folder.
-
-
-rule soak:
-    log:
-        log_of("soak"),
-    threads: 64  # all that there are
-    params:
-        snakefile=str(HERE / "Snakefile"),
-        seconds=os.environ.get("SOAK_SECONDS", "600"),
-        seed=os.environ.get("SOAK_SEED", "1"),
-    shell:
-        "python -m twodiscs.pipeline.soak --snakefile {params.snakefile:q} --cores {threads}"
-        " --seconds {params.seconds:q} --seed {params.seed:q} 2> {log:q}"
-
-
-# How fast the engines are on this machine. Not part of `all`: it measures, so it must run alone.
+        " --cores {threads} --output $(dirname {log})/../forecast.csv 2> {log}"
 
 
 rule benchmark:
+    """Measure how fast the engines are on this machine."""
     input:
         scenes=rules.effects_cost.input.scenes,
     output:
         table=ensure(f"{RESULTS}/benchmark.csv", non_empty=True),
     log:
-        log_of("benchmark"),
+        f"{RESULTS}/logs/benchmark.log",
     benchmark:
-        benchmark_of("benchmark")
-    threads: 64  # all that there are
+        f"{RESULTS}/benchmarks/benchmark.tsv"
+    localrule: True
+    threads: workflow.cores  # it must run alone
     params:
-        code=code("benchmark", without=NAMES_ALONE),
+        code=code("benchmark"),
     shell:
-        "python -m twodiscs.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"
+        "python -m twodiscs.benchmark --scenes {input.scenes} --output {output.table} > {log} 2>&1"

@@ -2,15 +2,13 @@
 # of studies, which are made once; and the animation, a GIF for any program and a PNG because the report
 # shows no other animated image.
 
-
-ENTRIES = FIGURES | STUDY_FIGURES
-
-for name, place, entries in (
+for name, folder, entries in (
     ("figure", "{scene}/", FIGURES),
     ("shared_figure", "", STUDY_FIGURES),
 ):
 
     rule:
+        """Draw a figure of its tables."""
         name:
             name
         input:
@@ -18,74 +16,80 @@ for name, place, entries in (
                 ENTRIES[w.figure], w.get("scene")
             ).values(),
         output:
-            pdf=f"{RESULTS}/{place}figures/{{figure}}.pdf",
+            pdf=f"{RESULTS}/{folder}figures/{{figure}}.pdf",
             png=report(
-                f"{RESULTS}/{place}figures/{{figure}}.png",
+                f"{RESULTS}/{folder}figures/{{figure}}.png",
                 caption=f"../report/{name}.rst",
                 category=lambda w: ENTRIES[w.figure].category,
-                subcategory="{scene}" if place else "all scenes",
+                subcategory="{scene}" if folder else "all scenes",
                 labels=lambda w: ENTRIES[w.figure].labels,
             ),
         log:
-            log_of(f"{place}figure-{{figure}}"),
+            f"{RESULTS}/logs/{folder}figure-{{figure}}.log",
         benchmark:
-            benchmark_of(f"{place}figure-{{figure}}")
+            f"{RESULTS}/benchmarks/{folder}figure-{{figure}}.tsv"
         wildcard_constraints:
             figure="|".join(entries),
+        localrule: True
         params:
-            about=lambda w: about(getattr(drawn(w), "name", None)),
-            job=lambda w: as_json(figure_job(drawn(w), ENTRIES[w.figure])),
-            module=lambda w: ENTRIES[w.figure].module,
-            tables=lambda w, input: named_tables(
-                FILES.figure_reads(ENTRIES[w.figure], w.get("scene")), input.tables
-            ),
-            caption=lambda w: ENTRIES[w.figure].full_caption(
-                getattr(drawn(w), "effects", ())
-            ),
-            code=lambda w: figure_code(ENTRIES[w.figure].module),
+            box=box,
+            radius=radius_of,
+            tables=figure_tables,
+            origin=origin,
+            caption=caption,
+            options=lambda w: str(ENTRIES[w.figure].options),
+            code=figure_code,
         shell:
-            "python -m twodiscs.pipeline.jobs figure {params.module} --parameters {params.job:q}"
-            " --table {params.tables:q} --output {output.pdf:q} {output.png:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+            "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
+            " --tables {params.tables} --origin '{params.origin}, code {params.code}'"
+            " --output {output.pdf} {output.png} > {log} 2>&1"
 
 
 rule animate:
+    """Draw the two discs as they move, and a hop."""
     input:
-        table=f"{RESULTS}/{{scene}}/trajectory.csv",
+        tables=[f"{RESULTS}/{{scene}}/trajectory.csv"],
     output:
-        gif=f"{RESULTS}/{{scene}}/figures/animation.gif",
+        gif=f"{RESULTS}/{{scene}}/figures/{{figure}}.gif",
         png=report(
-            f"{RESULTS}/{{scene}}/figures/animation.png",
+            f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
             caption="../report/figure.rst",
             category=ANIMATION.category,
             subcategory="{scene}",
             labels=ANIMATION.labels,
         ),
     log:
-        log_of("{scene}/animation"),
+        f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
     benchmark:
-        benchmark_of("{scene}/animation")
+        f"{RESULTS}/benchmarks/{{scene}}/figure-{{figure}}.tsv"
+    wildcard_constraints:
+        figure="animation",
+    localrule: True
     params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(figure_job(SCENES[w.scene], ANIMATION)),
-        caption=ANIMATION.full_caption(),
-        code=figure_code("figures.motion.animation"),
+        box=box,
+        radius=radius_of,
+        tables=figure_tables,
+        caption=caption,
+        code=figure_code,
     shell:
-        "python -m twodiscs.pipeline.jobs animation figures.motion.animation --parameters {params.job:q}"
-        " --table trajectory={input.table:q} --output {output.gif:q} {output.png:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
+        " --tables {params.tables} --output {output.gif} {output.png} > {log} 2>&1"
 
 
 rule animation:
+    """The animations of all scenes that watch a trajectory."""
     input:
-        [FILES.animation(scene) for scene in SCENES.values()],
+        [FILES.animation(scene) for scene in CONFIGURED],
+    localrule: True
 
 
 # A figure's name is a target: that figure, for every scene that calls for it.
 for figure in FIGURES:
 
     rule:
+        """A figure, in every scene that calls for it."""
         name:
             figure
         input:
-            [files.get(figure, []) for files in map(FILES.figures, SCENES.values())],
+            [FILES.figures(scene).get(figure, []) for scene in CONFIGURED],
+        localrule: True

@@ -1,110 +1,88 @@
-# What is found at each radius: exact values, Monte Carlo, molecular dynamics. The radii follow from the
-# configuration alone, so they are known before any job runs.
+# What is found at each radius: exact values, Monte Carlo, molecular dynamics. A radius is a job; where
+# it is more work than one job should do it is the sum of shards, which are jobs too.
 
 
-for name in ("grid", "theory"):
+rule exact:
+    """Exact values at all radii of a scene: which regime each is in, volume, areas, mean times."""
+    output:
+        table=f"{RESULTS}/{{scene}}/{{table}}.csv",
+    log:
+        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/{{table}}.tsv"
+    wildcard_constraints:
+        table="grid|theory",
+    localrule: True
+    params:
+        box=box,
+        radii=lambda w: word(SCENES[w.scene].exact_radii(w.table)),
+        code=code("pipeline.jobs.table", "comparison.tables.exact"),
+    shell:
+        "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --radii {params.radii}"
+        " --output {output.table} > {log} 2>&1"
+
+
+# What the loop sets is not known any more when a shell starts, so it is among the parameters.
+for stage in STAGES:
 
     rule:
-        name:
-            name
-        output:
-            table=ensure(f"{RESULTS}/{{scene}}/{name}.csv", non_empty=True),
-        log:
-            log_of(f"{{scene}}/{name}"),
-        benchmark:
-            benchmark_of(f"{{scene}}/{name}")
-        params:
-            about=lambda w: about(w.scene, None),
-            job=lambda w, name=name: as_json(SCENES[w.scene].exact_job(name)),
-            function=f"{name}_rows",
-            code=table_code("theory.exact", SCENE_TABLES[name]),
-        shell:
-            "python -m twodiscs.pipeline.jobs table theory.exact --function {params.function}"
-            " --parameters {params.job:q} --output {output.table:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
-
-# Kernels are compiled once, before the jobs that share them start side by side: those of the box without
-# effects for every choice of what is watched, those of a scene with effects for what it watches.
-
-
-rule compile:
-    output:
-        stamp=f"{RESULTS}/.compiled/{{kernels}}",
-    log:
-        log_of("compile-{kernels}"),
-    benchmark:
-        benchmark_of("compile-{kernels}")
-    params:
-        modules=lambda w: ",".join(KERNELS[w.kernels]),
-        code=lambda w: code(*KERNELS[w.kernels]),
-    shell:
-        "python -m twodiscs.pipeline.jobs kernels {params.modules} --output {output.stamp:q}"
-        " > {log:q} 2>&1"
-
-
-rule compile_effects:
-    output:
-        stamp=f"{RESULTS}/.compiled/{{scene}}/{{stage}}",
-    log:
-        log_of("{scene}/compile-{stage}"),
-    benchmark:
-        benchmark_of("{scene}/compile-{stage}")
-    params:
-        job=lambda w: as_json(SCENES[w.scene].kernels(w.stage)),
-        module=lambda w: STAGES[w.stage],
-        code=lambda w: code(STAGES[w.stage]),
-    shell:
-        "python -m twodiscs.pipeline.jobs kernels {params.module} --parameters {params.job:q}"
-        " --output {output.stamp:q} > {log:q} 2>&1"
-
-
-# A job does a bundle of points, or a single one. Points are no outputs, which Snakemake would remove before the
-# job starts: those that are there stay, unless the job is forced.
-
-
-for stage, module in STAGES.items():
-
-    rule:
+        """One radius: volume and areas by Monte Carlo, events counted, or intervals between hops."""
         name:
             stage
         input:
-            compiled=lambda w, stage=stage: FILES.compiled(SCENES[w.scene], stage),
+            shards=shards_of(stage),
         output:
-            bundle=f"{RESULTS}/{{scene}}/points/{stage}/bundles/{{bundle}}.json",
+            point=f"{RESULTS}/{{scene}}/points/{stage}/{{radius}}.json",
         log:
-            log_of(f"{{scene}}/{stage}-{{bundle}}"),
+            f"{RESULTS}/logs/{{scene}}/{stage}/{{radius}}.log",
         benchmark:
-            benchmark_of(f"{{scene}}/{stage}-{{bundle}}")
-        wildcard_constraints:
-            scene=one_of(s.name for s in SCENES.values() if not s.is_sharded(stage)),
+            f"{RESULTS}/benchmarks/{{scene}}/{stage}/{{radius}}.tsv"
         resources:
             runtime=minutes(stage),
         params:
-            about=lambda w: about(w.scene),
-            job=lambda w, stage=stage: as_json(
-                SCENES[w.scene].bundle_job(stage, w.bundle)
-            ),
-            module=module,
-            code=code(module),
+            stage=stage,
+            box=box,
+            work=work_of(stage),
+            shards=lambda w, input: braced(input.shards),
+            code=POINT[stage],
         shell:
-            "python -m twodiscs.pipeline.jobs bundle {params.module} --parameters {params.job:q}"
-            " --output {output.bundle:q}"
-            " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+            "python -m twodiscs.pipeline.jobs.point {params.stage} {params.box} --radius {wildcards.radius}"
+            " {params.work} --shards {params.shards} --output {output.point} > {log} 2>&1"
+
+
+rule shard:
+    """Do some blocks of the work of a point. Which accuracy is asked for is of no consequence to it."""
+    output:
+        shard=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
+    log:
+        f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.tsv"
+    resources:
+        runtime=minutes(),
+    params:
+        box=box,
+        work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
+        code=lambda w: POINT[w.stage],
+    shell:
+        "python -m twodiscs.pipeline.jobs.point {wildcards.stage} {params.box} --radius {wildcards.radius}"
+        " {params.work} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
+        " --output {output.shard} > {log} 2>&1"
 
 
 rule trajectory:
+    """Follow one trajectory, event by event."""
     output:
-        table=ensure(f"{RESULTS}/{{scene}}/trajectory.csv", non_empty=True),
+        table=f"{RESULTS}/{{scene}}/trajectory.csv",
     log:
-        log_of("{scene}/trajectory"),
+        f"{RESULTS}/logs/{{scene}}/trajectory.log",
     benchmark:
-        benchmark_of("{scene}/trajectory")
+        f"{RESULTS}/benchmarks/{{scene}}/trajectory.tsv"
     params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(SCENES[w.scene].trajectory_job()),
-        code=table_code("dynamics.trajectory", SCENE_TABLES["trajectory"]),
+        box=box,
+        radius=lambda w: SCENES[w.scene].watch.trajectory,
+        seed=lambda w: SCENES[w.scene].trajectory_seed,
+        code=code("pipeline.jobs.table", "comparison.tables.trajectory"),
     shell:
-        "python -m twodiscs.pipeline.jobs table dynamics.trajectory --parameters {params.job:q}"
-        " --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.jobs.table trajectory {params.box} --radius {params.radius}"
+        " --seed {params.seed} --output {output.table} > {log} 2>&1"

@@ -1,11 +1,14 @@
-# What the jobs of a scene found, gathered into tables and set against the exact values; and the verdict:
-# exact theory = Monte Carlo = molecular dynamics? Its table always comes to be.
+# The points of a scene, gathered into tables and set against the exact values; and the verdict: exact
+# theory = Monte Carlo = molecular dynamics?
 
 
 rule table:
+    """Gather the points of a scene into a table, beside the exact values."""
     input:
-        tables=lambda w: FILES.tables_beside(SCENES[w.scene], w.table).values(),
-        points=lambda w: FILES.points(SCENES[w.scene], w.table),
+        theory=f"{RESULTS}/{{scene}}/theory.csv",
+        monte_carlo=lambda w: FILES.points(w.scene, w.table, "monte_carlo"),
+        dynamics=lambda w: FILES.points(w.scene, w.table, "dynamics"),
+        intervals=lambda w: FILES.points(w.scene, w.table, "intervals"),
     output:
         table=report(
             ensure(f"{RESULTS}/{{scene}}/{{table}}.csv", non_empty=True),
@@ -18,43 +21,45 @@ rule table:
             },
         ),
     log:
-        log_of("{scene}/{table}_table"),
+        f"{RESULTS}/logs/{{scene}}/{{table}}.log",
     benchmark:
-        benchmark_of("{scene}/{table}_table")
+        f"{RESULTS}/benchmarks/{{scene}}/{{table}}.tsv"
+    wildcard_constraints:
+        table="|".join(GATHERED),
+    localrule: True
     params:
-        about=lambda w: about(w.scene),
-        job=lambda w: as_json(SCENES[w.scene].table_job(GATHERED[w.table])),
-        tables=lambda w, input: named_tables(
-            FILES.tables_beside(SCENES[w.scene], w.table), input.tables
+        box=box,
+        areas=lambda w: word(SCENES[w.scene].watch.areas),
+        monte_carlo=lambda w, input: braced(input.monte_carlo),
+        dynamics=lambda w, input: braced(input.dynamics),
+        intervals=lambda w, input: braced(input.intervals),
+        code=lambda w: code(
+            "pipeline.jobs.table",
+            SCENE_TABLES[w.table].__module__.partition(".")[2],
         ),
-        points=lambda w, input: str(Path(input.points[0]).parents[2]),
-        code=lambda w: table_code("comparison.gather", SCENE_TABLES[w.table]),
     shell:
-        "python -m twodiscs.pipeline.jobs table comparison.gather --function {wildcards.table}_rows"
-        " --parameters {params.job:q} --table {params.tables:q} --points {params.points:q}"
-        " --output {output.table:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
-
-
-CHECKED = [scene for scene in SCENES.values() if "check" in scene.tables]
+        "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --areas {params.areas}"
+        " --theory {input.theory} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
+        " --intervals {params.intervals} --results $(dirname {output.table})/.. --output {output.table}"
+        " > {log} 2>&1"
 
 
 rule check:
+    """Say whether exact theory, Monte Carlo and dynamics agree; fail and name where they do not."""
     input:
-        tables=[FILES.tables(scene)["check"] for scene in CHECKED],
+        tables=[
+            FILES.table("check", scene)
+            for scene in CONFIGURED
+            if "check" in SCENES[scene].tables
+        ],
     output:
         passed=f"{RESULTS}/check.passed",
     log:
-        log_of("check"),
+        f"{RESULTS}/logs/check.log",
     benchmark:
-        benchmark_of("check")
+        f"{RESULTS}/benchmarks/check.tsv"
+    localrule: True
     params:
-        about=about(None),
-        tables=lambda w, input: named_tables(
-            [scene.name for scene in CHECKED], input.tables
-        ),
-        code=table_code("pipeline.results.verdict", SCENE_TABLES["check"]),
+        code=code("pipeline.results.verdict"),
     shell:
-        "python -m twodiscs.pipeline.jobs verdict pipeline.results.verdict --table {params.tables:q}"
-        " --output {output.passed:q}"
-        " --about {params.about:q} --code {params.code} > {log:q} 2>&1"
+        "python -m twodiscs.pipeline.results.verdict {input.tables} --output {output.passed} > {log} 2>&1"

@@ -10,19 +10,20 @@ a χ² of n degrees): errors that are too small or too large show there. Both ta
 `test` is `normal`, and are exact for any number of them; tails of discrete laws are conservative
 by design and would look too narrow.
 
-A row without an honest error says so in `status`. It is still compared wherever a bound holds: no
+A row without an error bar says so in `status`. It is still compared wherever a bound holds: no
 hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
 
-A row is `independent` if it could fail and follows from no other: not one of an event that is
-certain or impossible, of an area or a sum rule put together from other rows, or of the scores of
-others. Rows of one method at one radius still share their samples or trajectories.
+A row is `independent`, a test, if it could fail and follows from no other: not one of an event that
+is certain or impossible, of a count that is the sum of other rows' counts in every replica, of an
+area or a sum rule put together from other rows, or of the scores of others. Tests of one method at
+one radius still share their samples or trajectories, so their scores are correlated.
 """
 
 import math
 from itertools import groupby
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.rows import ordered
+from twodiscs.comparison.points import by_radius
 from twodiscs.theory import virial
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
@@ -49,7 +50,7 @@ def _comparison(name, quantity, method, values, derived=False):
 
 
 def _normal_values(radius, exact, estimate, stderr, z):
-    """Return the values of a comparison by a normal law, made only where the error is honest."""
+    """Return the values of a comparison by a normal law, made only where there is an error bar."""
     status, test = ("too-few", None) if z is None else ("counted", "normal")
     return {
         "radius": radius,
@@ -68,18 +69,19 @@ def _sum_rule(scene, point):
     rule = estimates.sum_rule(scene, point["duration"], replicas, counts, point["products"])
     enough = min(counts[event] for event in SUM_RULE) >= scores.NORMAL
     stderr = z = None
-    if enough and replicas >= estimates.HONEST and rule.stderr:
+    if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
     values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)
     return _comparison("sum_rule", "mean_times", "dynamics", values, derived=True)
 
 
-def comparisons(scene, volume, areas, times, histogram, dynamics):
-    """Return one comparison for every estimate at a radius, without verdicts.
+def comparisons(box, volume, areas, times, histogram, dynamics):
+    """Return a comparison for every estimate at a radius of a ``Box``, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, for the sum rule of virials wherever its three events were counted.
+    points, which say whose counts are sums of others, and have the sum rule of virials wherever its
+    three events were counted.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
@@ -87,18 +89,25 @@ def comparisons(scene, volume, areas, times, histogram, dynamics):
             values = {**row, "exact": row["expectation"]}
             joined = name == "area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
+    summed = {
+        (point["radius"], event)
+        for point in dynamics
+        for event in estimates.sums_of_others(point["counts"], point["products"], point["replicas"])
+    }
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]
-        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row))
+        derived = method == "dynamics" and (row["radius"], row["event"]) in summed
+        rows.append(_comparison("mean_time", f"{row['event']}_time", method, row, derived))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         values = _normal_values(
             radius, row["exact_mean"], row["mean"], row["mean_stderr"], row["z"]
         )
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
-    for point in ordered(dynamics):
+    for point in by_radius(dynamics):
+        scene = box.scene(point["radius"])
         if set(SUM_RULE) <= set(point["counts"]) and virial.weights(scene):
-            rows.append(_sum_rule(scene.with_radius(point["radius"]), point))
+            rows.append(_sum_rule(scene, point))
     return sorted(rows, key=lambda row: row["radius"])
 
 
@@ -112,7 +121,7 @@ def distributions(rows):
     for row in rows:
         if row["test"] == "normal":
             groups.setdefault((row["quantity"], row["method"]), []).append(row["z"])
-    found = []
+    tests = []
     for (quantity, method), z in groups.items():
         n = len(z)
         if n > 1:
@@ -132,8 +141,8 @@ def distributions(rows):
             }
             for name, values in (("z_mean", mean), ("z_spread", spread)):
                 values |= {"radius": None, "status": None}
-                found.append(_comparison(name, quantity, method, values, derived=True))
-    return found
+                tests.append(_comparison(name, quantity, method, values, derived=True))
+    return tests
 
 
 def judged(rows, alarm):

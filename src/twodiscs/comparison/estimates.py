@@ -7,15 +7,17 @@ rounded.
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain, combinations
 
 import numpy as np
 
 from twodiscs.model.checks import InputError, length, proportion, whole
+from twodiscs.model.events import EVENTS
 from twodiscs.theory import virial
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
-HONEST = 100
+MIN_EVENTS = 100
 
 #: Allowance for clusters where events are rare: a replica that sees any sees at most so many in the
 #: mean. A hop through a narrow gap may be undone soon: just below the thresholds of boxes from
@@ -103,7 +105,7 @@ def mean_of(values):
     return [Estimate(float(m), float(e), n) for m, e in zip(means, errors, strict=True)]
 
 
-class Line:
+class LinearFit:
     """The straight line through values ``y`` over ``x``, by least squares.
 
     ``errors`` are the standard errors of ``y``, one for all or one for each; without them the
@@ -196,9 +198,9 @@ def effective_count(total, squares, replicas):
     return total**2 * (replicas - 1) / spread if spread else 0.0
 
 
-def is_honest(total, squares, replicas):
+def has_error_bar(total, squares, replicas):
     """Say whether the replicas carry an error bar: 100 of them, and 100 effective events."""
-    return effective_count(total, squares, replicas) >= HONEST and replicas >= HONEST
+    return effective_count(total, squares, replicas) >= MIN_EVENTS and replicas >= MIN_EVENTS
 
 
 def mean_time(total, squares, replicas, duration, mean=None):
@@ -206,8 +208,8 @@ def mean_time(total, squares, replicas, duration, mean=None):
 
     ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can see the event, each of
     length ``duration`` = T. The relative error of the time is that of the mean count; ``mean``, if
-    given, is that count and its error as known better than from these sums. When ``is_honest`` says
-    no, the error is not to be shown.
+    given, is that count and its error as known better than from these sums. The error is to be
+    shown only where they have one (``has_error_bar``).
     """
     total, squares, replicas = moments_of(total, squares, whole("replicas", replicas, 2))
     duration = real("duration", duration)
@@ -232,6 +234,26 @@ def mean_time_bound(replicas, duration, confidence=0.95):
     replicas, duration = whole("replicas", replicas, 1), real("duration", duration)
     confidence = proportion("confidence", confidence)
     return duration * replicas / (CLUSTER * -math.log1p(-confidence))
+
+
+def sums_of_others(counts, products=None, replicas=None):
+    """Return the events whose number is the sum of the numbers of others, a set.
+
+    ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event. It is so if the difference is zero
+    in every replica, that is, if it has no mean and no variance; without ``products`` the sums over
+    all replicas decide. Of events that are related in this way the last one in the order of
+    ``EVENTS`` is named: any_wall where right_wall and top_wall count all that symmetry makes equal.
+    """
+    found = set()
+    for event in reversed(EVENTS):
+        rest = [e for e in EVENTS if e != event and e not in found and counts.get(e)]
+        terms = chain.from_iterable(combinations(rest, n) for n in range(1, len(rest) + 1))
+        for some in terms if counts.get(event) else ():
+            if sum(counts[e] for e in some) == counts[event]:
+                weights = {e: -1 if e in some else 1 for e in EVENTS if e in (*some, event)}
+                if not products or combination(weights, counts, products, replicas).stderr == 0:
+                    found.add(event)
+    return found
 
 
 def sum_rule(scene, duration, replicas, counts, products):

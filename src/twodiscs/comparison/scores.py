@@ -11,7 +11,7 @@ from scipy.special import betainc, gammainc, gammaincc, log_ndtr, ndtr, ndtri, n
 
 from twodiscs.comparison.estimates import (
     CLUSTER,
-    HONEST,
+    MIN_EVENTS,
     checked_hits,
     effective_count,
     moments_of,
@@ -139,7 +139,7 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     if exact is None:
         return (-math.inf if total else 0.0), "certain"
     expected = duration / real("exact", exact)
-    if replicas >= HONEST and effective_count(total, squares, replicas) >= NORMAL:
+    if replicas >= MIN_EVENTS and effective_count(total, squares, replicas) >= NORMAL:
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
         count, error = mean or (total / replicas, error)
         return student_deviate((expected - count) / error, replicas - 1), "normal"

@@ -170,12 +170,6 @@ def trajectory(scene, seed, start=None, duration=None):
     return list(follow(scene, tuple(start), float(duration)))
 
 
-def rows(box, radius, seed):
-    """Return the rows of trajectory.csv, as dicts."""
-    found = trajectory(box.scene(radius), seed)
-    return [dict(zip(COLUMNS, row, strict=True)) for row in found]
-
-
 def compile_kernels():
     """Compile what follows a trajectory of a plain scene."""
     trajectory(Box(1.5, 1.0).scene(0.2), 0)

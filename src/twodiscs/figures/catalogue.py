@@ -6,25 +6,24 @@ figure. Standard library only: the Snakefile imports this.
 
 from dataclasses import dataclass, field
 
-
-@dataclass(frozen=True)
-class Note:
-    """What captions of several figures say alike: in scenes without effects, and with."""
-
-    plain: str
-    with_effects: str
-
-
-def _one_line(text):
-    return " ".join(text.split())
+from twodiscs.figures.kit.captions import (
+    Sentence,
+    Shown,
+    longer_than,
+    plain,
+    plain_square,
+    said,
+    sentences,
+    with_effects,
+)
 
 
 @dataclass(frozen=True)
 class Entry:
     """A figure: its ``title`` and ``category`` in a report, and what the ``caption`` says of it.
 
-    Captions are plain text. ``plain`` is said besides in scenes without effects, ``with_effects``
-    in others, and ``note`` names what is explained as in other figures, one of ``NOTES``.
+    A caption is plain text: a text, or several, each of which may be a ``Sentence`` with a
+    condition. ``note`` names what is explained as in other figures, one of ``NOTES``.
 
     ``module`` is where the figure is drawn, with ``options``. ``tables`` are the names of the
     tables that it reads; ``main_tables`` are those of the first scene without effects that a figure
@@ -37,10 +36,8 @@ class Entry:
 
     title: str
     category: str
-    caption: str
+    caption: str | tuple
     module: str
-    plain: str = ""
-    with_effects: str = ""
     note: str | None = None
     tables: tuple = ()
     main_tables: tuple = ()
@@ -58,19 +55,21 @@ class Entry:
             return False
         return not self.needs or not self.needs.isdisjoint(watched)
 
-    def own_caption(self, effects=()):
-        """Return what the caption says of this figure, in a scene with ``effects`` or without."""
-        return " ".join(filter(None, (self.caption, self.with_effects if effects else self.plain)))
+    def said(self, shown):
+        """Return what the caption says of this figure alone, and what it says as others do.
+
+        ``shown`` is a ``Shown``. Marks are explained where they are seen, so by each figure.
+        """
+        note = NOTES[self.note] if self.note else ()
+        own = [*self.caption, *(sentence for sentence in note if sentence.mark)]
+        return said(own, shown), said([s for s in note if not s.mark], shown)
 
     def full_caption(self, effects=()):
-        """Return the whole caption, with what other figures explain alike."""
-        note = NOTES[self.note] if self.note else Note("", "")
-        alike = note.with_effects if effects else note.plain
-        return " ".join(filter(None, (self.own_caption(effects), alike)))
+        """Return all that may be said of the figure in a scene with ``effects`` or without."""
+        return " ".join(filter(None, self.said(Shown(effects))))
 
     def __post_init__(self):
-        for name in ("caption", "plain", "with_effects"):
-            object.__setattr__(self, name, _one_line(getattr(self, name)))
+        object.__setattr__(self, "caption", sentences(self.caption))
 
     @property
     def labels(self):
@@ -81,44 +80,56 @@ class Entry:
 # A report lists categories by the alphabet.
 GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
-SYMBOLS = """
-    Error bars are one standard error, and hidden where smaller than the symbols. Crosses are
-    estimates from too few events for an error bar.
-"""
-ARROWS = "Arrows start at 95 % lower bounds where no event was seen."
-LINES = "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius."
-LINES_WITH_EFFECTS = """
-    Vertical lines mark the largest radius of disc 1 and where the scene changes before: vertical
-    hops end at r_v and horizontal ones at r_h; from r_t on discs reach the top wall, and from r_x
-    or r_y on disc 1 keeps to its side; discs with σ = r1 + r2 of half a side do not pass each
-    other in a channel or on a torus. In a field volumes and areas are weighted with the invariant
-    density.
-"""
+SYMBOLS = "Error bars are one standard error, and hidden where smaller than the symbols."
+CROSSES = Sentence(
+    "Crosses are estimates from too few events for an error bar.",
+    mark=lambda row: row.get("status") == "too-few",
+)
+ARROWS = Sentence(
+    "Arrows start at 95 % lower bounds where no event was seen.",
+    mark=lambda row: row.get("bound") is not None,
+)
+LINES = (
+    Sentence(
+        "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius.", plain
+    ),
+    Sentence(
+        """
+        Vertical lines mark the largest radius of disc 1 and where the scene changes before:
+        vertical hops end at r_v and horizontal ones at r_h; from r_t on discs reach the top wall,
+        and from r_x or r_y on disc 1 keeps to its side; discs with σ = r1 + r2 of half a side do
+        not pass each other in a channel or on a torus. In a field volumes and areas are weighted
+        with the invariant density.
+        """,
+        with_effects,
+    ),
+)
 RESIDUALS = "Residuals z beneath are in standard errors, with guide lines at ±2 and ±5"
-OF_SHELLS = f"""
-    {RESIDUALS}; they are taken against the exact expectation of the shell, whose thickness shifts
-    the estimate slightly off the line.
-"""
 
-
-def _note(before, after):
-    lines = LINES, LINES_WITH_EFFECTS
-    return Note(*(_one_line(f"{before} {text} {after}") for text in lines))
-
-
+#: What captions of several figures say alike, {name: sentences}.
 NOTES = {
-    "sampled": _note(SYMBOLS, f"{RESIDUALS}."),
-    "shells": _note(SYMBOLS, OF_SHELLS),
-    "simulated": _note(f"{SYMBOLS} {ARROWS}", f"{RESIDUALS}."),
+    "sampled": sentences((SYMBOLS, CROSSES, *LINES, f"{RESIDUALS}.")),
+    "shells": sentences(
+        (
+            SYMBOLS,
+            CROSSES,
+            *LINES,
+            f"""
+            {RESIDUALS}; they are taken against the exact expectation of the shell, whose thickness
+            shifts the estimate slightly off the line.
+            """,
+        )
+    ),
+    "simulated": sentences((SYMBOLS, CROSSES, ARROWS, *LINES, f"{RESIDUALS}.")),
 }
 
 
 def _over_radius(title, category, caption, table, names, **options):
     """Return the entry of quantities ``names``, {quantity: name in the legend}, over the radius."""
-    texts = {key: options.pop(key) for key in ("plain", "with_effects", "note") if key in options}
+    note = options.pop("note")
     return Entry(
-        title, category, caption, "figures.radius", **texts, tables=(table,),
-        needs=frozenset(names), options={"names": names, **options},
+        title, category, caption, "figures.radius", note, tables=(table,), needs=frozenset(names),
+        options={"names": names, **options},
     )  # fmt: skip
 
 
@@ -137,7 +148,7 @@ def _hop_area(hop, order, symbol):
         {f"{hop}_area": f"{direction} hops"},
         note="shells",
         label=rf"{direction}-hop area $S_{{\mathrm{{{symbol}}}}}$",
-        place="lower left",
+        loc="lower left",
         single="Monte Carlo",
         rooted=True,
     )
@@ -153,11 +164,14 @@ FIGURES = {
     "model": Entry(
         "The billiard",
         GEOMETRY,
-        """
-        Two hard discs of radius r in a box of width w and height h. Coordinates start from the
-        centre of the box. The centres of the discs keep to the dashed rectangle, of half-sides a
-        = w/2 − r and b = h/2 − r. Boxes longer than 4:1 are drawn shorter.
-        """,
+        (
+            """
+            Two hard discs of radius r in a box of width w and height h. Coordinates start from the
+            centre of the box. The centres of the discs keep to the dashed rectangle, of half-sides
+            a = w/2 − r and b = h/2 − r.
+            """,
+            Sentence("Boxes longer than 4:1 are drawn shorter.", longer_than(4)),
+        ),
         "figures.geometry.model",
     ),
     "hopping_trajectory": Entry(
@@ -196,7 +210,7 @@ FIGURES = {
         {"volume": "volume"},
         note="sampled",
         label="volume $V$",
-        place="lower left",
+        loc="lower left",
         single="Monte Carlo",
     ),
     "vertical_hop_area": _hop_area("vertical_hop", ("vertical", "y"), "v"),
@@ -212,97 +226,120 @@ FIGURES = {
         {"disc_collision_area": "disc collisions"},
         note="shells",
         label=r"collision area $S_{\mathrm{coll}}$",
-        place="lower left",
+        loc="lower left",
         single="Monte Carlo",
     ),
     "wall_area": _over_radius(
         "Areas of wall hits",
         SPACE,
-        """
-        Areas of the surfaces on which disc 1 touches the right or the top wall, and of all such
-        surfaces of both discs together: exact (lines) and from thin shells (symbols).
-        """,
+        (
+            """
+            Areas of the surfaces on which disc 1 touches the right or the top wall, and of all such
+            surfaces of both discs together: exact (lines) and from thin shells (symbols).
+            """,
+            Sentence("The whole is four times the sum of the first two.", plain),
+        ),
         "areas",
         {f"{event}_area": name for event, name in WALLS.items()},
-        plain="The whole is four times the sum of the first two.",
         note="shells",
         label="wall area $S$",
-        place="lower left",
+        loc="lower left",
     ),
     "mean_hop_time": _over_radius(
         "Mean times between hops",
         DYNAMICS,
-        """
-        Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
-        (symbols). In (b) the same times approach the radius r_c at which the hop ends.
-        """,
+        (
+            """
+            Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
+            (symbols). In (b) the same times approach the radius r_c at which the hop ends.
+            """,
+            Sentence(
+                """
+                Dashed lines in (a) are the laws for small discs, to first order in r, and in (b)
+                the leading laws: where a hop becomes blocked before the discs jam its time diverges
+                as (r_c − r)⁻².
+                """,
+                plain,
+            ),
+            Sentence("In a square box both hops have the same mean time.", plain_square),
+        ),
         "mean_times",
         {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},
-        plain="""
-        Dashed lines in (a) are the laws for small discs, to first order in r, and in (b) the
-        leading laws: where a hop becomes blocked before the discs jam its time diverges as (r_c −
-        r)⁻². In a square box both hops have the same mean time.
-        """,
         note="simulated",
         label=r"mean time between hops $\tau$",
-        place="upper left",
+        loc="upper left",
         laws=("small",),
         approach=True,
     ),
     "mean_collision_time": _over_radius(
         "Mean time between disc collisions",
         DYNAMICS,
-        """
-        Mean time between collisions of the discs: exact (line) and by event-driven molecular
-        dynamics (symbols).
-        """,
+        (
+            """
+            Mean time between collisions of the discs: exact (line) and by event-driven molecular
+            dynamics (symbols).
+            """,
+            Sentence(
+                """
+                Dashed lines are the first two orders of the law for small discs, which starts as
+                3wh/(8√2 r), and the leading law below the largest radius.
+                """,
+                plain,
+            ),
+        ),
         "mean_times",
         {"disc_collision_time": "disc collisions"},
-        plain="""
-        Dashed lines are the first two orders of the law for small discs, which starts as 3wh/(8√2
-        r), and the leading law below the largest radius.
-        """,
         note="simulated",
         label=r"mean time between collisions $\tau_{\mathrm{coll}}$",
-        place="beside",
+        loc="beside",
         single="MD",
         laws=("small", "last"),
     ),
     "mean_wall_time": _over_radius(
         "Mean times between wall hits",
         DYNAMICS,
-        """
-        Mean times between hits of disc 1 on the right wall and on the top wall, over trajectories
-        that can reach it, and between hits of any disc on any wall: exact (lines) and by
-        event-driven molecular dynamics (symbols).
-        """,
+        (
+            """
+            Mean times between hits of disc 1 on the right wall and on the top wall, over
+            trajectories that can reach it, and between hits of any disc on any wall: exact (lines)
+            and by event-driven molecular dynamics (symbols).
+            """,
+            Sentence(
+                """
+                The first halves at r = h/4 and the second at w/4, where configuration space falls
+                apart and disc 1 keeps to one side. Dashed lines are the laws for small discs and
+                below the largest radius.
+                """,
+                plain,
+            ),
+            Sentence("The mean time halves where disc 1 begins to keep to one side.", with_effects),
+        ),
         "mean_times",
         {f"{event}_time": name for event, name in WALLS.items()},
-        plain="""
-        The first halves at r = h/4 and the second at w/4, where configuration space falls apart
-        and disc 1 keeps to one side. Dashed lines are the laws for small discs and below the
-        largest radius.
-        """,
-        with_effects="The mean time halves where disc 1 begins to keep to one side.",
         note="simulated",
         label=r"mean time between wall hits $\tau$",
-        place="lower left",
+        loc="lower left",
         laws=("small", "last"),
     ),
     "pressure": Entry(
         "Pressures and virials",
         DYNAMICS,
-        """
-        Force of disc 1 on the right and the top wall, over that of an ideal gas of one particle
-        (dotted): exact (lines) and from the hits that dynamics counted (symbols), each of which
-        hands over the same momentum in the mean.
-        """,
+        (
+            """
+            Force of disc 1 on the right and the top wall, over that of an ideal gas of one particle
+            (dotted): exact (lines) and from the hits that dynamics counted (symbols), each of which
+            hands over the same momentum in the mean.
+            """,
+            Sentence(
+                """
+                Dashed lines in (a) are the leading laws below the largest radius. (b) The virials
+                of the walls and of the collisions of the discs, over twice the mean kinetic energy:
+                those of the walls less that of collisions are one at every radius.
+                """,
+                plain,
+            ),
+        ),
         "figures.pressure",
-        plain="""
-        Dashed lines in (a) are the leading laws below the largest radius. (b) The virials of the
-        walls and of the collisions of the discs, over twice the mean kinetic energy: those of the
-        walls less that of collisions are one at every radius.
-        """,
         note="simulated",
         tables=("mean_times",),
         needs=frozenset({"right_wall_time", "top_wall_time"}),
@@ -311,17 +348,23 @@ FIGURES = {
     "hop_histogram": Entry(
         "Times between hops",
         DYNAMICS,
-        """
-        Density of the time t between successive hops for several radii, both in units of the
-        exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen with
-        t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; error bars
-        are one standard error.
-        """,
+        (
+            """
+            Density of the time t between successive hops for several radii, both in units of the
+            exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen
+            with t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; error
+            bars are one standard error.
+            """,
+            Sentence(
+                """
+                Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is
+                undone after one bounce: 3√2/16 over h − 2r for vertical hops, over w − 2r for
+                horizontal ones.
+                """,
+                plain,
+            ),
+        ),
         "figures.hop_histogram",
-        plain="""
-        Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is undone
-        after one bounce: 3√2/16 over h − 2r for vertical hops, over w − 2r for horizontal ones.
-        """,
         tables=("hop_histogram",),
         needs=frozenset({"hop_histogram"}),
     ),
@@ -352,12 +395,15 @@ FIGURES = {
     "surface_shell": Entry(
         "Shells around surfaces",
         GEOMETRY,
-        """
-        The area of a surface is measured by the samples within a distance ε of it. (a) The surface
-        of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends √2 ε to
-        either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and y = |y1 −
-        y2|/√2, has a shell on its outer side only. Boxes longer than 1.8:1 are drawn shorter.
-        """,
+        (
+            """
+            The area of a surface is measured by the samples within a distance ε of it. (a) The
+            surface of vertical hops can be crossed from both sides: its shell is 2ε thick, and
+            extends √2 ε to either side along y1. (b) The surface of collisions, with x = |x1 −
+            x2|/√2 and y = |y1 − y2|/√2, has a shell on its outer side only.
+            """,
+            Sentence("Boxes longer than 1.8:1 are drawn shorter.", longer_than(1.8)),
+        ),
         "figures.geometry.surface_shell",
     ),
 }

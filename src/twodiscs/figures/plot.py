@@ -3,7 +3,7 @@
 from importlib import import_module
 from operator import attrgetter
 
-from twodiscs.comparison.results import Intervals, Measurements, the_scene
+from twodiscs.comparison.measurements import Intervals, Measurements, the_scene
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
@@ -13,11 +13,11 @@ from twodiscs.model.checks import InputError, one_of
 DRAWN = "a scene, a trajectory, or results of simulate, sample or intervals"
 
 
-def plot(found, path, figure):
-    """Return the figure that shows ``found`` (see the face)."""
-    box, tables, fitting, options = _what(found)
+def plot(result, path, figure):
+    """Return the figure that shows ``result`` (see the face)."""
+    box, tables, fitting, options = _what(result)
     if not fitting:
-        raise InputError(f"found must be {DRAWN}, of what a figure shows, not {found!r:.80}")
+        raise InputError(f"found must be {DRAWN}, of what a figure shows, not {result!r:.80}")
     name = one_of("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
     if box.effects and not entry.needs:
@@ -41,22 +41,22 @@ def _png(figure):
     return stream.getvalue()
 
 
-def _what(found):
+def _what(result):
     """Return (box, rows, names of the figures that show them, what else those take)."""
-    scene = the_scene(found)
-    if isinstance(found, Box) or found is scene is not None:
-        return found if isinstance(found, Box) else Box.of(scene), [], _drawings(), {}
-    results = [*found] if isinstance(found, list | tuple) else [found]
+    scene = the_scene(result)
+    if isinstance(result, Box) or result is scene is not None:
+        return result if isinstance(result, Box) else Box.of(scene), [], _drawings(), {}
+    results = [*result] if isinstance(result, list | tuple) else [result]
     for kind in (Measurements, Intervals):
-        if results and all(isinstance(one, kind) for one in results):
-            boxes = {Box.of(one.scene) for one in results}
+        if results and all(isinstance(item, kind) for item in results):
+            boxes = {Box.of(item.scene) for item in results}
             if len(boxes) > 1:
                 raise InputError("found must be of one box, with the same effects")
             results = sorted(results, key=attrgetter("scene.radius"))
-            rows = [row for one in results for row in one.rows]
+            rows = [row for item in results for row in item.rows]
             return boxes.pop(), rows, _figures_of(rows), {}
-    if scene is not None and hasattr(found, "to_dict"):
-        return Box.of(scene), rows_of(found), ["hopping_trajectory"], {"radius": scene.radius}
+    if scene is not None and hasattr(result, "to_dict"):
+        return Box.of(scene), rows_of(result), ["hopping_trajectory"], {"radius": scene.radius}
     return None, [], [], {}
 
 

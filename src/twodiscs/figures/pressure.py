@@ -56,15 +56,15 @@ def _series(name, box, event, rows, radii, factor):
     """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
     scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
     exact = [np.nan if s is None else factor(s, event) * rate(s, event) for s in scenes]
-    found = []
+    shown = []
     for row in rows:
         if row["event"] == event and row["stderr"] is not None:
             scene, time = box.scene(row["radius"]), row["estimate"]
             value = factor(scene, event) * scene.share(event) / time
             # What is too long a time is too low a rate.
             measured = {"estimate": value, "stderr": value * row["stderr"] / time, "z": -row["z"]}
-            found.append(row | measured)
-    return panels.Series(name, found, np.array(exact))
+            shown.append(row | measured)
+    return panels.Series(name, shown, np.array(exact))
 
 
 def _virials(axes, box, rows, radii):
@@ -78,9 +78,9 @@ def _virials(axes, box, rows, radii):
         _series(name, box, event, rows, radii, lambda scene, e: abs(virial.weights(scene)[e]))
         for event, name in names.items()
     ]
-    for (colour, marker), one in zip(SERIES, series, strict=False):
-        axes.plot(radii, one.exact, color=colour, zorder=5)
-        panels.estimates(axes, one.rows, colour, marker)
+    for (colour, marker), part in zip(SERIES, series, strict=False):
+        axes.plot(radii, part.exact, color=colour, zorder=5)
+        panels.estimates(axes, part.rows, colour, marker)
     axes.set(xlim=(0, 1.02 * box.last_radius), xlabel="radius $r$")
     axes.set_ylabel(r"virial$\,/\,2\langle E_{\mathrm{k}}\rangle$")
     panels.logarithmic(axes, radii, series)

@@ -22,12 +22,12 @@ APPROACH, ROOM = 1.4, 1.8
 CLOSEST, LAW = 1e-5, 0.3
 
 
-def draw(box, tables, names, label, place, single=None, rooted=False, laws=(), approach=False):
+def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), approach=False):
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
     the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
-    ``rooted``, as the square root; ``place`` that of the legend, and ``single`` the method if there
+    ``rooted``, as the square root; ``loc`` that of the legend, and ``single`` the method if there
     is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
     drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
     radius of their end. Raises ``InputError`` if the table has none of the quantities, and for no
@@ -38,27 +38,27 @@ def draw(box, tables, names, label, place, single=None, rooted=False, laws=(), a
         raise InputError(f"tables must be the one of {', '.join(names)}, not {named}")
     ((table, rows),) = tables.items()
     radii, exact = curves.exact(box)
-    found = {
+    by_quantity = {
         quantity: panels.Series(name, shown, exact[quantity])
         for quantity, name in names.items()
         if (shown := [_as_drawn(row) for row in rows if _quantity(row) == quantity])
     }
-    if not found:
+    if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
-    series = list(found.values())
+    series = list(by_quantity.values())
     figure, main, lower = panels.panels(box, label, ROOM if approach else 0)
     panels.draw_series(main, lower, radii, series, single=bool(single))
-    for quantity in found:
+    for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), laws)
     if rooted:
         main.set_yscale("function", functions=(_root, np.square))
-        main.set_ylim(0, 1.05 * max(np.nanmax(one.exact) for one in series))
+        main.set_ylim(0, 1.05 * max(np.nanmax(part.exact) for part in series))
     else:
         panels.logarithmic(main, radii, series)
-    panels.legend(main, box, series, place, single=single)
+    panels.legend(main, box, series, loc, single=single)
     if approach:
         panels.letter(main, "a")
-        _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, found)
+        _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, by_quantity)
     return figure
 
 
@@ -90,24 +90,24 @@ def _laws(axes, box, event, laws):
         panels.asymptote(axes, radii, [threshold_time(box.scene(r), event) for r in radii])
 
 
-def _approach(axes, box, found):
+def _approach(axes, box, by_quantity):
     """Draw the times over the distance from the radius at which the hop dies out."""
     distances = np.geomspace(CLOSEST, 0.99, 70)
     ends = hop_ends(box)
     shown = []
-    for (colour, marker), (quantity, one) in zip(SERIES, found.items(), strict=False):
+    for (colour, marker), (quantity, part) in zip(SERIES, by_quantity.items(), strict=False):
         event = quantity.removesuffix("_time")
         end, name = ends[event]
         scenes = [box.scene(float(end * (1 - d))) for d in distances]
         exact = [mean_times(scene)[event] for scene in scenes]
         (line,) = axes.plot(distances, exact, color=colour, zorder=5)
-        line.set_label(rf"{one.name}, $r_{{\mathrm{{c}}}}={name}$")
+        line.set_label(rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$")
         shown += exact
         if not box.effects:
             near = distances < LAW
             laws = [threshold_time(scene, event) for scene in scenes]
             panels.asymptote(axes, distances[near], np.array(laws)[near])
-        rows = [row | {"radius": 1 - row["radius"] / end} for row in one.rows]
+        rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
         panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")

@@ -11,7 +11,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
+from twodiscs.model.effects import EFFECTS
 
 
 class Parser(argparse.ArgumentParser):
@@ -72,6 +74,80 @@ def whole_number(text):
     if not found.is_integer():
         raise argparse.ArgumentTypeError(f"must be an integer, not {text!r}")
     return int(found)
+
+
+def assignment(text):
+    """Return (name, number) of ``text`` such as "vertical_hop=1e-3", for ``type=``."""
+    name, mark, value = text.partition("=")
+    if not mark:
+        raise argparse.ArgumentTypeError(f"must be NAME=NUMBER, not {text!r}")
+    return name, number(value)
+
+
+def add_box(parser, required=True):
+    """Add the arguments that say what a ``Box`` is: sides and effects."""
+    for side in ("width", "height"):
+        parser.add_argument(f"--{side}", type=number, required=required, help="a length")
+    effects = parser.add_argument_group("effects", "what the scene calls for besides")
+    for effect in EFFECTS.values():
+        kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
+        effects.add_argument(_option(effect.name), help=effect.meaning, **kind)
+
+
+def box_of(options):
+    """Return the ``Box`` that the arguments of ``add_box`` say, None without a width."""
+    if options.width is None:
+        return None
+    named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
+    if "periodic" in named:
+        named["periodic"] = "".join(named["periodic"])
+    return Box(options.width, options.height, named)
+
+
+def add_scene(parser):
+    """Add the arguments that say what a ``Scene`` is: those of its ``Box``, and a radius."""
+    add_box(parser)
+    parser.add_argument("--radius", type=number, required=True, help="a length")
+
+
+def scene_of(options):
+    """Return the ``Scene`` that the arguments of ``add_scene`` say."""
+    return box_of(options).scene(options.radius)
+
+
+def box_arguments(box):
+    """Return the arguments that say what a ``Box`` is, as one text for a shell."""
+    return words({"width": box.width, "height": box.height, **box.effects})
+
+
+def words(given):
+    """Return arguments, {name: value}, as one text for a shell."""
+    return " ".join(f"{_option(name)} {word(value)}" for name, value in given.items())
+
+
+def word(value):
+    """Return the text of a value, a list or a dict of values as an argument."""
+    if isinstance(value, dict):
+        return " ".join(f"{name}={one!r}" for name, one in value.items())
+    return " ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+
+
+def _option(name):
+    return f"--{name.replace('_', '-')}"
+
+
+def print_progress():
+    """Return a reporter that prints what is done and the time that is left.
+
+    It takes a text and the work that is left, over the work that is done.
+    """
+    start = time.process_time()
+
+    def report(done, left):
+        seconds = left * (time.process_time() - start)
+        print(f"{done}, about {seconds:.0f} s left", file=sys.stderr)
+
+    return report
 
 
 def fail(message):

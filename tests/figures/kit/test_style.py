@@ -1,6 +1,5 @@
 """Files of figures: the same bytes whatever the machine is set to."""
 
-import json
 import os
 import re
 import subprocess
@@ -9,10 +8,8 @@ from pathlib import Path
 
 import matplotlib
 import pytest
-from figure_cases import PAPER, draw, tables_of
+from figure_cases import PAPER, draw
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 
 
@@ -30,26 +27,33 @@ def test_fonts_are_those_of_matplotlib_even_if_its_list_lacks_them(monkeypatch):
     assert [Path(path) for path in found] == [folder / f"{name}.ttf" for name in families]
 
 
+DRAW = """
+import sys
+from figure_cases import PAPER, draw, tables_of
+from twodiscs.figures.kit import style
+with style.context():
+    figure = draw(sys.argv[1], PAPER, tables_of("paper"))
+    for path in sys.argv[2:]:
+        style.save(figure, path)
+"""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["integration_regimes", "mean_hop_time"])
 def test_same_bytes_whatever_the_machine_is_set_to(name, tmp_path):
     style_file = tmp_path / "matplotlibrc"
     style_file.write_text("font.size: 20\nlines.linewidth: 7\npdf.fonttype: 3\n")
-    entry, contents = FIGURES[name], []
-    given = json.dumps({"box": PAPER.parameters(), **entry.options})
-    tables = [f"{table}={tmp_path / table}.csv" for table in entry.tables]
-    for table in entry.tables:
-        SCENE_TABLES[table].write(tmp_path / f"{table}.csv", tables_of("paper")[table])
+    contents = []
+    tests = {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     for turn, environment in enumerate(
         ({"PYTHONHASHSEED": "1"}, {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)})
     ):
         folder = tmp_path / str(turn)
         folder.mkdir()
         outputs = [folder / "a.pdf", folder / "a.png"]
-        words = ["figure", entry.module, "--parameters", given, "--table", *tables]
         finished = subprocess.run(
-            [sys.executable, "-m", "twodiscs.pipeline.jobs", *words, "--output", *outputs],
-            env=os.environ | {"TZ": f"UTC{turn}"} | environment,
+            [sys.executable, "-c", DRAW, name, *outputs],
+            env=os.environ | tests | {"TZ": f"UTC{turn}"} | environment,
             capture_output=True,
             text=True,
         )

@@ -1,6 +1,5 @@
 """The animation: it shows the trajectory, stops at the hop, and is the same bytes every time."""
 
-import json
 import os
 import subprocess
 import sys
@@ -9,8 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from twodiscs.comparison.scene_tables import Trajectory
-from twodiscs.dynamics import trajectory
+from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import drawing, style
 from twodiscs.figures.motion import animation
 from twodiscs.figures.motion.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
@@ -22,7 +20,7 @@ BOX, RADIUS = Box(1.5, 1.0), 0.24
 @pytest.fixture(scope="module")
 def rows():
     """Rows of trajectory.csv with hops of both kinds."""
-    return list(trajectory.rows(BOX, RADIUS, 1908))
+    return Trajectory.rows(BOX, RADIUS, 1908)
 
 
 @pytest.fixture(scope="module")
@@ -134,13 +132,21 @@ def test_pixels_are_those_of_the_discs(stage, frames):
 
 @pytest.mark.parametrize("box", [Box(1.0, 1.5), Box(40.0, 1.0)], ids=str)
 def test_other_boxes(box, tmp_path):
-    found = list(trajectory.rows(box, RADIUS, 3))
+    found = Trajectory.rows(box, RADIUS, 3)
     with style.context():
         animation.animate(box, RADIUS, found, [tmp_path / "a.gif"])
     assert (tmp_path / "a.gif").stat().st_size < 600_000
 
 
-GIVEN = json.dumps({"box": BOX.parameters(), "radius": RADIUS})
+ANIMATE = f"""
+import sys
+from twodiscs.comparison.tables.trajectory import Trajectory
+from twodiscs.figures.kit import style
+from twodiscs.figures.motion.animation import animate
+from twodiscs.model.box import Box
+with style.context():
+    animate({BOX!r}, {RADIUS}, Trajectory.read(sys.argv[1]), sys.argv[2:])
+"""
 
 
 @pytest.mark.slow
@@ -149,10 +155,8 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     Trajectory.write(table, rows)
     style_file.write_text("font.size: 20\nlines.linewidth: 7\n")
     outputs = [tmp_path / "b.gif", tmp_path / "b.png"]
-    words = ["--parameters", GIVEN, "--table", f"trajectory={table}", "--output", *outputs]
     run = subprocess.run(
-        [sys.executable, "-m", "twodiscs.pipeline.jobs", "animation", "figures.motion.animation"]
-        + [str(word) for word in words],
+        [sys.executable, "-c", ANIMATE, table, *outputs],
         env=os.environ | {"PYTHONHASHSEED": "2", "MATPLOTLIBRC": str(style_file)},
         capture_output=True,
         text=True,

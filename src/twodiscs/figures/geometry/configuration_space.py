@@ -27,7 +27,7 @@ def draw(box, tables):
     halves = (width / 2 - radius, height / 2 - radius)
     for i, (half, colour) in enumerate(zip(halves, (BLUE, VERMILLION), strict=True)):
         left = LEFT + i * (side + GAP)
-        axes = drawing.place(figure, left, BOTTOM, side / (2 * half), (-half, half, -half, half))
+        axes = drawing.add_axes(figure, left, BOTTOM, side / (2 * half), (-half, half, -half, half))
         name, other = ("x", "y") if i == 0 else ("y", "x")
         band = sqrt(2) * radius * sqrt(1 - POINT[1 - i] ** 2)
         _square(axes, half, band, sqrt(2) * radius, (name, other), "ab"[i])

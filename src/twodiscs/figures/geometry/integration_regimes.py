@@ -53,7 +53,7 @@ def draw(box, tables):
         zip(panels, corners, scales, strict=True)
     ):
         extent = (0, here.range_x, 0, here.range_y)
-        axes = drawing.place(figure, *corner, inches, extent)
+        axes = drawing.add_axes(figure, *corner, inches, extent)
         _panel(axes, here, 72 * inches)
         if i == 0:
             drawing.label(axes, "$u$", ((here.range_x + here.contact_distance) / 2, 0), (0, -7))

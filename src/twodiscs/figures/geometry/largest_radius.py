@@ -22,7 +22,7 @@ def draw(box, tables):
     figure = new_figure(floor + inches * height + ABOVE)
     extent = (-width / 2, width / 2, -height / 2, height / 2)
     left = LEFT + (COLUMN - LEFT - RIGHT - inches * width) / 2
-    _jammed(drawing.place(figure, left, floor, inches, extent), width, height)
+    _jammed(drawing.add_axes(figure, left, floor, inches, extent), width, height)
     across = COLUMN - MAP_LEFT - MAP_RIGHT
     _map(panels.add_panel(figure, MAP_BOTTOM, MAP_HEIGHT, MAP_LEFT, across), box)
     return figure

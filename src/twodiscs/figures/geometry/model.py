@@ -24,8 +24,8 @@ def draw(box, tables):
     drawing.rectangle(axes, -right, right, -top, top, width=1.2)
     drawing.rectangle(axes, -a, a, -b, b, edge=GREY, width=0.6, linestyle=(0, (4, 2.5)))
     _origin(axes, 0.14 * min(width, height))
-    for number, place, speed in zip((1, 2), CENTRES, VELOCITIES, strict=True):
-        centre = (place[0] * a, place[1] * b)
+    for number, position, speed in zip((1, 2), CENTRES, VELOCITIES, strict=True):
+        centre = (position[0] * a, position[1] * b)
         _disc(axes, number, centre, radius, (radius * speed[0], radius * speed[1]))
 
     point = drawing.points(axes)

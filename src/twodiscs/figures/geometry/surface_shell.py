@@ -43,9 +43,9 @@ def draw(box, tables):
         spare = (room - side - across) / 2
         corners = ((LEFT + spare, BELOW), (LEFT + spare + side + GAP, BELOW))
         scales = (side / (2 * b), upright / (sqrt(2) * b))
-    _hop(drawing.place(figure, *corners[0], scales[0], (-b, b, -b, b)), b, epsilon)
+    _hop(drawing.add_axes(figure, *corners[0], scales[0], (-b, b, -b, b)), b, epsilon)
     extent = (0, sqrt(2) * a, 0, sqrt(2) * b)
-    _collision(drawing.place(figure, *corners[1], scales[1], extent), a, b, radius, epsilon)
+    _collision(drawing.add_axes(figure, *corners[1], scales[1], extent), a, b, radius, epsilon)
     return figure
 
 

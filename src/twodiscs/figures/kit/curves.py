@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from twodiscs.comparison.tables.exact import Theory
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
-from twodiscs.theory.exact import theory_rows
 
 #: Closest approach to the limits of a regime, over its length.
 CLOSEST = 1e-9
@@ -25,9 +25,9 @@ def branches(box, others=()):
     The first one starts at 1e-4 of its length, where the law for small radii has long set in.
     ``others`` are more limits, such as those of a box that this one is compared with.
     """
-    found = [radius for radius, _ in limits(box)]
-    ends = sorted({0, *found, *(radius for radius in others if radius < found[-1])})
-    found = []
+    own = [radius for radius, _ in limits(box)]
+    ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
+    regimes = []
     for low, high in pairwise(ends):
         even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
         if box.effects:
@@ -38,8 +38,8 @@ def branches(box, others=()):
         start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
-        found.append(np.unique(radii[(radii > low) & (radii < high)]))
-    return found
+        regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
+    return regimes
 
 
 def exact(box, others=()):
@@ -53,7 +53,7 @@ def exact(box, others=()):
     for branch in branches(box, others):
         for radius in map(float, branch):
             radii.append(radius)
-            rows.append({row["quantity"]: row["exact"] for row in theory_rows(box, [radius])})
+            rows.append({row["quantity"]: row["exact"] for row in Theory.rows(box, [radius])})
         radii.append(np.nan)
         rows.append({})
     names = ["volume", *(f"{event}_{kind}" for kind in ("area", "time") for event in EVENTS)]

@@ -28,7 +28,7 @@ def scale(width, height, room_x, room_y):
     return min(room_x / width, room_y / height)
 
 
-def place(figure, left, bottom, inches, extent):
+def add_axes(figure, left, bottom, inches, extent):
     """Add a panel without frame and ticks and return its axes.
 
     Its lower left corner is ``left``, ``bottom`` inches from the figure's, one unit is ``inches``
@@ -51,7 +51,7 @@ def single(extent, left, right, bottom, top):
     inches = scale(x1 - x0, y1 - y0, room_x, TALLEST - bottom - top)
     figure = new_figure(bottom + top + inches * (y1 - y0))
     spare = room_x - inches * (x1 - x0)
-    return figure, place(figure, left + spare / 2, bottom, inches, extent)
+    return figure, add_axes(figure, left + spare / 2, bottom, inches, extent)
 
 
 def label(axes, text, at, offset=(0, 0), **options):

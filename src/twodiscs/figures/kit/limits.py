@@ -29,22 +29,22 @@ def limits(box):
     where the hop becomes blocked; with a periodic axis, the radii at which σ = r1 + r2 is half of a
     side; and the largest radius, which a field may lower.
     """
-    found = {}
+    names = {}
     if not box.effects:
         for hop in sorted(HOPS, key=AXIS.get):
             radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
-            found[radius] = f"{found[radius]}={name}" if radius in found else name
-        found = {radius: name for radius, name in found.items() if radius in box.thresholds}
-        return [*sorted(found.items()), (box.largest_radius, LARGEST)]
+            names[radius] = f"{names[radius]}={name}" if radius in names else name
+        names = {radius: name for radius, name in names.items() if radius in box.thresholds}
+        return [*sorted(names.items()), (box.largest_radius, LARGEST)]
     largest = box.last_radius
     for name, state in CHANGES.items():
         first = state(box.scene(1e-6 * largest))
         radius = box.end(lambda here, s=state, f=first: s(here) == f)
-        if radius in found and name == HORIZONTAL:
-            found[radius] += f"={name}"
+        if radius in names and name == HORIZONTAL:
+            names[radius] += f"={name}"
         elif radius < largest:
-            found.setdefault(radius, name)
-    return [*sorted(found.items()), (largest, LARGEST)]
+            names.setdefault(radius, name)
+    return [*sorted(names.items()), (largest, LARGEST)]
 
 
 def _fills(scene, axis):
@@ -53,9 +53,9 @@ def _fills(scene, axis):
 
 def hop_ends(box):
     """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
-    found = limits(box)
+    ends = limits(box)
     names = (QUARTERS["y"], QUARTERS["x"]) if not box.effects else (VERTICAL, HORIZONTAL)
     return {
-        hop: next((limit for limit in found if name in limit[1].split("=")), found[-1])
+        hop: next((limit for limit in ends if name in limit[1].split("=")), ends[-1])
         for hop, name in zip(HOPS, names, strict=True)
     }

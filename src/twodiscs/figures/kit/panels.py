@@ -61,8 +61,8 @@ def panels(box, label, beneath=0):
     return figure, main, lower
 
 
-def mark(main, lower, found):
-    """Mark the limits ``found`` in both panels, where the abscissa ends, and sizes of residuals."""
+def mark(main, lower, ends):
+    """Mark the limits ``ends`` in both panels, where the abscissa ends, and sizes of residuals."""
     lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
     lower.set_yticks([-5, -2, 0, 2, 5])
     lower.axhline(0, color=GREY, lw=0.5, zorder=0)
@@ -70,10 +70,10 @@ def mark(main, lower, found):
         for z in (-size, size):
             lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
     for axes in (main, lower):
-        axes.set_xlim(0, 1.02 * found[-1][0])
-        for radius, _ in found:
+        axes.set_xlim(0, 1.02 * ends[-1][0])
+        for radius, _ in ends:
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    name_limits(main, found)
+    name_limits(main, ends)
 
 
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
@@ -105,24 +105,24 @@ def effects(box):
     return [EFFECTS[name].symbol.format(value) for name, value in texts]
 
 
-def name_limits(axes, found):
+def name_limits(axes, ends):
     """Write the names of the limits above ``axes``, moved apart where they would overlap."""
     x0, x1 = axes.get_xlim()
     points = 72 * axes.get_position().width * axes.figure.get_figwidth() / (x1 - x0)
     renderer = axes.figure.canvas.get_renderer()
     texts = [
         axes.annotate(f"${name}$", (0, 1), xycoords="axes fraction", fontsize=7.5, va="bottom")
-        for _, name in found
+        for _, name in ends
     ]
     scale = 72 / axes.figure.dpi
     widths = [text.get_window_extent(renderer).width * scale for text in texts]
-    wanted = [(radius - x0) * points for radius, _ in found]
+    wanted = [(radius - x0) * points for radius, _ in ends]
     most = (x1 - x0) * points + 72 * RIGHT - 1
-    for text, place, middle in zip(texts, wanted, spread(wanted, widths, 4, most), strict=True):
+    for text, x, middle in zip(texts, wanted, spread(wanted, widths, 4, most), strict=True):
         text.remove()
         pointer = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5, "shrinkA": 0, "shrinkB": 0}
         drawing.label(
-            axes, text.get_text(), (place / points, 1), (middle - place, 5),
+            axes, text.get_text(), (x / points, 1), (middle - x, 5),
             xycoords=("data", "axes fraction"), va="bottom", fontsize=7.5,
             arrowprops=pointer | {"relpos": (0.5, 0)},
         )  # fmt: skip
@@ -155,10 +155,10 @@ def spread(wanted, widths, gap, most):
 
 def draw_series(main, lower, radii, series, single=False):
     """Draw the ``series`` in both panels; a ``single`` one has its curve in black."""
-    for (colour, marker), one in zip(SERIES, series, strict=False):
-        main.plot(radii, one.exact, color=BLACK if single else colour, zorder=5)
-        estimates(main, one.rows, colour, marker)
-        residuals(lower, one.rows, colour, marker)
+    for (colour, marker), part in zip(SERIES, series, strict=False):
+        main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
+        estimates(main, part.rows, colour, marker)
+        residuals(lower, part.rows, colour, marker)
 
 
 def asymptote(axes, x, y):
@@ -202,37 +202,37 @@ def residuals(axes, rows, colour, marker):
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
 
 
-def legend(axes, box, series, place, single=None):
-    """Explain the symbols at a ``place``; ``single`` names the method of the only series.
+def legend(axes, box, series, loc, single=None):
+    """Explain the symbols at a ``loc``; ``single`` names the method of the only series.
 
-    Series of which nothing is seen, of events that are impossible, are left out. ``place`` is a
+    Series of which nothing is seen, of events that are impossible, are left out. ``loc`` is a
     corner in matplotlib's words; "beside" is the top, short of the radii where regimes end, which
     may lie as low as half of the largest; "best" is wherever the curves leave room, and the place
     in a ``box`` with effects.
     """
-    place = "best" if box.effects else place
+    loc = "best" if box.effects else loc
     handles, names = [], []
-    for (colour, marker), one in zip(SERIES, series, strict=False):
+    for (colour, marker), part in zip(SERIES, series, strict=False):
         style = open_symbol(colour, marker)
         if single:
             handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
             names += ["exact", single]
-        elif one.is_seen():
+        elif part.is_seen():
             handles += axes.plot([], [], **style)
-            names.append(one.name)
-    if place == "beside":
+            names.append(part.name)
+    if loc == "beside":
         axes.legend(handles, names, loc="upper right", bbox_to_anchor=(0.49, 1))
     else:
-        axes.legend(handles, names, loc=place)
+        axes.legend(handles, names, loc=loc)
 
 
 def logarithmic(axes, radii, series):
     """Make the ordinate logarithmic and as long as estimates and most of the curves need."""
-    seen = [row["estimate"] or row.get("bound") for one in series for row in one.rows]
+    seen = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
     ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
     largest = ends[-1]
     clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
-    shown = [value for one in series for value in one.exact[clear] if value > 0]
+    shown = [value for part in series for value in part.exact[clear] if value > 0]
     shown += [value for value in seen if value]
     low, high = min(shown), max(shown)
     room = (high / low) ** 0.06

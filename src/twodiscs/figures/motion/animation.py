@@ -56,11 +56,11 @@ def moments(rows, step):
         if time - before > BEFORE * step and after - time > AFTER * step
     ]
     centre = (alone or times[1:])[0] if hop else start
-    found = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
-    found = found[(found >= start) & (found <= end)]
-    if len(found) < 2:
+    frames = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
+    frames = frames[(frames >= start) & (frames <= end)]
+    if len(frames) < 2:
         raise InputError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
-    return found, hop, centre
+    return frames, hop, centre
 
 
 class Stage:
@@ -81,7 +81,7 @@ class Stage:
         self.figure.set_dpi(DPI)
         spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
         x, y = width / 2, height / 2
-        self.box = drawing.place(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
+        self.box = drawing.add_axes(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
         drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
         text = rf"$w\times h={width:g}\times{height:g}$,  $r={radius:g}$"
@@ -119,29 +119,29 @@ class Stage:
     def _moving(self, radius, extent):
         """Return {name: artist} of what changes from frame to frame, in the order of drawing."""
         x0, x1, y0, y1 = extent
-        found = {}
+        artists = {}
         for disc, (face, edge) in enumerate(drawing.DISCS, 1):
-            found[f"disc {disc}"] = self.box.add_patch(
+            artists[f"disc {disc}"] = self.box.add_patch(
                 Circle((0, 0), radius, facecolor=face, edgecolor=edge, linewidth=1.2)
             )
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
-            found[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
-            (found[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
-            found[f"number {disc}"] = drawing.label(
+            artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
+            (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
+            artists[f"number {disc}"] = drawing.label(
                 self.box, f"{disc}", (0, 0), (-9, 9), color=edge, fontsize=11
             )
         middle = self.places(1, [self.centre])[0]
         line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
-        (found["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
-        found["text"] = self.box.annotate(
+        (artists["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
+        artists["text"] = self.box.annotate(
             rf"hop:  ${self.axis}_1={self.axis}_2$", (1, 1), (0, 5), "axes fraction",
             "offset points", ha="right", va="bottom", fontsize=10,
             bbox={"boxstyle": "round,pad=0.2", "facecolor": ORANGE, "edgecolor": "none"},
         )  # fmt: skip
-        (found["past"],) = self.strip.plot([], [], color=BLUE, lw=0.9)
-        (found["hops"],) = self.strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
-        (found["now"],) = self.strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
-        return found
+        (artists["past"],) = self.strip.plot([], [], color=BLUE, lw=0.9)
+        (artists["hops"],) = self.strip.plot([], [], "o", color=VERMILLION, ms=6, mew=0)
+        (artists["now"],) = self.strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
+        return artists
 
     def show(self, time):
         """Move everything to where it is at ``time``."""
@@ -206,6 +206,6 @@ def _palette(image):
     for _, colour in sorted(image.getcolors(1 << 24), reverse=True):
         if all(sum(map(abs, np.subtract(colour, other))) >= APART for other in chosen):
             chosen.append(colour)
-    found = Image.new("P", (1, 1))
-    found.putpalette([channel for colour in chosen[:COLOURS] for channel in colour])
-    return found
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([channel for colour in chosen[:COLOURS] for channel in colour])
+    return palette

@@ -86,7 +86,7 @@ def document():
         "",
         schema()["description"],
         "",
-        "This page is made by `python -m twodiscs.pipeline.documents.pages`.",
+        "This page is made by `python docs/make/pages.py`.",
     ]
     lines += _section(schema(), "")
     return "\n".join(lines) + "\n"

@@ -1,11 +1,11 @@
 """Results as an RO-Crate: what each file is, its hash, and which workflow made it of what.
 
-    python -m twodiscs.pipeline.documents.crate results/paper.pdf … --sources . \\
-        --texts Snakefile … --output results/ro-crate-metadata.json
+    python -m twodiscs.pipeline.documents.crate results/paper.pdf … \\
+        --provenance results/provenance.json --citation CITATION.cff \\
+        --texts workflow/Snakefile … --output results/ro-crate-metadata.json
 
 The crate is the folder of the output, with a copy of the texts of the workflow in ``_workflow``.
-Its dates and versions are those of ``provenance.json``: the same results give the same bytes. An
-argument @FILE stands for the lines of a file.
+Its dates and versions are those of ``provenance.json``: the same results give the same bytes.
 """
 
 import json
@@ -15,11 +15,10 @@ from urllib.parse import quote
 
 import yaml
 
-from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.documents.pages import TABLES
 from twodiscs.pipeline.documents.report import ENTRIES
-from twodiscs.pipeline.results.record import WORKFLOW, audit, digest, require, write
+from twodiscs.pipeline.results.digests import digest
+from twodiscs.pipeline.results.tables import TABLES
 
 #: The profiles that the crate follows, below w3id.org, and where sha256 is defined.
 PROFILES = {
@@ -29,8 +28,8 @@ PROFILES = {
 }
 TERMS = "https://w3id.org/ro/terms/workflow-run/context"
 
-#: What is used of provenance.json.
-KNOWN = {"changed_since_the_commit", "commit", "first_file", "last_file", "versions"}
+#: Where the crate has the texts of the workflow. No scene can be called like this.
+WORKFLOW = "_workflow"
 
 #: What is neither a table nor a figure.
 OTHERS = {
@@ -137,36 +136,19 @@ def crate_of(files, texts, citation, made):
 
 
 def main():
-    parser = Parser(
-        prog="twodiscs.pipeline.documents.crate",
-        description=__doc__.split("\n")[0],
-        fromfile_prefix_chars="@",
-    )
+    parser = Parser(prog="twodiscs.pipeline.documents.crate", description=__doc__.split("\n")[0])
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE")
-    parser.add_argument("--sources", required=True, type=Path, help="the checkout that made them")
+    parser.add_argument("--provenance", required=True, type=Path, metavar="JSON")
+    parser.add_argument("--citation", required=True, type=Path, metavar="CFF")
     parser.add_argument("--texts", nargs="+", required=True, type=Path, metavar="FILE")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE")
     options = parser.parse_args()
     folder = options.output.parent
     files = {path.relative_to(folder).as_posix(): path for path in sorted(options.files)}
-    texts = {f"{WORKFLOW}/{p.relative_to(options.sources).as_posix()}": p for p in options.texts}
-    for path in files.values():
-        if not path.exists():
-            raise InputError(f"{path} is missing; results are built by make")
-        require(path)
-    if differences := list(audit(folder, without=[options.output])):
-        raise InputError(f"{differences[0]}; differences in all: {len(differences)}")
-    path = folder / "provenance.json"
-    try:
-        made = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
-        made = None
-    if not isinstance(made, dict) or not made.keys() >= KNOWN:
-        raise InputError(f"{path} is damaged; delete it, and it is made again")
-    citation = yaml.safe_load((options.sources / "CITATION.cff").read_text(encoding="utf-8"))
+    texts = {f"{WORKFLOW}/{path.name}": path for path in options.texts}
+    made = json.loads(options.provenance.read_text(encoding="utf-8"))
+    citation = yaml.safe_load(options.citation.read_text(encoding="utf-8"))
     crate_of(files, texts, citation, made).write(folder)
-    read = {"files": [*files.values()], "texts": [folder / name for name in texts]}
-    write([options.output], read, job="crate")
 
 
 if __name__ == "__main__":

@@ -1,17 +1,21 @@
-"""Typeset the manuscript; the template reads every number and figure from the results."""
+"""Typeset the manuscript from the results, and write the table of the numbers that it prints."""
 
 import json
 import os
 import platform
 import subprocess
 from importlib.metadata import version
+from pathlib import Path
 
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
+from twodiscs.pipeline.configuration.files import Files
+from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.documents.captions import said
-from twodiscs.pipeline.results.record import write
+from twodiscs.pipeline.numbers.rounding import whole
+from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
 from twodiscs.sampling.montecarlo import DEARER
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
@@ -47,15 +51,23 @@ def versions():
     return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
 
 
-def typeset(template, output, contents):
+def printed(contents):
+    """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
+    scenes = contents["scenes"]
+    found = numbers(read(contents["results"], scenes), scenes)
+    constants = {"dearer": DEARER, "intervals": RETURNS, "seed": contents["seed"]}
+    return found | {name: whole(value) for name, value in constants.items()}
+
+
+def typeset(template, output, contents, found):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
-    The template finds ``contents`` under ``sys.inputs.contents``, as JSON. Added are the
-    ``captions`` of all figures, the ``commit`` of the template, the ``versions``, how many
-    ``intervals`` a chain has, and how many times ``dearer`` conditioned samples are. Its entry
-    ``results``, their folder, becomes a path from the root that results and the project have in
-    common. The same inputs at the same commit give the same bytes on every machine: fonts are
-    those that come with Typst.
+    ``contents`` are as ``Files.manuscript`` returns them, and ``found`` is {name: ``Number``}. The
+    template finds them under ``sys.inputs.contents``, as JSON: the texts of ``numbers``, the
+    ``captions`` of all figures, the ``commit`` of the template, the ``versions``, and ``results``,
+    their folder, as a path from the root that results and the project have in common. The same
+    inputs at the same commit give the same bytes on every machine: fonts are those that come with
+    Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
@@ -66,8 +78,7 @@ def typeset(template, output, contents):
     contents = contents | {
         "captions": captions(results, contents["scenes"][0]),
         "commit": commit(folder),
-        "dearer": DEARER,
-        "intervals": RETURNS,
+        "numbers": {name: number.text for name, number in found.items()},
         "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
         "versions": versions(),
     }
@@ -85,17 +96,21 @@ def typeset(template, output, contents):
 
 def main():
     parser = Parser(prog="twodiscs.pipeline.documents.manuscript", description=__doc__)
-    parser.add_argument("--template", required=True, help="the Typst file")
+    parser.add_argument("--results", required=True, help="the folder of all results")
     parser.add_argument(
-        "--parameters",
-        required=True,
-        help="configuration (its hash), figures and tables of no scene, results, scenes; JSON",
+        "--configuration",
+        help="JSON, or a file of it as @PATH; by default configuration.json of the results",
     )
-    parser.add_argument("--output", required=True, help="the PDF file")
+    parser.add_argument("--template", required=True, help="the Typst file")
+    parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of the numbers")
+    parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
     options = parser.parse_args()
-    given = parameters(options.parameters)
-    typeset(options.template, options.output, given)
-    write([options.output], {"template": [options.template]}, job="manuscript", parameters=given)
+    kept = f"@{Path(options.results, 'configuration.json')}"
+    configuration = load(parameters(options.configuration or kept))
+    contents = Files(configuration, options.results).manuscript(options.results)
+    found = printed(contents)
+    PaperNumbers.write(options.numbers, table_rows(found))
+    typeset(options.template, options.output, contents, found)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ It is one HTML file with its pictures in it; tables, other figures and Snakemake
 to the files beside it. Standard input is the graph of rules that ``snakemake --rulegraph`` prints.
 """
 
+import json
 import re
 import sys
 from base64 import b64encode
@@ -12,12 +13,13 @@ from pathlib import Path, PurePosixPath
 
 from markupsafe import Markup, escape
 
-from twodiscs.comparison.scene_tables import Check, Cost, Grid
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.cost import Cost
+from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
-from twodiscs.pipeline.arguments import Parser, parameters, run
-from twodiscs.pipeline.documents.architecture import direct
+from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.captions import caption
-from twodiscs.pipeline.documents.manuscript import commit, versions
+from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: The figures that the report opens on, and how many; others stand in for those that are not there.
@@ -80,6 +82,18 @@ def key_figures(paths):
     wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
     first = {path.stem: path for path in reversed(paths)}  # the first scene wins
     return [first[name] for name in dict.fromkeys(wanted) if name in first][: len(KEY)]
+
+
+def direct(feeds):
+    """Return ``feeds`` without the arrows that a chain of others makes up for."""
+
+    def reached(rule):
+        return {below for one in feeds[rule] for below in ({one} | reached(one))}
+
+    return {
+        rule: [one for one in below if not any(one in reached(o) for o in below)]
+        for rule, below in feeds.items()
+    }
 
 
 def rules(dot):
@@ -166,14 +180,14 @@ def main():
     parser = Parser(prog="twodiscs.pipeline.documents.report", description=__doc__.split("\n")[0])
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="all results")
     parser.add_argument("--template", required=True, type=Path, help="the page, for Jinja")
-    parser.add_argument("--parameters", required=True, help="scenes; JSON")
+    parser.add_argument("--scenes", required=True, help="the scenes, JSON")
     parser.add_argument("--workflow", required=True, help="Snakemake's report, beside this one")
     parser.add_argument("--output", required=True, type=Path, metavar="HTML")
     options = parser.parse_args()
     folder = options.output.parent
     files = [path.relative_to(folder).as_posix() for path in options.files]
-    given = parameters(options.parameters)["scenes"]
-    shown = contents(folder, files, given, sys.stdin.read(), options.workflow)
+    scenes = json.loads(options.scenes)
+    shown = contents(folder, files, scenes, sys.stdin.read(), options.workflow)
     text = page(options.template.read_text(encoding="utf-8"), shown)
     options.output.write_text(text, encoding="utf-8", newline="\n")
 

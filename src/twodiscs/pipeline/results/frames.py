@@ -7,8 +7,8 @@ from pathlib import Path
 import pandas as pd
 
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.jobs import table_of
-from twodiscs.pipeline.results.manifest import digest
+from twodiscs.pipeline.results.digests import digest
+from twodiscs.pipeline.results.tables import TABLES
 
 #: What the values of a column are to pandas: kinds that know an empty cell.
 KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
@@ -20,11 +20,8 @@ def load(folder):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
     found, folder = {}, Path(folder)
     for path in sorted(folder.glob("*.csv")):
-        try:
-            table = table_of(path.stem)
-        except InputError:
-            continue  # Another's.
-        found[path.stem] = read(path, table)
+        if path.stem in TABLES:
+            found[path.stem] = read(path, TABLES[path.stem])
     if not found:
         raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
     return found

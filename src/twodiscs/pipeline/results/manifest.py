@@ -1,15 +1,14 @@
-"""Fingerprints of all results that are the same bytes on every run.
+"""SHA-256 of all results that are the same bytes on every run.
 
     python -m twodiscs.pipeline.results.manifest results/paper/areas.csv … --output manifest.sha256
 
-Files are named from the folder of the manifest, as ``sha256sum --check`` reads it. An argument
-@FILE stands for the lines of a file.
+Files are named from the folder of the manifest, as ``sha256sum --check`` reads it.
 """
 
 from pathlib import Path
 
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.results.record import digest, require, write
+from twodiscs.pipeline.results.digests import digest
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 
 #: The tables of no study that hold seconds, and the documents that show them.
@@ -28,26 +27,19 @@ def is_reproducible(path):
 def manifest(folder, paths):
     """Return the lines of ``sha256sum`` for the files at ``paths``, named from ``folder``, sorted.
 
-    Raises ``OSError`` for a file that cannot be read, ``InputError`` for one outside the folder.
+    Raises ``OSError`` for a file that cannot be read, ``ValueError`` for one outside the folder.
     """
-    for path in paths:
-        require(path)
     names = sorted(Path(path).relative_to(folder).as_posix() for path in paths)
     return "".join(f"{digest(Path(folder, name))}  {name}\n" for name in names)
 
 
 def main():
-    parser = Parser(
-        prog="twodiscs.pipeline.results.manifest",
-        description=__doc__.split("\n")[0],
-        fromfile_prefix_chars="@",
-    )
+    parser = Parser(prog="twodiscs.pipeline.results.manifest", description=__doc__.split("\n")[0])
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE")
     options = parser.parse_args()
     text = manifest(options.output.parent, options.files)
     options.output.write_text(text, encoding="utf-8", newline="\n")
-    write([options.output], {"files": sorted(options.files)}, job="manifest")
 
 
 if __name__ == "__main__":

@@ -15,15 +15,12 @@ from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.results.manifest import digest
-from twodiscs.studies.catalogue import STUDY_TABLES
-
-TABLES = SCENE_TABLES | STUDY_TABLES
+from twodiscs.pipeline.results.digests import digest, read_json
+from twodiscs.pipeline.results.tables import TABLES
 
 #: How far floats may differ, relative to their size.
 RELATIVE = 1e-12
@@ -127,9 +124,9 @@ def read_points(folder):
     """
     try:
         paths = sorted(Path(folder).glob("*.json"), key=lambda path: float(path.stem))
-        return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
     except ValueError as error:
         raise InputError(f"{folder} must hold points alone: {error}") from None
+    return {path.stem: read_json(path) for path in paths}
 
 
 # Comparison -----------------------------------------------------------------------------------

@@ -105,11 +105,11 @@ def _split(upper, lower):
 def _of(rows, part, method, **where):
     """Return {setting: rows} of a method, settings from the largest down."""
     where |= {"part": part, "method": method}
-    found = {}
+    settings = {}
     for row in rows:
         if all(row[name] == value for name, value in where.items()):
-            found.setdefault(row["setting"], []).append(row)
-    return dict(sorted(found.items(), key=lambda item: -(item[0] or 0.0)))
+            settings.setdefault(row["setting"], []).append(row)
+    return dict(sorted(settings.items(), key=lambda item: -(item[0] or 0.0)))
 
 
 def _slope(row):
@@ -154,13 +154,13 @@ def _volume(panels, rows):
     radii = sorted({row["radius"] for row in rows if row["part"] == "volume"})
     for radius, style, full in zip(radii, ("-", (0, (4, 2))), (False, True), strict=False):
         for method in ("rejection", "conditioned"):
-            (found,) = _of(rows, "volume", method, radius=radius).values()
-            label = f"{method}, $r={radius:g}$: {_slope(found[0])}"
+            (series,) = _of(rows, "volume", method, radius=radius).values()
+            label = f"{method}, $r={radius:g}$: {_slope(series[0])}"
             for axes in panels:
-                _points(axes, found, method, label, style=style, full=full)
-    (found,) = _of(rows, "volume", "sobol").values()
+                _points(axes, series, method, label, style=style, full=full)
+    (series,) = _of(rows, "volume", "sobol").values()
     for axes in panels:
-        _points(axes, found, "sobol", f"Sobol points: {_slope(found[0])}")
+        _points(axes, series, "sobol", f"Sobol points: {_slope(series[0])}")
     _rest(panels, rows, "volume")
     _title(panels[0], f"volume, $r={radii[0]:g}$")
 
@@ -169,20 +169,20 @@ def _area(panels, rows):
     shells = _of(rows, "area", "shell")
     (nodes,) = _of(rows, "area", "quadrature").values()
     beside = 1.3 * max(row["seconds"] for row in nodes if row["error"] > SPLIT)
-    for i, (shade, (thickness, found)) in enumerate(zip(SHADES, shells.items(), strict=False)):
+    for i, (shade, (thickness, series)) in enumerate(zip(SHADES, shells.items(), strict=False)):
         for axes in panels:
-            _points(axes, found, "shell", None if i else "shells", shade)
-            axes.axhline(found[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
+            _points(axes, series, "shell", None if i else "shells", shade)
+            axes.axhline(series[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
         text = rf"$\varepsilon={thickness:.2g}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
-        drawing.label(panels[0], text, (beside, found[0]["floor"]), (0, 0.5), **style)
-    best = [row for found in _of(rows, "area", "balanced_shell").values() for row in found]
+        drawing.label(panels[0], text, (beside, series[0]["floor"]), (0, 0.5), **style)
+    best = [row for series in _of(rows, "area", "balanced_shell").values() for row in series]
     names = {"surface": "on the surface", "sobol": "same, Sobol"}
     for axes in panels:
         _points(axes, best, "balanced_shell", rf"best $\varepsilon$: {_slope(best[0])}")
         for method, name in names.items():
-            (found,) = _of(rows, "area", method).values()
-            _points(axes, found, method, f"{name}: {_slope(found[0])}")
+            (series,) = _of(rows, "area", method).values()
+            _points(axes, series, method, f"{name}: {_slope(series[0])}")
     _rest(panels, rows, "area")
     _title(panels[0], f"area of collisions, $r={best[0]['radius']:g}$")
 
@@ -195,23 +195,23 @@ def _times(axes, rows):
         "single_precision": "in single precision",
     }
     for method, name in names.items():
-        (found,) = _of(rows, "time", method, quantity=quantity).values()
-        _points(axes, found, method, f"{name}: {_slope(found[0])}")
-    for shade, (step, found) in zip(
+        (series,) = _of(rows, "time", method, quantity=quantity).values()
+        _points(axes, series, method, f"{name}: {_slope(series[0])}")
+    for shade, (step, series) in zip(
         SHADES, _of(rows, "time", "time_step", quantity=quantity).items(), strict=False
     ):
         label = r"time steps $\Delta t$" if shade == SHADES[0] else None
-        _points(axes, found, "time_step", label, shade)
-        if found[0]["floor"]:
-            axes.axhline(found[0]["floor"], color=VERMILLION, lw=0.5, ls=DOTTED, alpha=shade)
-        at = found[-1]["seconds"], found[-1]["error"]
+        _points(axes, series, "time_step", label, shade)
+        if series[0]["floor"]:
+            axes.axhline(series[0]["floor"], color=VERMILLION, lw=0.5, ls=DOTTED, alpha=shade)
+        at = series[-1]["seconds"], series[-1]["error"]
         text = rf"$\Delta t=2^{{{round(math.log2(step))}}}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": VERMILLION}
         drawing.label(axes, text, at, (5, 1), **style)
     _gain(axes, rows, quantity)
     axes.set(xlim=(4e-4, 200), ylim=(2e-5, 0.5))
     axes.legend(loc="lower left", **LEGEND)
-    _title(axes, f"mean time of vertical hops, $r={found[0]['radius']:g}$")
+    _title(axes, f"mean time of vertical hops, $r={series[0]['radius']:g}$")
 
 
 def _gain(axes, rows, quantity):
@@ -220,9 +220,9 @@ def _gain(axes, rows, quantity):
     bias = floor["error"] / step
     # The noise of a run falls like the root of the time simulated, ∝ seconds × Δt.
     series = _of(rows, "time", "time_step", quantity=quantity).values()
-    runs = [row for found in series for row in found]
+    runs = [row for part in series for row in part]
     noise = [
-        (one["error"] ** 2 - one["bias"] ** 2) * one["seconds"] * one["setting"] for one in runs
+        (row["error"] ** 2 - row["bias"] ** 2) * row["seconds"] * row["setting"] for row in runs
     ]
     noise = np.median(noise)
     seconds = np.geomspace(1e-3, 1e3)
@@ -232,7 +232,7 @@ def _gain(axes, rows, quantity):
     axes.plot(seconds, error, color=GREY, lw=0.8, ls=(0, (4, 2)), label=r"best $\Delta t$: $-1/3$")
 
     (engine,) = _of(rows, "time", "lockstep", quantity=quantity).values()
-    price = np.median([one["error"] ** 2 * one["seconds"] for one in engine])
+    price = np.median([row["error"] ** 2 * row["seconds"] for row in engine])
     start, end = price / LEVEL**2, np.interp(-LEVEL, -error, seconds)
     drawing.arrow(axes, (start, LEVEL), (end, LEVEL), "<|-|>", width=0.6, size=6)
     middle = math.sqrt(start * end), LEVEL

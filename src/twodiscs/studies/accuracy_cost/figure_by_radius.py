@@ -33,7 +33,7 @@ def _times(axes, rows):
     """
     rows = [row for row in rows if row["part"] == "radius"]
     box = Box(rows[0]["width"], rows[0]["height"])
-    found = limits(box)
+    ends = limits(box)
     predicted = [row for row in rows if row["method"] == "poisson"]
     speed = np.median([row["work"] / row["seconds"] for row in predicted])
     error = predicted[0]["error"]
@@ -55,12 +55,12 @@ def _times(axes, rows):
     for inside, name in (("0.7", "from strips"), (BLACK, "at this error")):
         axes.plot([], [], ls="", marker="o", color=BLACK, mfc=inside, ms=SIZES["o"], label=name)
     axes.plot([], [], color=BLACK, label="Poisson process")
-    for radius, _ in found:
+    for radius, _ in ends:
         axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    axes.set(yscale="log", xlim=(0, 1.02 * found[-1][0]), ylim=(5e-4, 1e4), xlabel="radius $r$")
+    axes.set(yscale="log", xlim=(0, 1.02 * ends[-1][0]), ylim=(5e-4, 1e4), xlabel="radius $r$")
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
-    panels.name_limits(axes, found)
+    panels.name_limits(axes, ends)
     panels.name_box(axes, box)
     panels.letter(axes, "a")
 
@@ -83,14 +83,14 @@ def _single(axes, rows):
         "single_precision": ("single precision", SKY, "D"),
     }
     for method, (name, colour, marker) in looks.items():
-        found = [
+        shown = [
             row
             for row in rows
             if (row["part"], row["quantity"]) == ("precision", "disc_collision_time")
             and row["method"] == method
         ]
-        rooms, errors = ([row[key] for row in found] for key in ("setting", "error"))
-        noise = [row["spread"] for row in found]
+        rooms, errors = ([row[key] for row in shown] for key in ("setting", "error"))
+        noise = [row["spread"] for row in shown]
         axes.plot(
             rooms, errors, marker=marker, ms=SIZES[marker], mfc="white", color=colour, label=name
         )

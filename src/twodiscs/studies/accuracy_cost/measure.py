@@ -23,8 +23,9 @@ from typing import NamedTuple
 import numpy as np
 from mpmath import mp
 
-from twodiscs.comparison.estimates import Line
-from twodiscs.comparison.rows import mean_time_rows
+from twodiscs.comparison.estimates import LinearFit
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.box import Box
@@ -37,7 +38,6 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.studies.accuracy_cost import precision, scalar, timestepping
-from twodiscs.studies.accuracy_cost.table import AccuracyCost
 from twodiscs.theory import exact, laws
 from twodiscs.theory.quadrature import gauss_legendre
 from twodiscs.theory.reference import DIGITS, MpScene, disc_collision_area, volume
@@ -99,15 +99,15 @@ def rejected(quantity, fraction, scene, samples, seed):
     """Estimate by rejection from the prism; ``fraction(samples)`` is the shell's, over the room."""
     shell = fraction(samples) or 0.5
     point = montecarlo.sample_point(scene, [quantity], samples, shell, seed)
-    found = point["quantities"][quantity]
-    return {quantity: found["measure"] * found["hits"] / samples}, samples, 1
+    part = point["quantities"][quantity]
+    return {quantity: part["measure"] * part["hits"] / samples}, samples, 1
 
 
 def conditioned(scene, samples, seed):
     """Estimate the volume by the conditioned sampler."""
-    found = montecarlo.conditioned_point(scene, ["volume"], samples, 0.5, seed)
-    found = found["quantities"]["volume"]
-    return {"volume": found["measure"] * found["hits"] / samples}, samples, 1
+    part = montecarlo.conditioned_point(scene, ["volume"], samples, 0.5, seed)
+    part = part["quantities"]["volume"]
+    return {"volume": part["measure"] * part["hits"] / samples}, samples, 1
 
 
 @cache
@@ -238,9 +238,9 @@ def exactly(quantity, scene, work, seed):
 def closed_form(quantity, scene, work, seed):
     """Evaluate the closed forms in plain doubles."""
     for _ in range(CALLS):
-        found = laws.closed_form(scene)
-    area = found["areas"]["disc_collision"]
-    return {quantity: found["volume"] if quantity == "volume" else area}, 1, CALLS
+        numbers = laws.closed_form(scene)
+    area = numbers["areas"]["disc_collision"]
+    return {quantity: numbers["volume"] if quantity == "volume" else area}, 1, CALLS
 
 
 def reference(scene):
@@ -265,8 +265,8 @@ def by_lockstep(scene, blocks, seed):
     """Measure the mean times with the engine."""
     duration = counting.replica_duration(scene)
     counts = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)[0]
-    found = times(scene, EVENTS, counts, blocks * REPLICAS, duration)
-    return found, counting.simulated_events(counts), 1
+    means = times(scene, EVENTS, counts, blocks * REPLICAS, duration)
+    return means, counting.simulated_events(counts), 1
 
 
 def by_scalar(scene, replicas, seed):
@@ -276,16 +276,16 @@ def by_scalar(scene, replicas, seed):
         np.uint64(seed), 0, 1, replicas, duration, scene.contact_distance, draw_constants(scene),
         (0, 0),
     )[0]  # fmt: skip
-    found = times(scene, scalar.COUNTED, counts, replicas, duration)
-    return found, scalar.simulated_events(counts), 1
+    means = times(scene, scalar.COUNTED, counts, replicas, duration)
+    return means, scalar.simulated_events(counts), 1
 
 
 def by_single_precision(scene, blocks, seed):
     """Measure the mean times with the engine in single precision."""
     duration = counting.replica_duration(scene)
     counts = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
-    found = times(scene, scalar.COUNTED, counts, blocks * REPLICAS, duration)
-    return found, scalar.simulated_events(counts), 1
+    means = times(scene, scalar.COUNTED, counts, blocks * REPLICAS, duration)
+    return means, scalar.simulated_events(counts), 1
 
 
 def by_steps(step, scene, blocks, seed):
@@ -293,8 +293,8 @@ def by_steps(step, scene, blocks, seed):
     duration = counting.replica_duration(scene)
     counts = timestepping.run_blocks(scene, seed, 0, blocks, duration, step)
     replicas = blocks * REPLICAS
-    found = times(scene, scalar.COUNTED, counts, replicas, duration)
-    return found, round(duration / step) * replicas, 1
+    means = times(scene, scalar.COUNTED, counts, replicas, duration)
+    return means, round(duration / step) * replicas, 1
 
 
 # Work and precision ---------------------------------------------------------------------------
@@ -307,10 +307,10 @@ def doubling(first, last):
 
 def series(scale):
     """Return every ``Series`` of volume, area and time, with ``scale`` times the usual work."""
-    found = []
+    curves = []
 
     def add(part, method, run, works, scene=SCENE, setting=lambda work: None):
-        found.append(Series(part, method, scene, works, partial(run, scene), setting))
+        curves.append(Series(part, method, scene, works, partial(run, scene), setting))
 
     def thickness(fraction):
         return montecarlo.shell_thickness(SCENE, "disc_collision", fraction)
@@ -342,7 +342,7 @@ def series(scale):
         if most * scale >= 2 or step > 2.0**-8:
             run, blocks = partial(by_steps, step), doubling(1, most * scale)
             add("time", "time_step", run, blocks, setting=lambda _, step=step: step)
-    return found
+    return curves
 
 
 def exact_values(scene, part):
@@ -357,19 +357,19 @@ def measure(all_series, repetitions, report):
 
     A result is (relative errors by quantity, units of work, seconds of one call).
     """
-    for one in all_series:
-        one.run(one.works[0], 0)
-    results = {(i, work): [] for i, one in enumerate(all_series) for work in one.works}
+    for curve in all_series:
+        curve.run(curve.works[0], 0)
+    results = {(i, work): [] for i, curve in enumerate(all_series) for work in curve.works}
     for repetition in range(repetitions):
-        for i, one in enumerate(all_series):
-            true = exact_values(one.scene, one.part)
+        for i, curve in enumerate(all_series):
+            true = exact_values(curve.scene, curve.part)
             # Nothing of the series before is left in the processor's memory.
-            one.run(one.works[0], 0)
-            for k, work in enumerate(one.works):
+            curve.run(curve.works[0], 0)
+            for k, work in enumerate(curve.works):
                 # Random numbers of its own for every run.
                 seed = 1 + repetition + repetitions * (i + len(all_series) * k)
                 start = time.process_time()
-                estimates, units, calls = one.run(work, seed)
+                estimates, units, calls = curve.run(work, seed)
                 seconds = (time.process_time() - start) / calls
                 with mp.workdps(DIGITS):
                     errors = {q: float(value / true[q] - 1) for q, value in estimates.items()}
@@ -381,18 +381,18 @@ def measure(all_series, repetitions, report):
 
 
 def row(part, quantity, radius, method, **values):
-    """Return a row of accuracy_cost.csv; what ``values`` does not name stays empty."""
+    """Return the columns of a row of accuracy_cost.csv that are not empty."""
     box = {"width": SCENE.width, "height": SCENE.height, "radius": radius}
-    return AccuracyCost.empty(part=part, quantity=quantity, method=method, **box) | values
+    return {"part": part, "quantity": quantity, "method": method, **box, **values}
 
 
-def summary(one, quantity, work, results):
+def summary(curve, quantity, work, results):
     """Return the row of one series at one amount of work."""
     errors = [errors[quantity] for errors, _, _ in results]
     sizes = [abs(error) for error in errors]
     return row(
-        one.part, quantity, one.scene.radius, one.method,
-        setting=one.setting(work),
+        curve.part, quantity, curve.scene.radius, curve.method,
+        setting=curve.setting(work),
         work=round(median(units for _, units, _ in results)),
         seconds=median(seconds for _, _, seconds in results),
         error=math.sqrt(fmean(size * size for size in sizes)),
@@ -403,10 +403,10 @@ def summary(one, quantity, work, results):
 
 
 def fitted(x, y, error=None):
-    """Return (slope, its standard error) of a ``Line``, None for what two points do not tell."""
+    """Return (slope, its standard error) of a ``LinearFit``, None where two points tell none."""
     if len(x) < 2:
         return None, None
-    slope = Line(x, y, error).slope
+    slope = LinearFit(x, y, error).slope
     return slope.value, slope.stderr or None
 
 
@@ -418,31 +418,31 @@ def with_slope(rows):
     node instead, until the error is that of rounding.
     """
     if rows[0]["method"] == "quadrature":
-        fair = [one for one in rows if one["error"] > 1e-14]
-        found = fitted([one["work"] for one in fair], [math.log10(one["error"]) for one in fair])
+        fair = [row for row in rows if row["error"] > 1e-14]
+        fit = fitted([row["work"] for row in fair], [math.log10(row["error"]) for row in fair])
     else:
-        fair = [one for one in rows if 0.5 > one["error"] > 3 * (one["floor"] or 0.0)]
-        x = [math.log(one["work"]) for one in fair]
-        y = [math.log(one["error"]) for one in fair]
+        fair = [row for row in rows if 0.5 > row["error"] > 3 * (row.get("floor", 0.0))]
+        x = [math.log(row["work"]) for row in fair]
+        y = [math.log(row["error"]) for row in fair]
         # The root mean square of R normal deviates is known to 1/√(2R).
-        found = fitted(x, y, 1 / math.sqrt(2 * rows[0]["repetitions"]))
-    return [one | {"slope": found[0], "slope_stderr": found[1]} for one in rows]
+        fit = fitted(x, y, 1 / math.sqrt(2 * rows[0]["repetitions"]))
+    return [row | {"slope": fit[0], "slope_stderr": fit[1]} for row in rows]
 
 
 def work_precision(all_series, results):
     """Return the rows of the parts volume, area, time and floor."""
     rows, floors = [], {}
-    for i, one in enumerate(all_series):
-        for quantity in results[i, one.works[0]][0][0]:
-            found = [summary(one, quantity, work, results[i, work]) for work in one.works]
-            settings = {part["setting"] for part in found}
-            if one.method in ("shell", "time_step"):
-                floor = lasting_error(one, quantity, results, i)
-                floors.setdefault((one.method, quantity), []).append((settings.pop(), *floor))
+    for i, curve in enumerate(all_series):
+        for quantity in results[i, curve.works[0]][0][0]:
+            summaries = [summary(curve, quantity, work, results[i, work]) for work in curve.works]
+            settings = {part["setting"] for part in summaries}
+            if curve.method in ("shell", "time_step"):
+                floor = lasting_error(curve, quantity, results, i)
+                floors.setdefault((curve.method, quantity), []).append((settings.pop(), *floor))
                 # A floor that is lost in the noise is not one that holds the error up.
                 lasting = floor[0] if abs(floor[0]) > 3 * floor[1] else 0.0
-                found = [part | {"floor": abs(lasting)} for part in found]
-            rows += with_slope(found) if len(found) > 1 else found
+                summaries = [part | {"floor": abs(lasting)} for part in summaries]
+            rows += with_slope(summaries) if len(summaries) > 1 else summaries
     for (method, quantity), values in floors.items():
         clear = [value for value in values if abs(value[1]) > 3 * value[2]]
         x, y = [math.log(s) for s, _, _ in clear], [math.log(abs(e)) for _, e, _ in clear]
@@ -458,16 +458,16 @@ def work_precision(all_series, results):
     return rows
 
 
-def lasting_error(one, quantity, results, i):
+def lasting_error(curve, quantity, results, i):
     """Return (relative error that no work removes, its standard error).
 
     That of a shell is exact, that of time steps the mean over all runs, weighted by length.
     """
-    if one.method == "shell":
-        epsilon = one.setting(one.works[0])
-        expected = exact.shell_expectation(one.scene, "disc_collision", epsilon)
-        return expected / exact.areas(one.scene)["disc_collision"] - 1, 0.0
-    runs = [(errors[quantity], work) for work in one.works for errors, _, _ in results[i, work]]
+    if curve.method == "shell":
+        epsilon = curve.setting(curve.works[0])
+        expected = exact.shell_expectation(curve.scene, "disc_collision", epsilon)
+        return expected / exact.areas(curve.scene)["disc_collision"] - 1, 0.0
+    runs = [(errors[quantity], work) for work in curve.works for errors, _, _ in results[i, work]]
     errors, weights = map(np.array, zip(*runs, strict=True))
     mean = float(errors @ weights / weights.sum())
     # The variance of a run is inverse to its length.
@@ -490,15 +490,15 @@ def predicted_events(scene, event, error=TARGET):
 def strip_rows(scene, blocks):
     """Yield the rows of pilots of ``blocks`` from starts next to the hops that are rare."""
     for hop in strip.rare_hops(scene):
-        place = strip.strip_of(scene, hop)
-        strip.run_blocks(scene, hop, place, 0, 0, 1)
+        near = strip.strip_of(scene, hop)
+        strip.run_blocks(scene, hop, near, 0, 0, 1)
         start = time.process_time()
-        found, events = strip.run_blocks(scene, hop, place, 1, 0, blocks)
+        found, events = strip.run_blocks(scene, hop, near, 1, 0, blocks)
         seconds = time.process_time() - start
-        more = (strip.relative_error(strip.shares_of(scene, hop, place), found) / TARGET) ** 2
+        more = (strip.relative_error(strip.shares_of(scene, hop, near), found) / TARGET) ** 2
         yield row(
             "radius", f"{hop}_time", scene.radius, "strip",
-            setting=place.time, work=round(events * more), seconds=seconds * more, error=TARGET,
+            setting=near.time, work=round(events * more), seconds=seconds * more, error=TARGET,
             repetitions=blocks * REPLICAS,
         )  # fmt: skip
 
@@ -551,9 +551,9 @@ def by_radius(scale):
             start = time.process_time()
             point = counting.count_events(scene, {event: TARGET}, 10**10, 1)
             seconds = time.process_time() - start
-            true = exact.mean_times(scene)[event]
-            (found,) = mean_time_rows(scene, {(radius, f"{event}_time"): true}, [point])
-            bias = found["estimate"] / true - 1
+            box = Box.of(scene)
+            (mean,) = MeanTimes.rows(box, Theory.rows(box, [radius]), {"dynamics": [point]})
+            bias = mean["estimate"] / mean["exact"] - 1
             yield row(
                 "radius", f"{event}_time", radius, "paid",
                 work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,
@@ -586,11 +586,11 @@ def where_single_fails(scale):
                 errors[method].append(float(expected / count - 1))
             events += counting.simulated_events(double)
             noise = relative_errors(double, products, blocks * REPLICAS)[counting.COLLISIONS]
-        for method, found in errors.items():
+        for method, deviations in errors.items():
             yield row(
                 "precision", "disc_collision_time", scene.radius, method, setting=room,
-                work=events, error=math.sqrt(fmean(e * e for e in found)),
-                spread=float(noise), bias=fmean(found), repetitions=len(NEAR),
+                work=events, error=math.sqrt(fmean(e * e for e in deviations)),
+                spread=float(noise), bias=fmean(deviations), repetitions=len(NEAR),
             )  # fmt: skip
     for longer in LONGER:
         duration = longer * counting.replica_duration(SCENE)
@@ -612,5 +612,5 @@ def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
     scale = length("seconds", seconds) / USUAL_SECONDS
     repetitions = whole("repetitions", repetitions, 2)
     all_series = series(scale)
-    found = work_precision(all_series, measure(all_series, repetitions, report))
-    return [*found, *by_radius(scale), *where_single_fails(scale)]
+    work_rows = work_precision(all_series, measure(all_series, repetitions, report))
+    return [*work_rows, *by_radius(scale), *where_single_fails(scale)]

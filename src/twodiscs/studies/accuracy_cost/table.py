@@ -1,6 +1,6 @@
 """The table of what accuracy costs."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Column, Table
 
 
 class AccuracyCost(Table):
@@ -58,3 +58,10 @@ class AccuracyCost(Table):
     """
     slope_stderr: NUMBER
     """its standard error"""
+
+    @classmethod
+    def rows(cls, seconds, report=None):
+        """Return the rows for some ``seconds`` of processor time (see ``measure.rows``)."""
+        from twodiscs.studies.accuracy_cost import measure
+
+        return [cls.empty(**row) for row in measure.rows(seconds, report=report)]

@@ -32,7 +32,6 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.distributions.table import Distributions
 from twodiscs.studies.tails.measure import wait
 from twodiscs.theory import exact, tails
 
@@ -110,7 +109,7 @@ def constant_hazard(bins):
     bins or ``FEWEST`` ends.
     """
     bins = list(bins)
-    ends = sum(one.count for one in bins)
+    ends = sum(part.count for part in bins)
     if len(bins) < 3 or ends < FEWEST:
         raise InputError(
             f"bins must be at least 3 with {FEWEST} ends in all, not {len(bins)} with {ends}"
@@ -215,11 +214,11 @@ def measured(scene, hop, seed, events=EVENTS):
     if hop == "horizontal_hop":
         upright = Box.of(scene).turned().scene(scene.radius)
     draw, histogram = draw_constants(upright), np.zeros(BINS + 1, np.int64)
-    found = draw_passages(
+    means = draw_passages(
         np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(upright), draw, width, histogram,
     )  # fmt: skip
     intervals, passages = BLOCKS * block, BLOCKS * passages
-    time, square, cut_square, passage, cut_passage = mean_of(found)
+    time, square, cut_square, passage, cut_passage = mean_of(means)
 
     yield _row("mean", intervals, time, mean, z=_z(time.value - mean, time.stderr))
     scale = 1 / (2 * mean)
@@ -239,15 +238,15 @@ def measured(scene, hop, seed, events=EVENTS):
         z = (zero.value - due) / zero.stderr
         yield _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width, z=z)
     bins = list(hazard(counts, intervals, width))
-    yield from _constancy([one for one in bins if one.first >= FIRST * mean], mean)
-    for one in bins:
-        estimate = Estimate(one.rate, one.error, one.count)
-        yield _row("hazard", one.count, estimate, None, first=one.first, last=one.last)
+    yield from _constancy([part for part in bins if part.first >= FIRST * mean], mean)
+    for part in bins:
+        estimate = Estimate(part.rate, part.error, part.count)
+        yield _row("hazard", part.count, estimate, None, first=part.first, last=part.last)
 
 
 def _constancy(bins, mean):
     """Yield the rows on whether the hazard is constant over ``bins``, if they are enough."""
-    if len(bins) < 3 or sum(one.count for one in bins) < FEWEST:
+    if len(bins) < 3 or sum(part.count for part in bins) < FEWEST:
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
     ends = {"first": bins[0].first, "last": bins[-1].last}
@@ -265,15 +264,15 @@ def rows(scenes, seed, events=EVENTS):
     own, from the root ``seed``, its scene, hop and radius. Raises ``InputError`` as ``measured``
     does.
     """
-    for i, one in enumerate(scenes):
-        box = Box(**one["box"])
-        cases = [(one["event"], radius) for radius in one["radii"]]
+    for i, case in enumerate(scenes):
+        box = Box(**case["box"])
+        cases = [(case["event"], radius) for radius in case["radii"]]
         if i == 0:
             cases += [(hop, radius) for hop in HOPS for radius in near_threshold(box, hop)]
         for hop, radius in dict.fromkeys(cases):
             scene = box.scene(radius)
-            stream = stream_seed(seed, one["name"], "intervals", f"{hop} {key(radius)}")
-            start = {"scene": one["name"], "width": box.width, "height": box.height}
+            stream = stream_seed(seed, case["name"], "intervals", f"{hop} {key(radius)}")
+            start = {"scene": case["name"], "width": box.width, "height": box.height}
             start |= {"radius": radius, "event": hop, "exact_mean": exact.mean_times(scene)[hop]}
             for row in measured(scene, hop, stream, events):
                 yield row | start
@@ -283,7 +282,16 @@ def _z(deviation, error):
     return student_deviate(deviation / error, BLOCKS - 1)
 
 
-def _row(quantity, count, estimate, reference, **more):
+def _row(quantity, count, estimate, reference, first=None, last=None, z=None, **more):
     """Return a row; ``more`` are other columns, which are empty otherwise."""
-    found = {"estimate": estimate.value, "stderr": estimate.stderr, "reference": reference}
-    return Distributions.empty(quantity=quantity, count=count, **found, **more)
+    return {
+        "quantity": quantity,
+        "first": first,
+        "last": last,
+        "count": count,
+        "estimate": estimate.value,
+        "stderr": estimate.stderr,
+        "reference": reference,
+        "z": z,
+        **more,
+    }

@@ -1,6 +1,6 @@
 """The table of how the times to the next hop are distributed."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
 
 SEE_QUANTITY = Column(float, "see quantity")
 AS_ESTIMATE = Column(float, "as estimate")
@@ -61,3 +61,10 @@ class Distributions(Table):
     rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. There is a
     plateau for all that is seen where neither is small
     """
+
+    @classmethod
+    def rows(cls, scenes, seed, events):
+        """Return the rows of ``scenes`` (see ``measure.rows``)."""
+        from twodiscs.studies.distributions import measure
+
+        return [cls.empty(**row) for row in measure.rows(scenes, seed, events)]

@@ -44,9 +44,9 @@ def draw(box=None, *, tables):
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
     plain = Box(rows[0]["width"], rows[0]["height"])
-    found = limits(plain)
-    others = [radius for radius, _ in found]
-    exact = {name: curves.exact(one, others) for name, one in boxes.items()}
+    ends = limits(plain)
+    others = [radius for radius, _ in ends]
+    exact = {name: curves.exact(box, others) for name, box in boxes.items()}
 
     figure = new_figure(BOTTOM + LOWER + JOINT + MAIN + TOP + LEGEND, WIDTH)
     for i, event in enumerate(SHOWN_EVENTS):
@@ -65,7 +65,7 @@ def draw(box=None, *, tables):
         main.tick_params(which="both", labelbottom=False, labelleft=i == 0)
         lower.set(xlabel="radius $r$")
         lower.tick_params(labelleft=i == 0)
-        panels.mark(main, lower, found)
+        panels.mark(main, lower, ends)
         panels.label_decades(main.yaxis, 10)
         _title(main, "abc"[i], NAMES_OF.get(event, name_of(event)))
         if i == 0:

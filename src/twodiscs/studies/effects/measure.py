@@ -1,18 +1,14 @@
 """What each effect does to the mean times, and rough discs that never meet.
 
-The scenes are those of the files in ``config/scenes``. Each is counted here as it is when it is
-built alone, from the same seeds, and set beside plain discs in the same box.
+The scenes are those of the files in ``config/scenes``. Their mean times, counted as those of any
+scene, are set beside those of plain discs in the same box.
 """
 
-import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from twodiscs.comparison import estimates
-from twodiscs.comparison.rows import exact_values, mean_time_rows
-from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import DISC, after_event, law_of, next_event
 from twodiscs.model.box import Box
@@ -72,42 +68,8 @@ def unmet(scene, times, blocks, seed):
     law, (draw, prism) = law_of(a_scene(scene)), origins(scene)
     values = ascending("times", times)
     blocks, seed = whole("blocks", blocks), np.uint64(whole("seed", seed, 0))
-    found = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
-    return [int(n) for n in found]
-
-
-def job(name, box, dynamics, seed, blocks=BLOCKS):
-    """Return what is counted of a scene with effects, a dict for a JSON file.
-
-    ``dynamics`` are the arguments of ``counting.job`` but for the box, a dict for each radius, and
-    ``seed`` is the root of the random numbers. Keys: the ``name``, the box (its parameters) and
-    dynamics, the points; and unmet, for rough discs: how many of ``blocks`` × ``REPLICAS`` starts
-    have not met by each of ``TIMES``, for the scene and for smooth discs, at the radii where
-    meeting by chance takes much less.
-    """
-    points = [counting.job(box, **arguments) for arguments in dynamics]
-    scenes = [box.scene(point["radius"]) for point in points]
-    rough = "moment_of_inertia" in box.effects
-    return {
-        "name": name,
-        "box": box.parameters(),
-        "dynamics": points,
-        "unmet": list(_unmet_points(name, scenes, seed, blocks)) if rough else [],
-    }
-
-
-def _unmet_points(name, scenes, seed, blocks):
-    """Yield the counts of starts that have not met, with rough discs and with smooth ones."""
-    for rough in scenes:
-        for scene in (rough, replace(rough, moment_of_inertia=None)):
-            if BY_CHANCE * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
-                stream = stream_seed(seed, name, "unmet", key(scene.radius))
-                yield {
-                    "radius": scene.radius,
-                    "effects": scene.effects,
-                    "starts": blocks * REPLICAS,
-                    "counts": unmet(scene, TIMES, blocks, stream),
-                }
+    counts = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
+    return [int(n) for n in counts]
 
 
 # The table ----------------------------------------------------------------------------------------
@@ -119,22 +81,35 @@ KEPT = (
 )  # fmt: skip
 
 
-def rows(points):
-    """Yield the rows of effects.csv, from the files of what ``job`` returned for each scene."""
-    for one in (json.loads(Path(path).read_text(encoding="utf-8")) for path in points):
-        box = Box(**one["box"])
-        start = {"scene": one["name"], "width": box.width, "height": box.height}
-        for row in _compared(box, one["dynamics"]):
+def rows(tables, scenes, seed, blocks=BLOCKS):
+    """Yield the rows of effects.csv.
+
+    ``scenes`` is {name: parameters of its box}, ``tables`` has the rows of <name>/mean_times of
+    each. Rough discs are followed besides until they meet, from ``blocks`` × ``REPLICAS`` starts at
+    each radius of their table, with random streams of the root ``seed``.
+    """
+    for name, parameters in scenes.items():
+        box, times = Box(**parameters), tables[f"{name}/mean_times"]
+        start = {"scene": name, "width": box.width, "height": box.height}
+        for row in times:
             yield start | _mean_time_row(box, row)
-        for point in one["unmet"]:
-            for time, n in zip(TIMES, point["counts"], strict=True):
-                yield start | _unmet_row(box, point, time, n)
+        if "moment_of_inertia" in box.effects:
+            for radius in dict.fromkeys(row["radius"] for row in times):
+                for row in _unmet_rows(name, box.scene(radius), seed, blocks):
+                    yield start | row
 
 
-def _compared(box, points):
-    """Return the rows of mean_times.csv for the ``points`` of a scene."""
-    radii = [point["radius"] for point in points]
-    return mean_time_rows(box.scene(radii[0]), exact_values(exact.theory_rows(box, radii)), points)
+def _unmet_rows(name, rough, seed, blocks):
+    """Yield the rows on starts that have not met, of rough discs and of smooth ones.
+
+    There are none at a radius where meeting by chance does not take much less time.
+    """
+    for scene in (rough, replace(rough, moment_of_inertia=None)):
+        if BY_CHANCE * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
+            stream = stream_seed(seed, name, "unmet", key(scene.radius))
+            counts = unmet(scene, TIMES, blocks, stream)
+            for time, count in zip(TIMES, counts, strict=True):
+                yield _unmet_row(scene, blocks * REPLICAS, time, count)
 
 
 def _plain(box, radius):
@@ -161,24 +136,24 @@ def _law(plain, time):
     return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
-def _unmet_row(box, point, time, count):
-    """Return the row of the share of starts that have not met by a ``time``."""
-    plain = _plain(box, point["radius"])
-    share = estimates.binomial_estimate(count, point["starts"], 1.0)
-    honest = count >= estimates.HONEST
+def _unmet_row(scene, starts, time, count):
+    """Return the row of the fraction of ``starts`` that have not met by a ``time``."""
+    plain = _plain(Box.of(scene), scene.radius)
+    fraction = estimates.binomial_estimate(count, starts, 1.0)
+    enough = count >= estimates.MIN_EVENTS
     return {
-        "effects": repr(point["effects"]),
-        "radius": point["radius"],
+        "effects": repr(scene.effects),
+        "radius": scene.radius,
         "quantity": "never_met_share",
         "exact": None,
         "plain": plain and _law(plain, time),
-        "estimate": share and share.value,
-        "stderr": share.stderr if honest else None,
+        "estimate": fraction and fraction.value,
+        "stderr": fraction.stderr if enough else None,
         "z": None,
         "count": count,
-        "replicas": point["starts"],
+        "replicas": starts,
         "duration": time,
-        "status": "sampled" if honest else "too-few" if count else "none-seen",
+        "status": "sampled" if enough else "too-few" if count else "none-seen",
         "test": None,
         "starts": "invariant",
         "share": 1.0,

@@ -1,6 +1,6 @@
 """The tables of what each effect does and what it costs."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
 
 AS_EXACT = Column(float, "as exact")
 
@@ -51,6 +51,13 @@ class Effects(Table):
     """share of configuration space that starts come from"""
     copies: COUNT
     """events that count as one, as in mean_times.csv"""
+
+    @staticmethod
+    def rows(tables, scenes, seed):
+        """Return the rows of ``scenes`` (see ``measure.rows``)."""
+        from twodiscs.studies.effects import measure
+
+        return list(measure.rows(tables, scenes, seed))
 
 
 class EffectsCost(Table):

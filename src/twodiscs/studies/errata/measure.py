@@ -47,10 +47,10 @@ def measurements(tables):
     times stand for each other, by the exact volume; the volume is measured by the dynamics of disc
     collisions, by their exact area. The thickness of shells is allowed for.
     """
-    found = {}
+    quotients = {}
 
     def add(quantity, row, method, factor, error):
-        found.setdefault((quantity, row["radius"]), {})[method] = factor, error
+        quotients.setdefault((quantity, row["radius"]), {})[method] = factor, error
 
     for row, factor, error in _relative(tables.get("volume", ())):
         add("volume", row, "Monte Carlo", factor, error)
@@ -64,7 +64,7 @@ def measurements(tables):
         add(f"{event}_area", row, "dynamics", 1 / factor, error / factor**2)
         if event == "disc_collision":
             add("volume", row, "dynamics", factor, error)
-    return found
+    return quotients
 
 
 # Verdicts -----------------------------------------------------------------------------------------
@@ -92,13 +92,13 @@ def _ratio(statement, q):
     return mp.re(printed) / statement.true(q) if real else None
 
 
-def _tabled_radius(name, quantity, found):
+def _tabled_radius(name, quantity, quotients):
     """Return the radius of the tables at which to look at a regime or limit, None if there is none.
 
     That is the nearest to the limit, or the nearest to the radius to report, if possible where
     both methods measured the quantity.
     """
-    radii = [radius for measured, radius in found if measured == quantity]
+    radii = [radius for measured, radius in quotients if measured == quantity]
     if name in LIMITS:
         _, limit, side = LIMITS[name]
         away = {radius: side * (radius - limit(MpScene.of(WIDTH, HEIGHT, 0))) for radius in radii}
@@ -106,7 +106,7 @@ def _tabled_radius(name, quantity, found):
     target = REGIMES[name][0][2]
     return min(
         (radius for radius in radii if Scene(WIDTH, HEIGHT, radius).regime == name),
-        key=lambda radius: (-len(found[quantity, radius]), abs(radius - target), radius),
+        key=lambda radius: (-len(quotients[quantity, radius]), abs(radius - target), radius),
         default=None,
     )
 
@@ -142,9 +142,9 @@ def _confirm(quantity, radius, measured, exact):
     return true
 
 
-def _find(statement, name, found, exact):
+def _find(statement, name, quotients, exact):
     """Return the ``Finding`` on a statement for one regime or limit, or None for no radius."""
-    tabled = _tabled_radius(name, statement.quantity, found) if statement.quantity else None
+    tabled = _tabled_radius(name, statement.quantity, quotients) if statement.quantity else None
     boxes, radius = _boxes(name, tabled)
     if statement.is_claim:
         return Finding(all(map(statement.printed, boxes)), None, radius, {})
@@ -152,7 +152,7 @@ def _find(statement, name, found, exact):
     right = all(ratio is not None and abs(ratio - 1) < SAME for ratio in ratios)
     measured = {}
     if tabled:
-        factors = found[statement.quantity, tabled]
+        factors = quotients[statement.quantity, tabled]
         true = _confirm(statement.quantity, tabled, factors, exact)
         # A relative deviation of the whole is a larger one of its part. What stands for a limit is
         # measured at a radius nearby, and its ratio to the truth carried over.
@@ -160,8 +160,8 @@ def _find(statement, name, found, exact):
         if name in REGIMES:
             lever = true / (statement.share * statement.true(boxes[0]))
         for method, (factor, error) in sorted(factors.items()):
-            place = method if name in REGIMES else f"{method} at {tabled!r}"
-            measured[place] = 1 + (factor - 1) * lever, error * abs(lever)
+            by = method if name in REGIMES else f"{method} at {tabled!r}"
+            measured[by] = 1 + (factor - 1) * lever, error * abs(lever)
     return Finding(right, ratios[0], radius, measured)
 
 
@@ -191,16 +191,17 @@ def _evidence(finding):
     return "; ".join(parts)
 
 
-def judge(statement, found=None, exact=None):
+def judge(statement, quotients=None, exact=None):
     """Return the row of errata.csv on one ``Statement``.
 
-    ``found`` is what ``measurements`` returns, ``exact`` maps (radius, quantity) to the values of
-    theory.csv. The row tells of the first regime or limit for which the statement fails, if it does
-    for any. Raises ``InputError`` where a measurement or theory.csv contradicts the truth.
+    ``quotients`` is what ``measurements`` returns, ``exact`` maps (radius, quantity) to the values
+    of theory.csv. The row tells of the first regime or limit for which the statement fails, if it
+    does for any. Raises ``InputError`` where a measurement or theory.csv contradicts the truth.
     """
     with mp.workdps(DIGITS):
         findings = [
-            _find(statement, name, found or {}, exact or {}) for name in statement.where or (None,)
+            _find(statement, name, quotients or {}, exact or {})
+            for name in statement.where or (None,)
         ]
         told = next((finding for finding in findings if not finding.right), findings[0])
         right = [finding.right for finding in findings]
@@ -227,6 +228,6 @@ def rows(tables, box):
     """
     if (box.width, box.height) != (WIDTH, HEIGHT):
         tables = {}
-    found = measurements(tables)
+    quotients = measurements(tables)
     exact = {(row["radius"], row["quantity"]): row["exact"] for row in tables.get("theory", ())}
-    return [judge(statement, found, exact) for statement in STATEMENTS]
+    return [judge(statement, quotients, exact) for statement in STATEMENTS]

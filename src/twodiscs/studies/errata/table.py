@@ -1,6 +1,6 @@
 """The table of corrections to the source."""
 
-from twodiscs.comparison.tables import LENGTH, NUMBER, TEXT, Table
+from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, Table
 
 
 class Errata(Table):
@@ -38,3 +38,10 @@ class Errata(Table):
     measure each other by the exact volume; where a part is printed, the rest is taken as exact; the
     ratio for a limit is measured at the radius given and carried over by theory
     """
+
+    @staticmethod
+    def rows(tables, box):
+        """Return the rows in the order of the source (see ``measure.rows``)."""
+        from twodiscs.studies.errata import measure
+
+        return measure.rows(tables, box)

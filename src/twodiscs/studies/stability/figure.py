@@ -86,12 +86,12 @@ LINES = (
 
 def _worst(rows, method, quantity):
     """Return (distances, worst errors) of a method; ``quantity`` None stands for all of them."""
-    found = {}
+    worst = {}
     for row in _select(rows, method=method):
         if quantity in (None, row["quantity"]):
             distance = abs(row["distance"])
-            found[distance] = max(found.get(distance, 0.0), row["value"])
-    return zip(*sorted(found.items()), strict=True) if found else ([], [])
+            worst[distance] = max(worst.get(distance, 0.0), row["value"])
+    return zip(*sorted(worst.items()), strict=True) if worst else ([], [])
 
 
 def _errors(axes, rows, high):
@@ -125,8 +125,8 @@ def _shares(axes, rows):
         ("conditioned", SERIES[0], "as drawn here"),
         ("prism", SERIES[1], "from the prism"),
     ):
-        found = sorted((-row["distance"], row["value"]) for row in _select(rows, method=method))
-        x, y = zip(*found, strict=True) if found else ([], [])
+        points = sorted((-row["distance"], row["value"]) for row in _select(rows, method=method))
+        x, y = zip(*points, strict=True) if points else ([], [])
         axes.plot(x, y, label=name, lw=0.7, **panels.open_symbol(*look, 0.8))
     for row in _select(rows, method="conditioned")[:1]:
         axes.axhline(row["low"], **BOUND)
@@ -153,15 +153,15 @@ def _power(distance):
 def _radii(rows):
     """Return {(case, radius): name in mathtext}, ascending in the radius."""
     names = {"h/4": "h/4", "w/4": "w/4", "largest radius": r"r_{\mathrm{max}}"}
-    found = {}
+    texts = {}
     for row in sorted(rows, key=lambda row: row["radius"]):
         key = row["case"], row["radius"]
         if row["case"] in names:
-            found[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
+            texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
             tiny = f"$r={_rounded(row['radius'])}$"
-            found[key] = f"$r={row['radius']:g}$" if row["case"] == "ordinary" else tiny
-    return found
+            texts[key] = f"$r={row['radius']:g}$" if row["case"] == "ordinary" else tiny
+    return texts
 
 
 def _lines(axes, names, labelled=True):

@@ -14,8 +14,9 @@ import numpy as np
 from mpmath import mp, mpf
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import Line, mean_of
-from twodiscs.comparison.rows import area_rows, volume_rows
+from twodiscs.comparison.estimates import LinearFit, mean_of
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, next_event, wall_quotient
@@ -26,7 +27,6 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.stability.table import Stability
 from twodiscs.theory import exact, laws
 from twodiscs.theory.reference import DIGITS, exact_numbers
 
@@ -81,21 +81,21 @@ SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 REPETITIONS = 1600
 
 
-def row(part, quantity, case, value, **more):
-    """Return a row of stability.csv; ``more`` are other columns, which are empty otherwise.
+def row(part, quantity, case, value, low=None, high=None, z=None, **more):
+    """Return the columns of a row of stability.csv that are not empty, and the bounds.
 
     It has ``passed`` if the value is within ``low`` and ``high`` and |z| ≤ 5, as far as they are
     given; without any of them, or without a value, nothing is said.
     """
-    columns = Stability.empty(part=part, quantity=quantity, case=case, value=value) | more
-    low, high, z = columns["low"], columns["high"], columns["z"]
+    passed = None
     if value is not None and any(asked is not None for asked in (low, high, z)):
-        columns["passed"] = (
+        passed = (
             (low is None or value >= low)
             and (high is None or value <= high)
             and (z is None or abs(z) <= LARGEST_Z)
         )
-    return columns
+    columns = {"part": part, "quantity": quantity, "case": case, "value": value, **more}
+    return columns | {"low": low, "high": high, "z": z, "passed": passed}
 
 
 def other_seed(seed, i):
@@ -112,8 +112,8 @@ def limits(box):
     Only those that the plain ``Box`` has; where both hops end at once the name is "h/4".
     """
     names = {box.threshold(hop): name for hop, name in zip(HOPS, ("w/4", "h/4"), strict=True)}
-    found = {names[radius]: radius for radius in box.thresholds}
-    return dict(sorted(found.items())) | {"largest radius": box.largest_radius}
+    by_name = {names[radius]: radius for radius in box.thresholds}
+    return dict(sorted(by_name.items())) | {"largest radius": box.largest_radius}
 
 
 def beside(box, distances):
@@ -135,9 +135,9 @@ def hard_radii(box):
     """
     short = box.shortest
     near = [
-        found
-        for found in beside(box, (-1e-3, -1e-6, -1e-9, 1e-9))
-        if found[0] == "largest radius" or abs(found[1]) == 1e-9
+        case
+        for case in beside(box, (-1e-3, -1e-6, -1e-9, 1e-9))
+        if case[0] == "largest radius" or abs(case[1]) == 1e-9
     ]
     return [("ordinary", None, short / 5), ("tiny", None, short * 1e-9), *near]
 
@@ -148,13 +148,15 @@ def ordinary_radii(box):
     For the box 1.5 × 1 they are 0.05, 0.2, 0.24, 0.3 and 0.38.
     """
     ends = sorted([0.0, *limits(box).values()])
-    places = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
-    places += [(*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)]
-    found = []
-    for low, high, share in places:
+    between = [(ends[0], ends[1], share) for share in (0.2, 0.8, 0.96)]
+    between += [
+        (*pair, share) for pair, share in zip(pairwise(ends[1:]), (0.4, 0.55), strict=False)
+    ]
+    radii = []
+    for low, high, share in between:
         radius = low + share * (high - low)
-        found.append(shortest_decimal(radius, 0.1 * (high - low) * share))
-    return found
+        radii.append(shortest_decimal(radius, 0.1 * (high - low) * share))
+    return radii
 
 
 # Theory -----------------------------------------------------------------------------------------
@@ -230,17 +232,12 @@ def estimate_rows(box, seed):
     radii += hard_radii(box)[1:]
     for i, (case, distance, radius) in enumerate(radii):
         scene = box.scene(radius)
-        true = {(radius, "volume"): exact.volume(scene)}
-        true |= {(radius, f"{event}_area"): area for event, area in exact.areas(scene).items()}
+        quantities = ["volume", *(f"{event}_area" for event in EVENTS)]
         point = montecarlo.conditioned_point(
-            scene,
-            [quantity for _, quantity in true],
-            ESTIMATE_PROPOSALS,
-            SHELL,
-            other_seed(seed, i),
+            scene, quantities, ESTIMATE_PROPOSALS, SHELL, other_seed(seed, i)
         )
-        found = volume_rows(true, [point]) + area_rows(scene, true, [point])
-        for seen in found:
+        theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
+        for seen in Volume.rows(theory, points) + Areas.rows(box, theory, points):
             yield row(
                 "estimates", seen["quantity"], case, seen["estimate"], method="conditioned",
                 radius=radius, distance=distance, count=seen["samples"], exact=seen["expectation"],
@@ -310,7 +307,7 @@ def approaches(sigma, generator, cases):
             fast * c,
             fast * s,
         )
-        return [tuple(map(float, found)) for found in zip(*columns, strict=True)]
+        return [tuple(map(float, state)) for state in zip(*columns, strict=True)]
 
     def power(low, high):
         return 10 ** generator.uniform(low, high, cases)
@@ -330,8 +327,8 @@ def time_rows(box, seed, cases=400):
     """Yield the worst errors of predicted contacts and wall hits."""
     generator = np.random.default_rng(seed)
     radius = ordinary_radii(box)[1]
-    for case, found in approaches(2 * radius, generator, cases).items():
-        errors = [contact_error(*state, 2 * radius) for state in found]
+    for case, flights in approaches(2 * radius, generator, cases).items():
+        errors = [contact_error(*state, 2 * radius) for state in flights]
         known = [error for error in errors if error is not None]
         yield row("times", "contact_time", case, max(known), count=len(known), high=TIME_BOUND)
 
@@ -577,27 +574,29 @@ def reversal_rows(box, seed):
             count=REVERSED,
         )  # fmt: skip
 
-        found = {}  # the logarithm of the error of return by the number of events
+        log_errors = {}  # the logarithm of the error of return by the number of events
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
         for block, number in enumerate(numbers, start=1):
             starts = states(scene, REVERSED, seed, block)
             # A way back without any rounding is possible; it counts as an eighth of one.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
-            found[number] = log = mean_of(np.log(off))
+            log_errors[number] = log = mean_of(np.log(off))
             value = math.exp(log.value)
             yield row(
                 "reversal", "return_error", "return", value, radius=radius, count=number,
                 stderr=value * log.stderr,
             )  # fmt: skip
 
-        fitted = [(n, e.value, e.stderr) for n, e in found.items() if first <= n <= round(expected)]
-        slope = Line(*zip(*fitted, strict=True)).slope
+        fitted = [
+            (n, e.value, e.stderr) for n, e in log_errors.items() if first <= n <= round(expected)
+        ]
+        slope = LinearFit(*zip(*fitted, strict=True)).slope
         yield row(
             "reversal", "exponent", "return", slope.value, radius=radius, exact=rate.value,
             stderr=slope.stderr, count=REVERSED,
             z=(slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr),
         )  # fmt: skip
-        logs = [log.value for log in found.values()]
+        logs = [log.value for log in log_errors.values()]
         yield row(
             "reversal", "events_retraced", "return",
             float(np.interp(math.log(RETRACED), logs, numbers)),
@@ -614,7 +613,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
     """Yield how often the 95 % interval of a mean time covers the exact one, event by event.
 
     A repetition is one block of ``counting.run_blocks``. Where most of them have too few events for
-    an interval (``estimates.is_honest``), that is all that is said.
+    an interval (``estimates.has_error_bar``), that is all that is said.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):
@@ -628,7 +627,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
             if times[event] is None:
                 continue
             moments = [(int(sums[e]), int(products[e, e]), REPLICAS) for sums, products in blocks]
-            if sum(estimates.is_honest(*m) for m in moments) < repetitions / 2:
+            if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
                 yield row(
                     "coverage", event, "ordinary", None, radius=radius, count=repetitions,
                     status="too-few",

@@ -1,6 +1,6 @@
 """The tables of numerical stability."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, TRUTH, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TRUTH, Column, Table
 
 SEE_QUANTITY = Column(float, "see quantity")
 
@@ -57,6 +57,20 @@ class Stability(Table):
     passed: TRUTH
     """whether low ≤ value ≤ high and |z| ≤ 5, as far as they are given; empty without any"""
 
+    @classmethod
+    def rows(cls, box, seed, ordinary, hard):
+        """Return all rows of a plain ``Box`` (see ``measure.rows``)."""
+        from twodiscs.studies.stability import measure
+
+        return [cls.empty(**row) for row in measure.rows(box, seed, ordinary, hard)]
+
 
 class LongRuns(Stability):
     """As stability.csv, the rows on dynamics alone, from the longest runs."""
+
+    @classmethod
+    def rows(cls, box, seed, ordinary, hard):
+        """Return the rows of a plain ``Box`` (see ``measure.dynamics_rows``)."""
+        from twodiscs.studies.stability import measure
+
+        return [cls.empty(**row) for row in measure.dynamics_rows(box, seed, ordinary, hard)]

@@ -166,12 +166,12 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
-    found = straddled(
+    means = straddled(
         np.uint64(seed), 0, blocks, strata, samples, times, law_of(upright),
         draw_constants(upright), hop,
     )  # fmt: skip
-    found *= exact.mean_times(scene)[event]
-    return mean_of(found)
+    means *= exact.mean_times(scene)[event]
+    return mean_of(means)
 
 
 def _counts(scene, event, times, replicas, seed):
@@ -232,10 +232,10 @@ def cases(box):
     less than once in ``RAREST`` events, in very long boxes.
     """
     hop, short = "vertical_hop" if box.width >= box.height else "horizontal_hop", box.shortest
-    found = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
+    candidates = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
     return [
         (event, radius)
-        for event, radius in found
+        for event, radius in candidates
         if box.fits(radius) and _comes(box.scene(radius), event)
     ]
 
@@ -257,11 +257,11 @@ def rows(box, samples, replicas, seed):
         mean, constant = exact.mean_times(scene)[event], tails.tail_constant(scene, event)
         start = {"event": event, "radius": radius, "exact_mean": mean}
         counts = counted(scene, event, _scaled(COUNTED, mean), replicas, seed + 2 * i)
-        found = [("counted", COUNTED, counts)]
+        parts = [("counted", COUNTED, counts)]
         if constant:
             estimates = tail(scene, event, _scaled(WEIGHTED, mean), samples, seed + 2 * i + 1)
-            found.append(("weighted", WEIGHTED, estimates))
-        for method, times, estimates in found:
+            parts.append(("weighted", WEIGHTED, estimates))
+        for method, times, estimates in parts:
             for time, estimate in zip(times, estimates, strict=True):
                 law = constant / (time * mean) ** 3 if constant else None
                 yield start | _row("survival", method, time * mean, None, estimate, law)

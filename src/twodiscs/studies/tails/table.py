@@ -1,6 +1,6 @@
 """The table of the tails of the times between events."""
 
-from twodiscs.comparison.tables import LENGTH, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.base import LENGTH, TEXT, TIME, Column, Table
 
 AS_ESTIMATE = Column(float, "as estimate")
 
@@ -35,3 +35,10 @@ class Tails(Table):
     C/t³ with the exact C, empty where it is 0; for a rate 1/mean, which it would be if intervals
     were exponential
     """
+
+    @staticmethod
+    def rows(box, samples, replicas, seed):
+        """Return the rows for a ``Box`` (see ``measure.rows``)."""
+        from twodiscs.studies.tails import measure
+
+        return list(measure.rows(box, samples, replicas, seed))

@@ -41,8 +41,8 @@ def draw(box, tables):
             hops.plot(distances, exact, color=colour, zorder=2)
             hops.plot(distances, law(radii), color=colour, lw=0.7, ls=(0, (4, 2)))
             first = next((row["scene"] for row in tables["distributions"]), None)
-            found = near(box, law, passages(tables["distributions"], first, event))
-            _points(hops, law, found, None, {"color": colour, "marker": "x", "markersize": 3})
+            rows_near = near(box, law, passages(tables["distributions"], first, event))
+            _points(hops, law, rows_near, None, {"color": colour, "marker": "x", "markersize": 3})
     hops.plot([], [], "x", color=BLACK, markersize=3, label="first passages")
     _slopes(hops)
     ratios.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
@@ -65,8 +65,8 @@ def draw(box, tables):
 
 def _mean_times(tables):
     """Return the rows of the mean_times.csv that is given, if one is."""
-    found = [rows for name, rows in tables.items() if name.endswith("mean_times")]
-    return found[0] if found else []
+    measured = [rows for name, rows in tables.items() if name.endswith("mean_times")]
+    return measured[0] if measured else []
 
 
 def _points(axes, law, rows, name, style, unit=np.ones_like):

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Line
+from twodiscs.comparison.estimates import LinearFit
 from twodiscs.comparison.scores import chi2_p
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
@@ -52,9 +52,9 @@ def _fit(law, quantity, form, x, y, errors, curve):
     deltas = np.exp(x)
     fit = {"quantity": quantity, "form": form, "limit_radius": law.limit, "points": len(x)}
     fit |= {"nearest": float(deltas.min()), "farthest": float(deltas.max())}
-    line = Line(x, y, errors)
+    line = LinearFit(x, y, errors)
     slope, error, chi2 = line.slope.value, line.slope.stderr, line.chi2
-    due = Line(x, curve, errors).slope.value if quantity == "mean_time" else None
+    due = LinearFit(x, curve, errors).slope.value if quantity == "mean_time" else None
     yield fit | _row("exponent", slope, error, due, law.power, chi2, len(x) - 2)
     if due is None:
         return
@@ -116,13 +116,13 @@ def rows(tables, scenes):
             if law is None:
                 continue
             times = tables.get(f"{name}/mean_times", [])
-            found = {"mean_time": [row for row in times if row["event"] == event]}
+            measured = {"mean_time": [row for row in times if row["event"] == event]}
             if law.power < 0:
-                found["first_passage"] = [
+                measured["first_passage"] = [
                     row | {"exact": row["exact_mean"]}
                     for row in passages(tables["distributions"], name, event)
                 ]
-            for quantity, seen in found.items():
+            for quantity, seen in measured.items():
                 kept = near(box, law, seen)
                 values = [[row[c] for row in kept] for c in COLUMNS]
                 for row in fits(law, quantity, *values):

@@ -1,6 +1,6 @@
 """The table of power laws where events die out."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
 
 AS_ESTIMATE = Column(float, "as estimate")
 
@@ -49,3 +49,10 @@ class Thresholds(Table):
     """its degrees of freedom"""
     p: NUMBER
     """probability of a larger χ² if the power law holds over the window"""
+
+    @staticmethod
+    def rows(tables, scenes):
+        """Return the rows of ``scenes`` (see ``measure.rows``)."""
+        from twodiscs.studies.thresholds import measure
+
+        return list(measure.rows(tables, scenes))

@@ -1,0 +1,100 @@
+"""The pictures of README.md and docs: one panel each, drawn for the size at which it is shown.
+
+    python docs/make/pictures.py results docs
+
+draws them from a finished build; the first page of the manuscript and the top of the report are
+taken with ``pdftoppm`` and ``chromium``.
+"""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+from shutil import copyfile
+
+from twodiscs.figures.kit import panels, style
+from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.jobs.figure import ENTRIES, drawn
+from twodiscs.pipeline.jobs.study import read_tables
+
+#: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
+PANELS = {
+    "mean_hop_time": ("mean_hop_time", 1, "radius $r$"),
+    "tails": ("tails", 0, r"interval $t/\tau$"),
+    "hazard": ("distributions", 0, ""),
+    "effects": ("effects", 0, "radius $r$"),
+    "price": ("accuracy_cost_by_radius", 0, ""),
+}
+
+#: Drawings that are shown whole.
+WHOLE = ("model",)
+
+#: Inches: the height of a picture, and its margins as in figures; two dots are a pixel shown.
+HEIGHT, TOP, DPI = 2.5, 0.3, 200
+
+
+def tables_of(name, results):
+    """Return {name: rows} of the tables of the figure ``name``, in the folders ``results``."""
+    names = (*ENTRIES[name].tables, *ENTRIES[name].main_tables)
+    paths = [f"{n}={f / n}.csv" for n in names for f in results if (f / f"{n}.csv").exists()]
+    return read_tables(paths)
+
+
+def alone(figure, number, abscissa):
+    """Leave one panel of a figure, as wide as a column."""
+    kept = figure.axes[number]
+    for axes in figure.axes:
+        axes.set_visible(axes is kept)
+    figure.set_size_inches(style.COLUMN, HEIGHT)
+    across, up = style.COLUMN - panels.LEFT - panels.RIGHT, HEIGHT - panels.BOTTOM - TOP
+    corner = panels.LEFT / style.COLUMN, panels.BOTTOM / HEIGHT
+    kept.set_position((*corner, across / style.COLUMN, up / HEIGHT))
+    for text in kept.texts:
+        text.set_text(re.sub(r"\([a-z]\) ?", "", text.get_text()))
+    for legend in figure.legends:
+        legend.set_visible(False)
+        names = [text.get_text() for text in legend.get_texts()]
+        kept.legend(legend.legend_handles, names, loc="upper left")
+    if abscissa:
+        kept.set_xlabel(abscissa)
+        kept.tick_params(labelbottom=True)
+
+
+def first_pages(results, output):
+    """Take pictures of the first page of the manuscript and of the top of the report."""
+    page = output / "paper"
+    subprocess.run(
+        ["pdftoppm", "-png", "-r", "80", "-singlefile", results / "paper.pdf", page], check=True
+    )
+    subprocess.run(
+        [
+            *("chromium", "--headless", "--no-sandbox", "--hide-scrollbars"),
+            *("--window-size=1060,1120", f"--screenshot={output / 'report.png'}"),
+            (results / "report.html").resolve().as_uri(),
+        ],
+        check=True,
+        capture_output=True,
+    )
+
+
+def main():
+    parser = Parser(description=__doc__.split("\n")[0])
+    parser.add_argument("results", type=Path, help="the folder of a finished build")
+    parser.add_argument("output", type=Path, help="where the pictures go")
+    options = parser.parse_args()
+    configuration = json.loads((options.results / "configuration.json").read_text(encoding="utf-8"))
+    scene = load(configuration).main
+    folders = (options.results / scene.name, options.results)
+    with style.context():
+        for picture, (name, *panel) in (PANELS | {name: (name,) for name in WHOLE}).items():
+            figure = drawn(name, tables_of(name, folders), scene.box)
+            if panel:
+                alone(figure, *panel)
+            figure.savefig(options.output / f"{picture}.png", dpi=DPI, metadata={"Software": None})
+    copyfile(folders[0] / "figures" / "animation.gif", options.output / "animation.gif")
+    first_pages(options.results, options.output)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,347 @@
+"""What a simulation or a sample measured, beside the exact values: objects that print themselves.
+
+Their numbers are those of the rows of the tables, made by the same functions.
+"""
+
+import math
+import sys
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from twodiscs.comparison.estimates import MIN_EVENTS, density_at_zero, normal_quantile
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, count, one_of, proportion
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.scene import Scene, a_scene
+from twodiscs.theory import tails
+
+#: The columns that people read, and how wide they are.
+COLUMNS = {
+    "quantity": 24, "estimate": 12, "± error": 10, "exact": 12, "unit": 9, "z": 7, "count": 12,
+    "status": 0,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """An estimate of one quantity, beside its exact value.
+
+    ``stderr`` is the standard error; it is None where there is too little for an honest one, and
+    ``value`` is None where nothing was seen. ``exact`` is None where the event is impossible. ``z``
+    is the standard normal deviate of the estimate from what it is an estimate of: the exact value
+    or, for an area, the exact ``expectation`` of its shell. ``count`` is how many events, or hits,
+    are behind it; ``status`` is as in the tables, and ``bound`` a lower bound on the mean time
+    where none was seen.
+    """
+
+    quantity: str
+    value: float | None
+    stderr: float | None
+    exact: float | None
+    z: float | None
+    count: int
+    status: str
+    unit: str
+    expectation: float | None = None
+    bound: float | None = None
+
+    @property
+    def relative_stderr(self):
+        """The standard error over the size of the value, or None."""
+        return self.stderr / abs(self.value) if self.stderr and self.value else None
+
+    def interval(self, confidence=0.95):
+        """Return the normal confidence interval (low, high), or None without an honest error."""
+        half = normal_quantile(confidence)
+        if self.stderr is None or self.value is None:
+            return None
+        return self.value - half * self.stderr, self.value + half * self.stderr
+
+    def cells(self):
+        """Return what people read of it, a text for each of ``COLUMNS``."""
+        value, error = _with_error(self.value, self.stderr)
+        if self.value is None and self.bound is not None:
+            value = f"> {self.bound:.4g}"
+        exact = "–" if self.exact is None else _with_error(self.exact, self.stderr)[0]
+        z = "" if self.z is None else f"{self.z:+.2f}"
+        return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
+
+    def __str__(self):
+        _, value, error, exact, unit, z, number, status = self.cells()
+        compared = f", exact {exact}" + (f", z = {z}" if z else "")
+        error = f" ± {error}" if error else ""
+        return f"{self.quantity} = {value}{error} {unit}{compared}, {number} counted, {status}"
+
+    __repr__ = __str__
+
+
+def _with_error(value, error):
+    """Return the texts of a value, as far as two digits of its error reach, and of the error."""
+    if value is None:
+        return "–", ""
+    if not error:
+        return f"{value:.8g}", ""
+    digits = 2
+    if value:
+        digits += math.floor(math.log10(abs(value))) - math.floor(math.log10(error))
+    return f"{value:.{min(max(digits, 2), 17)}g}", f"{error:.2g}"
+
+
+def aligned(lines, widths):
+    """Return texts in columns of these widths, the last one open."""
+    return "\n".join(
+        "".join(f"{text:<{width}}" for text, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )
+
+
+class Measurements(Mapping):
+    """{quantity or event: ``Measurement``} of one ``scene``; prints as a table.
+
+    ``rows`` are those of the table of its kind, as the pipeline writes it.
+    """
+
+    def __init__(self, scene, rows):
+        self.scene, self.rows = scene, rows
+        self._measurements = {
+            row.get("event") or row["quantity"]: _measurement(scene, row) for row in rows
+        }
+
+    def __getitem__(self, name):
+        return self._measurements[name]
+
+    def __iter__(self):
+        return iter(self._measurements)
+
+    def __len__(self):
+        return len(self._measurements)
+
+    def frame(self):
+        """Return the rows as a pandas ``DataFrame`` by event or quantity."""
+        return _frame(self.rows, index="event" if "event" in self.rows[0] else "quantity")
+
+    def __str__(self):
+        lines = [COLUMNS, *(measurement.cells() for measurement in self.values())]
+        return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
+
+    __repr__ = __str__
+
+
+def _measurement(scene, row):
+    quantity = row.get("quantity") or f"{row['event']}_time"
+    return Measurement(
+        quantity,
+        row["estimate"], row["stderr"], row["exact"], row["z"],
+        row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
+        row.get("expectation"), row.get("bound"),
+    )  # fmt: skip
+
+
+def _frame(rows, index):
+    import pandas as pd
+
+    return pd.DataFrame(rows).set_index(index)
+
+
+class Intervals:
+    """How the intervals between hops of one kind are distributed.
+
+    ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
+    and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
+    ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
+    estimate is a parabola through the first two bins, so it has no z. Intervals of one chain are
+    correlated: errors of densities take them as independent, that of the mean does not.
+    """
+
+    def __init__(self, scene, point):
+        self.scene, self.hop = scene, point["event"]
+        self.intervals, self.overflow = point["intervals"], point["overflow"]
+        self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
+        self.edges = [row["left"] for row in self.rows] + [self.rows[-1]["right"]]
+        self.counts = point["counts"]
+        first, z = self.rows[0], self.rows[0]["z"]
+        status = "sampled" if first["mean_stderr"] else "too-few"
+        self.mean = Measurement(
+            f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
+            point["intervals"], status, "time",
+        )  # fmt: skip
+        at_zero = density_at_zero(self.counts, self.intervals, point["bin_width"])
+        few = min(self.counts[:2]) < MIN_EVENTS
+        exact = None if scene.has_effects else tails.density_at_zero(scene, self.hop)
+        error, status = (None, "too-few") if few else (at_zero.stderr, "extrapolated")
+        self.at_zero = Measurement(
+            "density_at_zero",
+            at_zero.value, error, exact, None, sum(self.counts[:2]), status, "1/time",
+        )  # fmt: skip
+
+    @property
+    def density(self):
+        """The density of each bin, in 1/time."""
+        return [row["density"] for row in self.rows]
+
+    def frame(self):
+        """Return the bins as a pandas ``DataFrame``: left, right, count, density and its error."""
+        names = "left", "right", "count", "density", "stderr"
+        return _frame([{n: row[n] for n in names} for row in self.rows], index="left")
+
+    def __str__(self):
+        lines = [COLUMNS, self.mean.cells(), self.at_zero.cells()]
+        return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
+
+    __repr__ = __str__
+
+
+def _theory(scene):
+    """Return the rows of theory.csv of one ``Scene``."""
+    return Theory.rows(Box.of(scene), [scene.radius])
+
+
+# What is done -----------------------------------------------------------------------------------
+
+
+def seed_of(scene, method, seed, name):
+    """Return the seed of the random streams of one job, as the pipeline derives it.
+
+    ``name`` is that of the scene in a configuration; None stands for one that names the box.
+    """
+    box = Box.of(a_scene(scene)).parameters()
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name must be that of a scene, not {name!r}")
+    return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
+
+
+def _named(key, what, names, allowed):
+    """Return some of the texts ``allowed``, in their order, or all of them for None."""
+    if names is None:
+        return list(allowed)
+    if isinstance(names, str | bytes) or not isinstance(names, Iterable) or not (names := [*names]):
+        raise InputError(f"{key} must be a list of some of {', '.join(allowed)}, not {names!r}")
+    for name in names:
+        one_of(what, name, allowed)
+    return [name for name in allowed if name in names]
+
+
+def _progress():
+    """Return what shows progress on one line of a terminal, None where there is none."""
+    if not sys.stderr.isatty():
+        return None
+    start = time.process_time()
+
+    def report(done, left):
+        seconds = left * (time.process_time() - start)
+        end = "\n" if not left else ""
+        print(f"\r\x1b[K{done}, about {seconds:.0f} s left", end=end, file=sys.stderr, flush=True)
+
+    return report
+
+
+def simulate(scene, error, seed, budget, events, name):
+    """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
+    possible = a_scene(scene).events
+    if not isinstance(error, Mapping):
+        error = dict.fromkeys(possible, error)
+    elif events is None:
+        events = error
+    events = _named("events", "event", events, possible)
+    if missing := [event for event in events if event not in error]:
+        raise InputError(f"error must hold every event, but has none for {missing[0]}")
+    target = {event: proportion("error", error[event]) for event in events}
+    budget, seed = count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    from twodiscs.dynamics.counting import count_events
+
+    point = count_events(scene, target, budget, seed, _progress())
+    rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
+    return Measurements(scene, rows)
+
+
+def sample(scene, samples, seed, quantities, shell, name):
+    """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
+    allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
+    quantities = _named("quantities", "quantity", quantities, allowed)
+    samples = count("samples", samples)
+    shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
+    from twodiscs.sampling.montecarlo import better_point
+    from twodiscs.sampling.starts import require_share
+
+    require_share(scene)
+    points = {"monte_carlo": [better_point(scene, quantities, samples, shell, seed)]}
+    theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
+    rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
+    return Measurements(scene, rows)
+
+
+def intervals(scene, hop, number, seed, name):
+    """Return the ``Intervals`` between hops (see the face)."""
+    one_of("hop", hop, HOPS)
+    if a_scene(scene).moment_of_inertia is not None:
+        raise InputError(
+            "scene must have smooth discs, for rough discs in a box are not ergodic and their "
+            f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
+        )
+    number, seed = count("number", number), seed_of(scene, "intervals", seed, name)
+    from twodiscs.dynamics.intervals import hop_intervals
+
+    return Intervals(scene, hop_intervals(scene, hop, number, seed))
+
+
+def starts(scene, number, seed, name):
+    """Return states of the invariant measure, an array with named columns (see the face)."""
+    number = count("number", number, most=10**8)
+    seed = seed_of(scene, "trajectory", seed, name)
+    from twodiscs.sampling.starts import records
+
+    return records(scene, number, seed)
+
+
+def trajectory(scene, seed, start, duration, name):
+    """Return one trajectory as a ``DataFrame`` (see the face)."""
+    import pandas as pd
+
+    seed = seed_of(scene, "trajectory", seed, name)
+    from twodiscs.dynamics.trajectory import COLUMNS, trajectory
+
+    frame = pd.DataFrame(trajectory(scene, seed, start, duration), columns=COLUMNS)
+    if scene.depth is None:
+        frame = frame.drop(columns=["z1", "z2"])
+    frame.attrs["scene"] = scene
+    return frame
+
+
+def exact_table(width, height, radii, effects):
+    """Return the exact numbers over radii as a ``DataFrame`` (see the face)."""
+    import pandas as pd
+
+    box = Box(width, height, effects)
+    if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
+        raise InputError(f"radii must be a list of numbers, not {radii!r}")
+    scenes = [box.scene(radius) for radius in radii]
+    if not scenes:
+        raise InputError("radii must hold one radius at least, not none")
+    rows = [
+        {
+            "radius": scene.radius,
+            "regime": scene.regime,
+            "ergodic_components": scene.ergodic_components,
+            **{row["quantity"]: row["exact"] for row in Theory.rows(box, [scene.radius])},
+        }
+        for scene in scenes
+    ]
+    frame = pd.DataFrame(rows).set_index("radius")
+    times = [f"{event}_time" for event in EVENTS]
+    frame[times] = frame[times].astype(float)
+    frame.attrs["box"] = box
+    return frame
+
+
+def the_scene(result):
+    """Return the ``Scene`` of a result, or that of a trajectory; None for anything else."""
+    attributes = getattr(result, "attrs", None)
+    scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
+    scene = attributes.get("scene") if isinstance(attributes, dict) else scene
+    return scene if isinstance(scene, Scene) else None

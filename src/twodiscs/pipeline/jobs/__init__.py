@@ -1,0 +1,1 @@
+"""The jobs of the workflow, one module for each kind of shell line."""

@@ -1,0 +1,52 @@
+"""A figure, of its tables.
+
+    python -m twodiscs.pipeline.jobs.figure volume --width 1.5 --height 1 \\
+        --tables volume=results/paper/volume.csv --output volume.pdf volume.png
+"""
+
+from importlib import import_module
+
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.pipeline.arguments import Parser, add_box, box_of, number, run
+from twodiscs.pipeline.jobs.study import read_tables
+from twodiscs.pipeline.results.digests import digest
+from twodiscs.studies.catalogue import STUDY_FIGURES
+
+ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
+
+
+def drawn(name, tables, box=None, **more):
+    """Return the figure called ``name``, of ``tables`` {name: rows}."""
+    entry = ENTRIES[name]
+    draw = import_module(f"twodiscs.{entry.module}").draw
+    return draw(box=box, tables=tables, **entry.options, **more)
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.jobs.figure", description=__doc__.split("\n")[0])
+    parser.add_argument("figure", choices=ENTRIES)
+    add_box(parser, required=False)
+    parser.add_argument("--radius", type=number, help="of a trajectory")
+    parser.add_argument("--tables", nargs="*", default=[], metavar="NAME=CSV")
+    parser.add_argument("--origin", default="", help="what made it, for its metadata")
+    parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
+    options = parser.parse_args()
+    tables, box = read_tables(options.tables), box_of(options)
+    from twodiscs.figures.kit import style
+
+    more = {} if options.radius is None else {"radius": options.radius}
+    paths = [text.partition("=")[2] for text in sorted(options.tables)]
+    made_of = f", tables {digest(*paths)[:16]}" if paths else ""
+    with style.context():
+        if options.figure == "animation":
+            from twodiscs.figures.motion.animation import animate
+
+            animate(rows=tables["trajectory"], paths=options.output, box=box, **more)
+            return
+        figure = drawn(options.figure, tables, box, **more)
+        for path in options.output:
+            style.save(figure, path, f"twodiscs: {options.origin}{made_of}")
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,57 @@
+"""The table of a study, of its parameters and of other tables.
+
+    python -m twodiscs.pipeline.jobs.study tails --parameters '{"box": …, "seed": 1, …}' \\
+        --output results/tails.csv
+
+Parameters are one JSON object; their entry ``box`` becomes a ``Box``.
+"""
+
+import inspect
+from pathlib import Path
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs.pipeline.arguments import Parser, named, parameters, print_progress, run
+from twodiscs.pipeline.results.tables import TABLES
+from twodiscs.studies.catalogue import STUDY_TABLES
+
+
+class Tables(dict):
+    """The tables of a job, {name: rows}; one that was not given is an ``InputError``."""
+
+    def __missing__(self, name):
+        raise InputError(f"the table {name} must be given, as --tables {name}=CSV")
+
+
+def read_tables(texts):
+    """Return {name: rows} of arguments NAME=CSV; the stem of a file says which table it is."""
+    found = Tables()
+    for name, path in named(texts, "--tables").items():
+        if (table := Path(path).stem) not in TABLES:
+            raise InputError(f"{path} must be one of the tables {', '.join(TABLES)}")
+        found[name] = TABLES[table].read(path)
+    return found
+
+
+def main():
+    parser = Parser(prog="twodiscs.pipeline.jobs.study", description=__doc__.split("\n")[0])
+    parser.add_argument("table", choices=STUDY_TABLES)
+    parser.add_argument("--parameters", default="{}", metavar="JSON")
+    parser.add_argument("--tables", nargs="*", default=[], metavar="NAME=CSV")
+    parser.add_argument("--output", required=True, metavar="CSV")
+    options = parser.parse_args()
+    table, given = STUDY_TABLES[options.table], parameters(options.parameters)
+    if "box" in given:
+        given["box"] = Box(**given["box"])
+    more = {"tables": read_tables(options.tables), "report": print_progress()}
+    signature = inspect.signature(table.rows)
+    given |= {name: value for name, value in more.items() if name in signature.parameters}
+    try:
+        bound = signature.bind(**given)
+    except TypeError as error:
+        raise InputError(f"parameters of {options.table}: {error}") from None
+    table.write(options.output, table.rows(*bound.args, **bound.kwargs))
+
+
+if __name__ == "__main__":
+    run(main)

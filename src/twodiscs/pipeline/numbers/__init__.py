@@ -1,0 +1,1 @@
+"""The numbers that the manuscript prints: a module for each group, all in one table."""

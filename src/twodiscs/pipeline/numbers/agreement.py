@@ -1,0 +1,100 @@
+"""How simulations agree with the exact theory, and what they took: numbers of all boxes."""
+
+from twodiscs.pipeline.numbers.rounding import (
+    at_most,
+    in_words,
+    sides,
+    significant,
+    span,
+    whole,
+)
+
+
+def compared(check):
+    """Return the rows of check.csv that have a verdict."""
+    return [row for row in check if row["passed"] is not None]
+
+
+def tests(check):
+    """Return the rows of check.csv that could fail and follow from no other."""
+    return [row for row in compared(check) if row["independent"]]
+
+
+def scores(rows, *methods):
+    """Return all |z| of ``rows``, of these ``methods`` if any are named."""
+    return [
+        abs(row["z"])
+        for row in rows
+        if row["z"] is not None and (not methods or row["method"] in methods)
+    ]
+
+
+def agreement(tables, scenes):
+    """Return {name: ``Number``} on how all scenes agree with the theory."""
+    check = tables["check"]
+    unseen = sum(row["status"] == "none-seen" for row in tests(check))
+    of_name = {
+        name: [row for row in compared(check) if row["comparison"] == name]
+        for name in ("sum_rule", "mean_time")
+    }
+    return {
+        "scenes": in_words(len(scenes)),
+        "radii": whole(len(tables["grid"])),
+        "comparisons": whole(len(compared(check))),
+        "tests": whole(len(tests(check))),
+        "tests_largest": at_most(scores(tests(check))),
+        "tests_none_seen": whole(unseen) if unseen else None,
+        "bounds": span([row["bound"] for row in tests(check) if row["bound"] is not None], 3),
+        "sum_rule_radii": whole(len(of_name["sum_rule"])),
+        "sum_rule_largest": at_most(scores(of_name["sum_rule"])),
+        "mean_time_largest": at_most(scores(of_name["mean_time"])),
+        "monte_carlo_largest": at_most(scores(check, "monte_carlo", "conditioned")),
+    }
+
+
+def events(cost, stage):
+    """Return the events of a stage in all rows of cost.csv."""
+    return sum(row["events"] for row in cost if row["stage"] == stage)
+
+
+def effort(tables):
+    """Return {name: ``Number``} on what was sampled and simulated."""
+
+    def column(table, name, **of):
+        rows = [row for row in tables[table] if of.items() <= row.items()]
+        return [row[name] for row in rows if row[name] is not None]
+
+    strips = column("mean_times", "exact", starts="strip")
+    return {
+        "configurations": significant(events(tables["cost"], "monte_carlo"), 2),
+        "samples": span(column("volume", "samples")),
+        "epsilon": span(column("areas", "epsilon")),
+        "events": significant(events(tables["cost"], "dynamics"), 2),
+        "duration": span(column("mean_times", "duration", starts="invariant"), 3),
+        "replicas": span(column("mean_times", "replicas", starts="invariant")),
+        "target": span(column("mean_times", "target")),
+        "strips": in_words(len(strips)) if strips else None,
+        "strips_longest": significant(max(strips), 2) if strips else None,
+    }
+
+
+def agreement_table(tables, scenes):
+    """Return the cells of the table of agreement, {column: ``Number``} for each scene."""
+    rows = {}
+    for scene in scenes:
+        name = scene["name"]
+        check, grid, cost = (
+            [row for row in tables[table] if row["scene"] == name]
+            for table in ("check", "grid", "cost")
+        )
+        if check:
+            rows[name] = {
+                "box": sides(scene["width"], scene["height"]),
+                "radii": whole(len(grid)),
+                "events": significant(events(cost, "dynamics"), 2),
+                "comparisons": whole(len(compared(check))),
+                "tests": whole(len(tests(check))),
+                "failed": whole(sum(not row["passed"] for row in compared(check))),
+                "largest": at_most(scores(check)),
+            }
+    return rows

@@ -1,0 +1,90 @@
+"""The table of all numbers that the manuscript prints."""
+
+from pathlib import Path
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables import NUMBER, TEXT, Table
+from twodiscs.pipeline.numbers import agreement, costs, distributions, laws
+from twodiscs.pipeline.numbers.rounding import Number
+from twodiscs.studies.catalogue import STUDY_TABLES
+
+#: The tables that numbers are taken from: those of scenes, and those of studies.
+OF_SCENES = ("grid", "volume", "areas", "mean_times", "hop_histogram", "check", "cost")
+OF_STUDIES = (
+    "errata",
+    "accuracy_cost",
+    "stability",
+    "tails",
+    "distributions",
+    "thresholds",
+    "effects",
+)
+
+
+class PaperNumbers(Table):
+    """One row per number that the manuscript prints."""
+
+    name: TEXT
+    """what the manuscript calls it; table/row/column for a cell of a table"""
+    value: NUMBER
+    """the number itself, if the text is of one"""
+    text: TEXT
+    """what is printed, as markup of Typst; empty for an empty cell"""
+
+
+def read(results, scenes):
+    """Return {name: rows} of the tables in the folder ``results`` that numbers are taken from.
+
+    ``scenes`` have a "name" each and the names of their "tables"; rows of a scene get a "scene".
+    Raises ``OSError`` for a table that is missing, ``InputError`` for a file that is none.
+    """
+    tables = {name: [] for name in (*OF_SCENES, *OF_STUDIES)}
+    for scene in scenes:
+        for name in set(OF_SCENES).intersection(scene["tables"]):
+            path = Path(results, scene["name"], f"{name}.csv")
+            for row in SCENE_TABLES[name].read(path):
+                tables[name].append({"scene": scene["name"], **row})
+    for name in OF_STUDIES:
+        tables[name] = STUDY_TABLES[name].read(Path(results, f"{name}.csv"))
+    return tables
+
+
+def numbers(tables, scenes):
+    """Return {name: ``Number``} of all that the manuscript prints, as far as tables have rows.
+
+    ``tables`` are as ``read`` returns them; ``scenes`` have a "name", "width" and "height", and the
+    first one is what the manuscript is about.
+    """
+    main = scenes[0]["name"]
+    prose = {
+        **agreement.agreement(tables, scenes),
+        **agreement.effort(tables),
+        **distributions.chains(tables["hop_histogram"]),
+        **distributions.densities(tables["distributions"]),
+        **distributions.tails(tables["tails"]),
+        **distributions.hazards(tables["distributions"], main),
+        **laws.powers(tables["thresholds"], main),
+        **laws.effects(tables["effects"]),
+        **laws.errata(tables["errata"]),
+        **costs.accuracy_cost(tables["accuracy_cost"]),
+        **costs.stability(tables["stability"]),
+    }
+    cells = {
+        "agreement": agreement.agreement_table(tables, scenes),
+        "rates": distributions.rates_table(tables["distributions"], main),
+        "powers": laws.powers_table(tables["thresholds"], main),
+        "errata": laws.errata_table(tables["errata"]),
+    }
+    for table, rows in cells.items():
+        for row, columns in rows.items():
+            for column, cell in columns.items():
+                prose[f"{table}/{row}/{column}"] = cell or Number(None, "--")
+    return {name: number for name, number in prose.items() if number is not None}
+
+
+def table_rows(found):
+    """Return the rows of paper_numbers.csv for the numbers ``found``."""
+    return [
+        {"name": name, "value": None if value is None else float(value), "text": text or None}
+        for name, (value, text) in found.items()
+    ]

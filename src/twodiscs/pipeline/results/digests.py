@@ -1,0 +1,40 @@
+"""SHA-256 of files, and JSON files that carry the digest of their own content."""
+
+import json
+from hashlib import sha256
+from pathlib import Path
+
+from twodiscs.model.checks import InputError
+
+KEY = "sha256"
+
+
+def digest(*paths):
+    """Return the SHA-256 of files, one after the other, in hexadecimal digits."""
+    return sha256(b"".join(Path(path).read_bytes() for path in paths)).hexdigest()
+
+
+def write_json(path, content):
+    """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits."""
+    content = content | {KEY: _digest_of(content)}
+    text = json.dumps(content, sort_keys=True, indent=1, allow_nan=False)
+    Path(path).write_text(f"{text}\n", encoding="utf-8", newline="\n")
+
+
+def read_json(path):
+    """Return the content of a file of ``write_json``.
+
+    Raises ``InputError`` if it is not what was written, ``OSError`` if it cannot be read.
+    """
+    try:
+        content = json.loads(Path(path).read_bytes())
+        written = content.pop(KEY) == _digest_of(content)
+    except (ValueError, TypeError, KeyError, AttributeError):
+        written = False
+    if not written:
+        raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
+    return content
+
+
+def _digest_of(content):
+    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

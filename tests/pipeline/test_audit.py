@@ -1,0 +1,109 @@
+"""The audit: whatever was edited, cut short or deleted is named, and nothing else."""
+
+import pytest
+from fabricated import BOX, command
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.jobs.point import monte_carlo
+from twodiscs.pipeline.jobs.table import rows_of
+from twodiscs.pipeline.results import audit, manifest
+from twodiscs.pipeline.results.digests import write_json
+
+CONFIGURATION = {
+    "scenes": [
+        {
+            "name": "small",
+            "box": BOX.parameters(),
+            "radii": [0.1, 0.2],
+            "watch": {"volume": True},
+            "monte_carlo": {"samples": 1},
+        }
+    ]
+}
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder of results with its manifest."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "results"
+    (scene,) = load(CONFIGURATION).scenes
+    own = folder / "small"
+    (own / "points" / "monte_carlo").mkdir(parents=True)
+    points = []
+    for key, radius in scene.keys["monte_carlo"].items():
+        run = monte_carlo(BOX.scene(radius), **scene.arguments("monte_carlo", radius))
+        points.append(run.alone())
+        write_json(own / "points" / "monte_carlo" / f"{key}.json", points[-1])
+    theory = SCENE_TABLES["theory"].rows(BOX, scene.radii)
+    given = {"box": BOX, "theory": theory, "areas": [], "points": {"monte_carlo": points}}
+    given["points"] |= {"dynamics": [], "intervals": []}
+    for name in ("volume", "check"):
+        SCENE_TABLES[name].write(own / f"{name}.csv", rows_of(SCENE_TABLES[name], **given))
+    (folder / "errata.csv").write_text("a\n")
+    certify(folder)
+    return folder
+
+
+def certify(folder):
+    files = sorted(folder.rglob("*.csv"))
+    (folder / "manifest.sha256").write_text(manifest.manifest(folder, files))
+
+
+def run(monkeypatch):
+    words = "--results", "results", "--configuration", CONFIGURATION
+    return command(monkeypatch, audit, *words)
+
+
+def test_undamaged_results_pass(results, monkeypatch, capsys):
+    assert run(monkeypatch) == 0
+    # Three tables and two points.
+    assert capsys.readouterr().out == "of 5 files 0 are not what their jobs wrote\n"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["small/volume.csv", "small/check.csv", "errata.csv", "small/points/monte_carlo/0.1.json"],
+)
+@pytest.mark.parametrize("harm", ["edited", "cut short", "deleted"])
+def test_damage_is_named(results, monkeypatch, capsys, name, harm):
+    path = results / name
+    if harm == "edited":
+        path.write_text("x" + path.read_text()[1:])
+    elif harm == "cut short":
+        path.write_bytes(path.read_bytes()[:-2])
+    else:
+        path.unlink()
+    status = run(monkeypatch)
+    said = capsys.readouterr().out
+    if harm == "deleted" and "points" in name:
+        assert status == 0  # the next build makes it again
+        return
+    assert status == 1
+    assert f"{path} {'is missing' if harm == 'deleted' else 'is not what its job wrote'}" in said
+
+
+def test_a_table_that_was_edited_before_the_manifest_was_written_is_named(
+    results, monkeypatch, capsys
+):
+    path = results / "small" / "volume.csv"
+    lines = path.read_text().splitlines()
+    lines[1] = lines[1].replace("sampled", "too-few")
+    path.write_text("\n".join(lines) + "\n")
+    certify(results)
+    assert run(monkeypatch) == 1
+    assert f"{path} is not what its job wrote" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [(None, "has no manifest.sha256: results are built by make"), ("a\n", "must have lines of a")],
+)
+def test_what_is_no_manifest_is_one_sentence(results, monkeypatch, capsys, text, said):
+    path = results / "manifest.sha256"
+    path.unlink() if text is None else path.write_text(text)
+    assert run(monkeypatch) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1

@@ -1,0 +1,88 @@
+"""The price of jobs: what limits them, how it scales, and which shards they take."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from twodiscs.pipeline import cost
+from twodiscs.pipeline.configuration.load import load
+
+
+def scene(**keys):
+    """Return the request of a scene with these ``keys`` in its block, or in the configuration."""
+    block = {"name": "a", "box": {"width": 1.5, "height": 1.0}, "radii": [0.24, 0.3]}
+    top = {name: keys.pop(name) for name in ("shard_events",) if name in keys}
+    return load({"shared": [], **top, "scenes": [block | keys]}).scenes[0]
+
+
+@pytest.mark.parametrize("stage", ["monte_carlo", "dynamics"])
+def test_a_limit_is_above_the_price(stage):
+    request = scene(accuracy=1e-5, event_budget=1e12)
+    for radius in request.keys[stage].values():
+        assert 60 * cost.minutes(request, stage) > cost.seconds(request, stage, radius)
+
+
+def test_ten_times_the_accuracy_takes_a_hundred_times_the_events():
+    coarse, fine = (scene(accuracy=error, event_budget=1e15) for error in (1e-3, 1e-4))
+    ratio = cost.events(fine, "dynamics", 0.3) / cost.events(coarse, "dynamics", 0.3)
+    assert ratio == pytest.approx(100, rel=1e-9)
+    assert cost.events(scene(event_budget=1000), "dynamics", 0.3) == 1000
+
+
+def test_days_are_those_of_the_jobs():
+    request = scene(accuracy=1e-7, event_budget=1e15, watch={"mean_times": True})
+    whole = sum(cost.seconds(request, "dynamics", radius) for radius in request.radii)
+    assert cost.days([request]) == pytest.approx(whole / 86400)
+    assert cost.days([scene()]) < 0.1
+
+
+def test_what_one_job_can_do_has_no_shards():
+    assert cost.shards(scene(), "dynamics", 0.24) == []
+    # The budget allows for more than a shard, and the accuracy does not take it.
+    assert cost.shards(scene(accuracy=0.1, event_budget=1e15), "dynamics", 0.24) == []
+
+
+@pytest.mark.parametrize("stage", ["monte_carlo", "dynamics", "intervals"])
+def test_shards_cover_all_blocks_once(stage):
+    request = scene(
+        shard_events=1e7, accuracy=1e-3, event_budget=1e12, monte_carlo={"samples": 1e9},
+        watch={"volume": True, "mean_times": True,
+               "hop_histogram": {"radii": [0.24], "intervals": 1e7}},
+    )  # fmt: skip
+    parts = cost.run_of(request, stage, 0.24).parts
+    shards = cost.shards(request, stage, 0.24)
+    assert {part for part, *_ in shards} == {*parts}
+    for part, run in parts.items():
+        pieces = sorted((first, stop) for name, first, stop in shards if name == part)
+        assert pieces[0][0] == 0
+        assert pieces[-1][1] == run.planned
+        assert all(a[1] == b[0] for a, b in zip(pieces, pieces[1:], strict=False))
+        most = max(stop - first for first, stop in pieces)
+        assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
+
+
+@given(st.floats(1e-5, 1e-3), st.floats(1.01, 10))
+def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
+    """They are pieces of one grid: of each part all but the last one stay."""
+    found = [
+        cost.shards(scene(shard_events=1e8, accuracy=e, event_budget=1e15), "dynamics", 0.24)
+        for e in (error, error / times)
+    ]
+    coarse, fine = ({part: [s for s in some if s[0] == part] for part in ("all", "horizontal_hop")}
+                    for some in found)  # fmt: skip
+    for part, shards in coarse.items():
+        assert {*shards[:-1]} <= {*fine[part]}
+
+
+def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
+    from twodiscs.studies.catalogue import STUDIES
+
+    def limit(seconds):
+        configuration = load({"accuracy_cost": {"seconds": seconds}, "scenes": [BLOCK]})
+        return cost.study_minutes(STUDIES["accuracy_cost"], configuration)
+
+    assert 60 * limit(1e6) > 1e6
+    assert limit(1) < 60
+
+
+BLOCK = {"name": "a", "box": {"width": 1.5, "height": 1.0}}
