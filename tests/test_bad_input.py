@@ -1,6 +1,5 @@
 """What makes no sense is refused: by every public function, in one sentence that says why."""
 
-import json
 import math
 import re
 import subprocess
@@ -9,7 +8,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from fabricated import command
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -20,7 +18,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import arguments, jobs
+from twodiscs.pipeline import arguments
 from twodiscs.pipeline.configuration import load
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact, laws, tails
@@ -192,59 +190,6 @@ def test_a_configuration_that_makes_no_sense(mapping):
 
 
 # Jobs -------------------------------------------------------------------------------------------
-
-PLACE = {"box": BOX.parameters(), "radius": 0.2, "seed": 1}
-EXACT = {"box": BOX.parameters(), "radii": [0.1, 0.2]}
-JOBS = {
-    "theory": (("table", "theory.exact", "--function", "theory_rows"), EXACT),
-    "monte_carlo": (
-        ("point", "sampling.montecarlo"),
-        PLACE | {"areas": [], "samples": 1, "shell": 0.02, "volume": True},
-    ),
-    "dynamics": (
-        ("point", "dynamics.counting"),
-        PLACE | {"accuracy": {"any_wall": 0.1}, "event_budget": 1},
-    ),
-    "intervals": (
-        ("point", "dynamics.intervals"), PLACE | {"event": "vertical_hop", "intervals": 1}
-    ),
-}  # fmt: skip
-MISTAKES = {
-    "box": [{}, {"width": 1.5, "height": -1}, BOX.parameters() | {"effects": {"radius_ratio": 4}}],
-    "radius": [0.4, INF], "radii": [[0.1, -0.1]], "seed": [-1], "samples": [0],
-    "intervals": [1.5], "event_budget": [1e6], "accuracy": [{"hop": 0.1}], "event": ["hop"],
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("job", JOBS)
-def test_jobs_take_what_is_right_and_refuse_a_mistake_of_each_kind(
-    job, monkeypatch, tmp_path, capsys
-):
-    words, good = JOBS[job]
-
-    def run(text, folder):
-        output = tmp_path / folder / f"{job}.csv"
-        output.parent.mkdir(exist_ok=True)
-        # JSON knows no infinity, but a number that is too large becomes one.
-        text = text.replace("Infinity", "1e999")
-        status = command(monkeypatch, jobs, *words, "--parameters", text, "--output", output)
-        assert output.exists() == (status == 0)
-        return status, capsys.readouterr().err
-
-    assert run(json.dumps(good), "good")[0] == 0
-    wrong = [
-        *((json.dumps(good | {k: value}), "") for k in good for value in MISTAKES.get(k, [])),
-        (json.dumps(good | {"mass": 1}), "unexpected keyword argument 'mass'"),
-        ("[]", "parameters must be a JSON object, not "),
-        ('{"radius": NaN}', "parameters must be a JSON object, not "),
-    ]
-    for name in good:
-        less = {key: value for key, value in good.items() if key != name}
-        wrong.append((json.dumps(less), f"missing a required argument: '{name}'"))
-    for text, expected in wrong:
-        status, said = run(text, "bad")
-        assert (status, said[:7], said.count("\n")) == (2, "error: ", 1), text
-        assert expected in said
 
 
 def test_exact_numbers_of_nonsense_are_refused():

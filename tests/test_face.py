@@ -20,9 +20,8 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
-from twodiscs.pipeline import jobs
+from twodiscs.pipeline import cost
 from twodiscs.pipeline.configuration import load
-from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.sampling.starts import components
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
@@ -111,8 +110,7 @@ def test_defaults_are_those_of_a_configuration():
 
 def point(stage):
     """Return what the job of the configuration finds."""
-    given = load.load(CONFIGURATION).scenes[0].job(stage, "0.2")
-    return jobs.call(jobs.function_of(STAGES[stage], "job"), given)
+    return cost.run_of(load.load(CONFIGURATION).scenes[0], stage, 0.2).alone()
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):
@@ -123,8 +121,8 @@ def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajec
     areas = SCENE_TABLES["areas"].rows(box, theory, points)
     assert sampled.rows == SCENE_TABLES["volume"].rows(theory, points) + areas
     assert intervals.rows == SCENE_TABLES["hop_histogram"].rows(theory, points)
-    given = load.load(CONFIGURATION).scenes[0].trajectory_job()
-    followed = jobs.call(SCENE_TABLES["trajectory"].rows, given)
+    seed = load.load(CONFIGURATION).scenes[0].trajectory_seed
+    followed = SCENE_TABLES["trajectory"].rows(box, 0.2, seed)
     assert [{**row, "z1": None, "z2": None} for row in trajectory.to_dict("records")] == followed
 
 

@@ -5,9 +5,9 @@ from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from pathlib import Path
 
+import architecture
 import pytest
 
-from twodiscs.pipeline.documents import architecture
 from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
 
 REPOSITORY = Path(__file__).parents[1]

@@ -152,18 +152,9 @@ def test_a_watch_block_is_everything_that_is_watched():
     assert request.watch.quantities == {"right_wall_time", "top_wall_time"}
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
-    for parameters in (
-        request.exact_job("grid"),
-        request.exact_job("theory"),
-        request.table_job(STAGES),
-        request.job("dynamics", next(iter(request.keys["dynamics"]))),
-    ):
-        assert "hop" not in repr(parameters)
+    assert request.exact_radii("theory") == request.exact_radii("grid") == [*request.radii]
+    assert "hop" not in repr(request.arguments("dynamics", request.radii[0]))
     assert request.tables == ("grid", "theory", "mean_times", "check", "cost")
-    with pytest.raises(ValueError, match="scene one watches no trajectory"):
-        request.trajectory_job()
-    with pytest.raises(ValueError, match=r"key must be one of none, not '0\.01'"):
-        request.job("monte_carlo", "0.01")
 
 
 def test_what_is_false_is_off():
@@ -171,10 +162,10 @@ def test_what_is_false_is_off():
     request = one(watch=watch)
     assert request.watch.quantities == {"volume"}
     assert request.keys["dynamics"] == {}
-    assert request.job("monte_carlo", "0.01")["areas"] == []
+    assert request.arguments("monte_carlo", 0.01)["quantities"] == ["volume"]
     assert request.tables == ("grid", "theory", "volume", "check", "cost")
     thicker = one(watch=watch, monte_carlo={"shell": 0.1})
-    assert thicker.job("monte_carlo", "0.01") == request.job("monte_carlo", "0.01")
+    assert thicker.arguments("monte_carlo", 0.01) == request.arguments("monte_carlo", 0.01)
 
 
 def test_hop_histograms_have_three_forms():
@@ -186,8 +177,8 @@ def test_hop_histograms_have_three_forms():
     }  # fmt: skip
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
     assert block.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
-    assert block.job("intervals", "0.025")["event"] == "horizontal_hop"
-    assert block.job("intervals", "0.025")["intervals"] == 10**4
+    asked = block.arguments("intervals", 0.025)
+    assert (asked["event"], asked["intervals"]) == ("horizontal_hop", 10**4)
 
 
 def test_accuracy_has_three_forms():
@@ -229,14 +220,13 @@ def test_included_radii_do_not_move_the_others():
 
 
 def jobs(request):
-    """The parameters of every job of a scene, by job."""
-    every = {
-        ("theory",): request.exact_job("theory"),
-        ("grid",): request.exact_job("grid"),
-        ("trajectory",): request.trajectory_job(),
-    }
+    """What every job of a scene depends on, beside the box, by job."""
+    every = {(table,): request.exact_radii(table) for table in ("theory", "grid")}
+    every["trajectory",] = {"radius": request.watch.trajectory, "seed": request.trajectory_seed}
     return every | {
-        (stage, key): request.job(stage, key) for stage in STAGES for key in request.keys[stage]
+        (stage, key): request.arguments(stage, key)
+        for stage in STAGES
+        for key in request.keys[stage]
     }
 
 
@@ -281,25 +271,9 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
         for request in load.load(mapping).scenes:
             every += [p["seed"] for job, p in jobs(request).items() if "seed" in p]
     assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
-    assert one().trajectory_job()["seed"] == stream_seed(1908, "one", "trajectory", "0.24")
-
-
-def is_plain_and_sorted(value):
-    if isinstance(value, dict):
-        return list(value) == sorted(value) and all(map(is_plain_and_sorted, value.values()))
-    if type(value) is list:
-        return all(map(is_plain_and_sorted, value))
-    return value is None or type(value) in (int, float, bool, str)
-
-
-def test_parameters_are_plain_sorted_and_complete():
-    for job, parameters in edited().items():
-        assert is_plain_and_sorted(parameters), job
-        exact = job[0] in ("theory", "grid")
-        assert {"box", "radii" if exact else "radius"} <= parameters.keys()
-        assert ("seed" in parameters) != exact
+    assert one().trajectory_seed == stream_seed(1908, "one", "trajectory", "0.24")
     # theory.csv also holds the radii of the histograms, whose exact means are compared.
-    assert jobs(one(**BASE))["theory",]["radii"] == [0.0375, 0.1, 0.112, 0.188, 0.2, 0.262]
+    assert edited()["theory",] == [0.0375, 0.1, 0.112, 0.188, 0.2, 0.262]
 
 
 # Effects
@@ -365,34 +339,6 @@ def test_balls_are_discs_with_a_depth():
 def test_effects_that_are_absent_leave_no_trace(effects):
     assert one(effects=effects) == one()
     assert one(effects=effects).effects == {}
-
-
-def test_parameters_say_the_effects_and_nothing_else():
-    plain = edited()
-    watch = BASE["watch"] | {"hop_histogram": [0.1], "trajectory": 0.1}
-    field = jobs(one(**BASE | {"watch": watch}, effects={"field": 1, "mass_ratio": 2}))
-    named = {"field": 1.0, "mass_ratio": 2.0}
-    assert all(parameters["box"].pop("effects") == named for parameters in field.values())
-    assert "effects" not in repr(plain)
-    assert repr(field) == repr(jobs(one(**BASE | {"watch": watch})))
-    rough = jobs(one(effects={"moment_of_inertia": 0.4}, radii=[0.1]))
-    assert all(map(is_plain_and_sorted, rough.values()))
-    assert rough["dynamics", "0.1"]["box"]["effects"] == {"moment_of_inertia": 0.4}
-    torus = one(effects={"periodic": ["x", "y"]}, radii=[0.1])
-    box = {"effects": {"periodic": "xy"}, "height": 1.0, "width": 1.5}
-    assert torus.job("dynamics", "0.1")["box"] == torus.box.parameters() == box
-
-
-def test_kernels_depend_on_nothing_that_their_jobs_do_not_depend_on():
-    request = one(effects={"periodic": ["y"]}, radii=[0.1])
-    for stage in STAGES:
-        kernels = request.kernels(stage)
-        (key, *_) = request.keys[stage]
-        job = request.job(stage, key)
-        assert is_plain_and_sorted(kernels)
-        if stage == "dynamics":
-            assert set(kernels.pop("events")) == set(job["accuracy"])
-        assert all(job[name] == value for name, value in kernels.items())
 
 
 # What is built once
@@ -706,16 +652,6 @@ def test_a_histogram_that_would_not_end_is_refused():
         one(watch=watch)
     watch["hop_histogram"]["radii"] = [0.249]
     assert one(watch=watch).watch.hop_histogram == (0.249,)
-
-
-def test_what_takes_longer_than_a_day_is_known_before():
-    assert one().days < 0.1
-    assert 1 < one(accuracy=1e-6, event_budget=1e15).days < 1000
-    assert one(event_budget=1e15).days < 1  # the accuracy is reached long before
-    assert one(watch={"volume": True}, monte_carlo={"samples": 1e15}).days > 100
-    # Of many radii some are looked at.
-    fine = [one(accuracy=1e-6, event_budget=1e15, radii={"count": n}).days / n for n in (500, 1000)]
-    assert fine[0] == pytest.approx(fine[1], rel=0.2)
 
 
 def test_the_fewest_intervals_are_a_block():
