@@ -32,17 +32,8 @@ def test_json_holds_every_digit(monkeypatch, capsys):
     assert status == 0
     assert err == ""
     numbers = json.loads(out)
-    assert set(numbers) == {
-        "regime",
-        "ergodic_components",
-        "largest_radius",
-        "volume",
-        "areas",
-        "mean_times",
-    }
     assert numbers == exact_numbers(Scene(1.5, 1, 0.3))
     assert list(numbers["areas"]) == list(numbers["mean_times"]) == list(EVENTS)
-    assert numbers["regime"] == "vertical-hops"
     assert numbers["mean_times"]["horizontal_hop"] is None
 
 
@@ -68,14 +59,9 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
         ([*BOX, "--radius", "0.5"], "radius 0.5 does not fit"),
         ([*BOX, "--radius", "x"], "argument --radius: must be a number, not 'x'"),
         ([*BOX], "the following arguments are required: --radius"),
-        ([*BOX, "--radius"], "argument --radius: expected one argument"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
         ([*BOX, "--radius", "0.1", "--mass-ratio", "two"], "argument --mass-ratio: must be a num"),
-        (
-            [*BOX, "--radius", "0.1", "--depth", "1", "--moment-of-inertia", "0.4"],
-            "moment_of_inertia must be left out",
-        ),
     ],
 )
 def test_a_mistake_is_one_sentence(monkeypatch, capsys, words, sentence):
@@ -104,24 +90,18 @@ def test_effects_are_options(monkeypatch, capsys):
     assert "velocity components" not in out
 
 
-@pytest.mark.parametrize("name", EFFECTS)
-def test_every_effect_has_an_option_with_its_meaning(name, monkeypatch, capsys):
+def test_every_effect_has_an_option_with_its_meaning(monkeypatch, capsys):
     status, out, _ = exact(monkeypatch, capsys, "--help")
     assert status == 0
-    assert f"--{name.replace('_', '-')}" in out
-    assert EFFECTS[name].meaning in " ".join(out.split())
+    for name, effect in EFFECTS.items():
+        assert f"--{name.replace('_', '-')}" in out
+        assert effect.meaning in " ".join(out.split())
 
 
-@pytest.mark.parametrize(
-    "program",
-    [[sys.executable, "-m", "twodiscs.cli"], [str(Path(sys.executable).parent / "twodiscs")]],
-)
-def test_the_installed_command(program):
-    done = subprocess.run(
-        [*program, "exact", *BOX, "--radius", "1"], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 2
-    assert done.stdout == ""
+def test_the_installed_command():
+    words = [Path(sys.executable).with_name("twodiscs"), "exact", *BOX, "--radius", "1"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("error: radius 1.0 does not fit")
     assert done.stderr.count("\n") == 1
 
@@ -153,12 +133,9 @@ def test_text_that_is_no_object_is_refused(text):
 def test_named_values_come_back_from_their_texts():
     assert arguments.named(["a=b", "c/d=e=f"], "--table") == {"a": "b", "c/d": "e=f"}
     assert arguments.named([], "--table") == {}
-
-
-@pytest.mark.parametrize("text", ["", "a", "a=", "=b", "="])
-def test_a_value_without_a_name_is_refused(text):
-    with pytest.raises(ValueError, match=f"--table must be given as NAME=VALUE, not '{text}'"):
-        arguments.named(["a=b", text], "--table")
+    for text in ("", "a", "a=", "=b", "="):
+        with pytest.raises(ValueError, match=f"--table must be given as NAME=VALUE, not '{text}'"):
+            arguments.named(["a=b", text], "--table")
 
 
 def test_a_number_is_a_float_or_a_mistake_of_the_caller():
@@ -190,8 +167,3 @@ def test_run_exits_with_what_main_returns(status):
     with pytest.raises(SystemExit) as caught:
         arguments.run(lambda: status)
     assert caught.value.code == status
-
-
-def test_run_does_not_hide_a_defect():
-    with pytest.raises(ZeroDivisionError):
-        arguments.run(lambda: 1 / 0)

@@ -2,6 +2,7 @@
 
 import ast
 from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,15 @@ def entries(folder):
     ]
 
 
+def circle(graph):
+    """Return a circle of imports in {name: names that it imports}, or nothing."""
+    try:
+        tuple(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        return tuple(reversed(error.args[1]))
+    return ()
+
+
 def test_imports_between_rooms_point_down():
     upwards = [
         f"{room} imports {other}"
@@ -33,10 +43,24 @@ def test_imports_between_rooms_point_down():
 
 def test_no_module_imports_itself_by_a_detour():
     graph = {module: set(imports_of(module)) - {module} for module in modules()}
-    try:
-        tuple(TopologicalSorter(graph).static_order())
-    except CycleError as error:
-        pytest.fail(f"these modules import each other: {error.args[1]}")
+    assert circle(graph) == ()
+
+
+FOLDERS = sorted({module[:depth] for module in modules() for depth in range(1, len(module))})
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids="/".join)
+def test_what_stands_in_a_folder_imports_one_way(folder):
+    """Two folders in it, or a folder and a module, do not import each other either."""
+    depth, graph, said = len(folder) + 1, {}, {}
+    for module in modules():
+        for target in imports_of(module):
+            one, other = module[:depth], target[:depth]
+            if one != other and one[:-1] == other[:-1] == folder:
+                graph.setdefault(one, set()).add(other)
+                said[one, other] = f"{'.'.join(module)} imports {'.'.join(target)}"
+    found = [said[pair] for pair in pairwise(circle(graph))]
+    assert not found, ", ".join(found)
 
 
 def test_every_room_is_known_and_none_is_crowded():

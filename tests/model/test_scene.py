@@ -40,12 +40,6 @@ def test_largest_radius_separates_what_fits_from_what_does_not(width, height):
     assert not Box(width, height).fits(largest * (1 + 1e-9))
 
 
-def test_a_radius_next_to_the_largest_is_allowed():
-    assert Scene(1.5, 1, Box(1.5, 1).largest_radius * (1 - 1e-12)).regime == "no-hops"
-    with pytest.raises(ValueError, match=r"radius 0\.5 does not fit.*below 0\.38397459621556"):
-        Scene(1.5, 1, 0.5)
-
-
 @pytest.mark.parametrize(
     ("width", "height", "radius", "regime", "components"),
     [

@@ -4,6 +4,8 @@ Centres are put on a grid, cells that overlap or lack energy are thrown out, and
 joined. The scenes are some way off every threshold, for a grid to see it.
 """
 
+import math
+from dataclasses import replace
 from itertools import product
 
 import effect_scenes
@@ -15,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
 from twodiscs.model.scene import ENERGY, Scene
 
 SCENES = [
@@ -176,6 +178,55 @@ def test_strongest_field(width):
         Scene(width, 1.5, 0.2, field=1.001 * ENERGY / lowest)
     with pytest.raises(ValueError, match="pass each other"):
         Scene(width, 1.5, 0.2, field=0.1, mass_ratio=2.0)
+
+
+@pytest.mark.parametrize(
+    ("effects", "conserved", "components"),
+    [
+        ({}, (), 4),
+        ({"periodic": "x"}, ("x",), 3),
+        ({"periodic": "xy", "mass_ratio": 2}, ("x", "y"), 2),
+        ({"depth": 1.2, "periodic": "xz"}, ("x", "z"), 4),
+        ({"moment_of_inertia": 0.5}, (), 6),
+        # Rough walls push discs along them.
+        ({"moment_of_inertia": 0.5, "periodic": "x"}, (), 6),
+    ],
+)
+def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, components):
+    scene = Scene(1.5, 1.0, 0.2, **effects)
+    assert (scene.conserved, scene.velocity_components) == (conserved, components)
+
+
+@pytest.mark.parametrize(
+    ("effects", "right", "top"),
+    [
+        ({}, 4, 4),  # two discs, two walls
+        ({"radius": 0.3}, 2, 4),  # discs that cannot pass along x
+        ({"radius": 0.38}, 2, 2),
+        ({"field": 0.4}, 4, 2),
+        ({"mass_ratio": 2}, 2, 2),
+        ({"radius_ratio": 0.5, "field": 0.4}, 2, 1),
+        ({"radius": 0.3, "field": 0.4}, 2, 2),
+    ],
+)
+def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effects, right, top):
+    scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
+    others = {event for event in EVENTS if DECLARED[event].kind != "wall"}
+    expected = dict.fromkeys(others, 1) | {"right_wall": right, "top_wall": top}
+    assert {event: scene.copies(event) for event in EVENTS} == expected
+
+
+def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
+    """The upper disc is the other one's diameter up: g m2 2r1 with disc 2 on top, or g m1 2r2."""
+    for ratios in ({"radius_ratio": 2, "mass_ratio": 3}, {"radius_ratio": 0.5, "mass_ratio": 0.2}):
+        scene = Scene(3.0, 2.0, 0.1, **ratios)
+        limit = ENERGY / (2 * min(scene.masses[1] * scene.radii[0], scene.radii[1]))
+        weak, strong = (replace(scene, field=part * limit) for part in (0.999, 1.001))
+        assert weak.horizontal_hops
+        assert not strong.horizontal_hops
+    # No energy to spare is none.
+    assert not Scene(3.0, 2.0, 0.25, field=1.0).horizontal_hops
+    assert Scene(3.0, 2.0, 0.25, field=math.nextafter(1.0, 0)).horizontal_hops
 
 
 @pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)

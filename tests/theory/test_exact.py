@@ -6,6 +6,8 @@ import subprocess
 import sys
 
 import pytest
+from mpmath import mp, mpf
+from theory.antiderivatives import DIGITS, Profile, lengths, reference, relative_error
 
 from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
@@ -79,6 +81,21 @@ def test_events_are_wall_hits_and_collisions(scene):
     assert exact.event_rate(scene) == pytest.approx(1 / wall + 1 / collision, rel=1e-15)
     torus = Scene(*PAPER, 0.2, periodic="xy")
     assert exact.event_rate(torus) == exact.rate(torus, "disc_collision")
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.3])
+def test_share_of_discs_that_are_almost_level(radius):
+    """By antiderivatives: the separations along the axis of a hop up to a distance."""
+    scene = Scene(*PAPER, radius)
+    with mp.workdps(DIGITS):
+        a, b, sigma = lengths(scene)
+        volume = reference(scene)["volume"]
+        for distance in (1e-3 * radius, radius, 1.4 * radius):
+            upright = 2 * Profile(a, sigma).weighted(b, min(mpf(distance), b), 2) / volume
+            found = exact.share_near(scene, "vertical_hop", distance)
+            assert relative_error(found, upright) < BOUND
+            turned = exact.share_near(Scene(*PAPER[::-1], radius), "horizontal_hop", distance)
+            assert turned == pytest.approx(found, rel=BOUND)
 
 
 # Hand-over --------------------------------------------------------------------------------------

@@ -4,18 +4,16 @@ The definitions of the shells are tested by throwing discs into a box.
 """
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from mpmath import mp, mpf
+from mpmath import mp
 from scipy.special import bdtr, bdtrc
 from theory.antiderivatives import (
     DIGITS,
     TURNED,
-    lengths,
     reference,
     reference_shell,
     reference_times,
@@ -177,20 +175,6 @@ def test_shells_contain_what_random_discs_hit(width, height, radius):
         assert 2 * tail > 5.7e-7, quantity
 
 
-@pytest.mark.parametrize(("width", "height", "radius"), SCENES)
-@pytest.mark.parametrize("event", SHELLS)
-def test_a_thin_shell_tends_to_its_surface(width, height, radius, event):
-    scene = Scene(width, height, radius)
-    area = exact.areas(scene)[event]
-    thick, thin = (exact.shell_expectation(scene, event, e * radius) for e in (2e-6, 1e-6))
-    if area == 0:
-        assert thin <= thick
-    else:
-        # The bias is of first order in ε, with a coefficient that grows as the room shrinks.
-        assert thick - area == pytest.approx(2 * (thin - area), rel=1e-2)
-        assert thin == pytest.approx(area, rel=1e-2)
-
-
 def test_a_shell_reaches_just_beyond_a_blocked_hop():
     scene = Scene(1, 1, 0.2501)
     assert exact.areas(scene)["vertical_hop"] == 0
@@ -199,54 +183,6 @@ def test_a_shell_reaches_just_beyond_a_blocked_hop():
 
 
 # Identities -------------------------------------------------------------------------------------
-
-
-def volume_slope(scene):
-    """Return −dV/dr = A_walls + √2 A_coll."""
-    areas = exact.areas(scene)
-    return areas["any_wall"] + math.sqrt(2) * areas["disc_collision"]
-
-
-@pytest.mark.parametrize("box", BOXES)
-def test_areas_are_the_derivative_of_the_volume(box):
-    """Integrated over 80 % of a regime, where a Gauss rule of 60 nodes is good to 2⁻¹²⁰."""
-    points, weights = np.polynomial.legendre.leggauss(60)
-    edges = sorted({0.0, *(t for t in (box[0] / 4, box[1] / 4) if Box(*box).fits(t))})
-    edges.append(Box(*box).largest_radius)
-    for low, high in pairwise(edges):
-        centre, half = (low + high) / 2, 0.4 * (high - low)
-        integral = half * math.fsum(
-            weight * volume_slope(Scene(*box, centre + half * point))
-            for point, weight in zip(points, weights, strict=True)
-        )
-        drop = exact.volume(Scene(*box, centre - half)) - exact.volume(Scene(*box, centre + half))
-        assert integral == pytest.approx(drop, rel=BOUND)
-
-
-@settings(max_examples=100, deadline=None, derandomize=True)
-@given(hard_scenes())
-def test_virial_and_sum_rule(scene):
-    """Their terms cancel near the largest radius, so each brings its own error of 1e-13."""
-    a, b, s = lengths(scene)
-    volume, areas = exact.volume(scene), exact.areas(scene)
-    terms = [
-        2 * a * areas["right_wall"],
-        2 * b * areas["top_wall"],
-        -s * areas["disc_collision"] / mp.sqrt(2),
-        -4 * mpf(volume),
-    ]
-    assert abs(sum(terms)) <= BOUND * sum(map(abs, terms))
-
-    times = exact.mean_times(scene)
-    right = times["right_wall"] * (1 if scene.horizontal_hops else 2)
-    top = times["top_wall"] * (1 if scene.vertical_hops else 2)
-    terms = [
-        3 * mp.pi / 4 * a / right,
-        3 * mp.pi / 4 * b / top,
-        -3 * mp.pi / (8 * mp.sqrt(2)) * s / times["disc_collision"],
-        mpf(-1),
-    ]
-    assert abs(sum(terms)) <= BOUND * sum(map(abs, terms))
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)

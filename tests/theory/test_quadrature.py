@@ -50,20 +50,3 @@ def test_double_exponential_takes_any_power_at_both_ends(at_start, at_end):
     found = integral(double_exponential(1 / 16), lambda t, rest: t**at_start * rest**at_end)
     expected = math.gamma(at_start + 1) * math.gamma(at_end + 1) / math.gamma(at_start + at_end + 2)
     assert found == pytest.approx(expected, rel=1e-14)
-
-
-@pytest.mark.parametrize("beyond", [1e-12, 1e-6, 1e-2])
-def test_double_exponential_takes_powers_just_beyond_an_end(beyond):
-    """As where a sphere nearly touches a plane."""
-    found = integral(double_exponential(1 / 16), lambda t, rest: math.sqrt(rest + beyond))
-    expected = ((1 + beyond) ** 1.5 - beyond**1.5) / 1.5
-    assert found == pytest.approx(expected, rel=1e-14)
-
-
-def test_half_the_step_squares_the_error_of_the_double_exponential_rule():
-    errors = [
-        abs(integral(double_exponential(step), lambda t, rest: math.sqrt(t * rest)) - math.pi / 8)
-        for step in (1 / 2, 1 / 4)
-    ]
-    assert 1e-7 < errors[0] < 1e-3
-    assert errors[1] < 10 * errors[0] ** 2

@@ -101,9 +101,7 @@ def test_pressure_is_that_of_an_ideal_gas_for_small_discs(event, name):
     [
         (lambda: virial.momentum_per_hit(PAPER, "any_wall"), "event must be one of right_wall"),
         (lambda: virial.pressure_factor(PAPER, "any_wall"), "event must be one of right_wall"),
-        (lambda: virial.pressure_factor(0.2, "top_wall"), "scene must be"),
         (lambda: virial.momentum_per_hit(SCENES["field"], "top_wall"), "field must be 0, not 0.4"),
-        (lambda: virial.momentum_per_hit(0.2, "top_wall"), "scene must be"),
         (lambda: virial.weights(0.2), "scene must be"),
     ],
 )

@@ -10,6 +10,13 @@ SHORTEST, LONGEST = 1e-60, 1e60
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
 
+#: Letters of the longest sentence: what it quotes may be of any length.
+LONGEST_SENTENCE = 1000
+
+#: How values are quoted: some of a list, and of the lists in it.
+_SHORT = reprlib.Repr()
+_SHORT.maxlevel = 2
+
 
 class InputError(ValueError):
     """What a user got wrong, in a sentence: an argument, a configuration, a file.
@@ -19,13 +26,14 @@ class InputError(ValueError):
     """
 
     def __init__(self, sentence):
-        super().__init__(" ".join(str(sentence).split()))
+        text = " ".join(str(sentence).split())
+        super().__init__(text if len(text) <= LONGEST_SENTENCE else f"{text[:LONGEST_SENTENCE]}…")
 
 
 def shown(value):
     """Return how a sentence shows a ``value``: shortened, whatever it is."""
     try:
-        return " ".join(reprlib.repr(value).split())
+        return " ".join(_SHORT.repr(value).split())
     except Exception:  # an integer of more than 4300 digits, or an odd class
         return f"a {type(value).__name__}"
 

@@ -58,7 +58,7 @@ def load(mapping):
         place = re.match(r"scenes\[(\d+)\](?!\.name)", str(error))
         block = mapping["scenes"][int(place[1])] if place else None
         name = block.get("name") if isinstance(block, Mapping) else None
-        raise ConfigError(f"{error} (scene {name!r})" if name else str(error)) from None
+        raise ConfigError(f"{error} (scene {shown(name)})" if name else str(error)) from None
 
 
 def check_results(results, home):
@@ -145,13 +145,13 @@ def _sentence(error):
         known = list(node["properties"])
         unknown = next(key for key in value if key not in known)
         hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
-        return f"{path} has an unknown key {unknown!r}{hint}"
+        return f"{path} has an unknown key {shown(unknown)}{hint}"
     hint = _nearest(value, node.get("enum", ()))
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
 
 
 def _nearest(word, known):
-    near = get_close_matches(str(word), known, n=1)
+    near = get_close_matches(str(word)[:100], known, n=1)
     return f"; did you mean {near[0]!r}?" if near else ""
 
 

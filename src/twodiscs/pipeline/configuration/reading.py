@@ -6,12 +6,12 @@ Snakefile calls ``read`` before its own ``configfile:``.
 
 import argparse
 import os
-import reprlib
 import sys
 from functools import cache
 
 import yaml
 
+from twodiscs.model import checks
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.configuration.schema import schema
 
@@ -78,7 +78,7 @@ def or_exit(function, *arguments):
 
 def shown(value):
     """Return a ``value`` as a sentence shows it: shortened."""
-    return "empty" if value is None else reprlib.repr(value)
+    return "empty" if value is None else checks.shown(value)
 
 
 def _mistake(problem, node):

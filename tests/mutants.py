@@ -1,0 +1,151 @@
+# ruff: noqa: E501 (one mutant, one line)
+"""Mutants: one mistake at a time in a copy of the sources; the tests must notice each of them.
+
+    python tests/mutants.py [word ...]
+
+tries those whose file or description holds one of the words, or all (an hour or so): first with the
+tests of the module, then with those of its room, then, if it survives, with all but those of the
+workflow. Each is anchored on a text that its file holds once; where that is gone, the list below
+needs another one. At the end all tests that caught a mutant run on the sources as they are: they
+must pass, or they caught nothing. The exit status is 0 if none survived.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+#: A run of tests that takes longer than so many seconds hangs, which is noticed as well.
+PATIENCE = 1200
+
+#: File, what is wrong, text, what takes its place.
+# fmt: off
+MUTANTS = [
+    ("model/scene.py", "reach of an image", "return side / 2 if axis in self.periodic", "return side if axis in self.periodic"),
+    ("model/scene.py", "hop at its threshold", "if self._spread(axis) <= self.exact", "if self._spread(axis) < self.exact"),
+    ("model/scene.py", "hop at its threshold of energy", "return lowest < ENERGY", "return lowest <= ENERGY"),
+    ("model/scene.py", "conserved momentum", " + spins - len(self.conserved)", " + spins"),
+    ("model/scene.py", "rough walls keep momentum", "return tuple(self.periodic) if self.moment_of_inertia is None else ()", "return tuple(self.periodic)"),
+    ("model/scene.py", "wrong radius in the lowest potential", "m1 * max(apart + r2 - r1, 0.0)", "m1 * max(apart + r1 - r2, 0.0)"),
+    ("model/scene.py", "multiplicity of confined walls", "(1 + self.alike) * self.share(event)", "(1 + self.alike)"),
+    ("model/scene.py", "mirror images of the right wall", 'mirrored = found.axis == "x" or not self.field', "mirrored = not self.field"),
+    ("model/scene.py", "reach of the top", "self.field * (self.height - 2 * self.radius)", "self.field * (self.height - self.radius)"),
+    ("model/box.py", "swapped axis of a threshold", 'self.width if AXIS[hop] == "y"', 'self.width if AXIS[hop] == "x"'),
+    ("model/radii.py", "one seed for all radii", 'one_of("method", method, METHODS), key)', 'one_of("method", method, METHODS))'),
+    ("model/radii.py", "off by a half in the grid", "(j + 0.5) / n) ** 2", "(j + 1) / n) ** 2"),
+    ("theory/plain.py", "factor of the contact area", "2 * math.sqrt(2) * disc", "math.sqrt(2) * disc"),
+    ("theory/plain.py", "swapped axis of the arc", "self.square - min(range_y, sigma) ** 2", "self.square - min(range_x, sigma) ** 2"),
+    ("theory/plain.py", "swapped axis of the volume", "area * x * cos", "area * x * sin"),
+    ("theory/plain.py", "factor of a wall's shell", "flat - epsilon / 2)", "flat - epsilon)"),
+    ("theory/plain.py", "Jacobian of a collision's shell", "(1 + s / arc.sigma) * ", ""),
+    ("theory/plain.py", "swapped axis of a hop", "math.sqrt(2) * arc.range_y * arc", "math.sqrt(2) * arc.range_x * arc"),
+    ("theory/exact.py", "Chernov's constant", "(1.5 * math.pi * volume)", "(math.pi * volume)"),
+    ("theory/exact.py", "time at a confined wall", "scene.share(event) / rate(scene, event)", "1 / rate(scene, event)"),
+    ("theory/exact.py", "width of a strip", "epsilon = distance / math.sqrt(2)", "epsilon = distance / 2"),
+    ("theory/weighted.py", "constant of D components", "math.lgamma(half + 0.5)", "math.lgamma(half + 1)"),
+    ("theory/weighted.py", "power of the energy", "scene.velocity_components / 2 - 1).beyond()", "scene.velocity_components / 2).beyond()"),
+    ("theory/weighted.py", "mass at a wall", "space.wall(axis, disc, high) / math.sqrt(scene.masses[disc])", "space.wall(axis, disc, high)"),
+    ("theory/weighted.py", "wrong wall", "[(found.axis, 0, found.side > 0)]", "[(found.axis, 0, found.side < 0)]"),
+    ("theory/weighted.py", "mass in the potential", "field * Fraction(m))", "field)"),
+    ("theory/tails.py", "constant of a tail", "6 * (along_x + along_y)", "3 * (along_x + along_y)"),
+    ("theory/tails.py", "swapped axis of a tail", "arc.range_y**2 * arc.beyond_x**4", "arc.range_x**2 * arc.beyond_x**4"),
+    ("theory/tails.py", "density at zero", "math.sqrt(2) / (16 * side)", "math.sqrt(2) / (8 * side)"),
+    ("theory/tails.py", "power of a drift's chance", "volume(scene) * time**2)", "volume(scene) * time)"),
+    ("theory/laws.py", "sign for small discs", "(4 * along / across - 2) * r", "(4 * along / across + 2) * r"),
+    ("theory/laws.py", "factor near jamming", "root * left / (4 * (last_x + last_y))", "root * left / (2 * (last_x + last_y))"),
+    ("theory/virial.py", "sign of the virial", "-scene.contact_distance / math", "scene.contact_distance / math"),
+    ("sampling/streams.py", "two blocks, one stream", "np.uint64(block) * MIX_2", "np.uint64(block // 2) * MIX_2"),
+    ("sampling/separations.py", "law of the flux through a hop", "rest = largest_of(state, 3)", "rest = largest_of(state, 2)"),
+    ("sampling/separations.py", "orders of x and y as one", "else (1 if bits & np.uint64(1 << 61) else -1)", "else (1 if bits & np.uint64(1 << 62) else -1)"),
+    ("sampling/prism.py", "power of the energy on a surface", "dx, dy, dz, prism.components - 1)", "dx, dy, dz, prism.components - 2)"),
+    ("sampling/prism.py", "momentum not conserved", "= -relative * prism.shares[1]", "= -relative * prism.shares[0]"),
+    ("sampling/prism.py", "height of the wrong disc", "weights[1] * (y2 + half2)", "weights[1] * (y2 + half1)"),
+    ("sampling/strata.py", "error of strata", "np.sum(shares**2 * variances)", "np.sum(shares * variances)"),
+    ("sampling/rounds.py", "one seed for all shards", "in run.work(first, end)]", "in run.work(0, end - first)]"),
+    ("sampling/rounds.py", "a block left out", "first, stop = stop, stop + min(stop, largest)", "first, stop = stop + 1, stop + min(stop, largest)"),
+    ("sampling/montecarlo.py", "thickness of a hop's shell", "2.0 * (thick * thick)", "1.0 * (thick * thick)"),
+    ("sampling/montecarlo.py", "number of walls", '"walls": 4 * len(scene.walled)', '"walls": 2 * len(scene.walled)'),
+    ("dynamics/law.py", "height of a flight", "square - 2.0 * gravity * above", "square - gravity * above"),
+    ("dynamics/law.py", "wrong mass at a jump", "q2 += math.copysign(wrap[2], relative)", "q2 += math.copysign(wrap[1], relative)"),
+    ("dynamics/law.py", "wrong mass in a collision", "divided(2.0, m2, m1)", "divided(2.0, m1, m2)"),
+    ("dynamics/law.py", "sign of a spin", "u_before - side_y * s", "u_before + side_y * s"),
+    ("dynamics/law.py", "wall of the wrong ball", "code == WALL_Z2, either(law.half_z1, law.half_z2)", "code == WALL_Z2, law.half_z1"),
+    ("dynamics/counting.py", "wrong wall", "hit(code, WALL_Y1, WALL_Y2, alike)", "hit(code, WALL_Y1, WALL_X2, alike)"),
+    ("dynamics/counting.py", "missing product", "for f in range(e, N):", "for f in range(e + 1, N):"),
+    ("dynamics/counting.py", "wrong disc at a wall in a field", "else b[3], side, gravity)", "else b[1], side, gravity)"),
+    ("dynamics/strip.py", "time of a strip", '"duration": 2 * place.time', '"duration": place.time'),
+    ("dynamics/strip.py", "paths end too soon", "<= fastest * left else", "<= 0.5 * fastest * left else"),
+    ("dynamics/intervals.py", "off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
+    ("dynamics/intervals.py", "age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),
+    ("comparison/estimates.py", "products of two events", "(1 if a == b else 2) * w[a]", "w[a]"),
+    ("comparison/estimates.py", "clusters in a bound", "(CLUSTER * -math.log1p", "(-math.log1p"),
+    ("comparison/estimates.py", "curvature at zero", "np.array([7, -1]) / 6", "np.array([3, -1]) / 2"),
+    ("comparison/scores.py", "overlap of two shells", "2 * m1 * m2 * overlap", "m1 * m2 * overlap"),
+    ("comparison/scores.py", "sign of a score", "(expected - count) / error", "(count - expected) / error"),
+    ("comparison/scores.py", "two tails", "alarm) / (2 * comparisons)", "alarm) / comparisons"),
+    ("comparison/check.py", "half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
+    ("pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage, key)", 'stream_seed(self.seed, "", stage, key)'),
+]
+# fmt: on
+
+
+def tests(package, *targets):
+    """Run pytest on the ``package`` in a folder; return the test that failed first, or None."""
+    here = {"PYTHONPATH": str(package), "XDG_CACHE_HOME": str(package / "cache")}
+    words = [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", "--tb=no", *targets]
+    how = {"cwd": REPOSITORY, "capture_output": True, "text": True, "timeout": PATIENCE}
+    try:
+        run = subprocess.run(words, env=os.environ | here, **how)
+    except subprocess.TimeoutExpired:
+        return "a run without an end"
+    failed = re.search(r"^(?:FAILED|ERROR) ([^\s\[]+)", run.stdout, re.MULTILINE)
+    if run.returncode and not failed:
+        sys.exit(f"pytest does not run:\n{run.stdout}{run.stderr}")
+    return failed and failed[1]
+
+
+def tiers(file):
+    """Yield the targets of pytest for a mutant of ``file``, those first that take least."""
+    room, *_, folder, name = Path(file).parts[0], *Path(file).parts
+    own = {
+        str(path.relative_to(REPOSITORY))
+        for stem in (Path(name).stem, folder)
+        for path in (REPOSITORY / "tests" / room).glob(f"test_{stem}*.py")
+    }
+    yield sorted(own)
+    yield [f"tests/{room}"]
+
+
+def main(words):
+    wanted = [m for m in MUTANTS if not words or any(word in f"{m[0]} {m[1]}" for word in words)]
+    caught, survived = set(), 0
+    with tempfile.TemporaryDirectory() as folder:
+        package = Path(folder)
+        shutil.copytree(REPOSITORY / "src", package, dirs_exist_ok=True)
+        for file, what, old, new in wanted:
+            path, begun = package / "twodiscs" / file, time.monotonic()
+            text = path.read_text(encoding="utf-8") if path.exists() else ""
+            if text.count(old) != 1:
+                survived += 1
+                print(f"NOT THERE   {file}: {what}: {old!r} {text.count(old)} times", flush=True)
+                continue
+            path.write_text(text.replace(old, new), encoding="utf-8")
+            failed = next(filter(None, (tests(package, *t) for t in tiers(file) if t)), None)
+            path.write_text(text, encoding="utf-8")
+            survived += not failed
+            caught |= {failed} if failed and "::" in failed else set()
+            verdict = f"caught      {file}: {what}" if failed else f"SURVIVED    {file}: {what}"
+            print(f"{verdict} ({time.monotonic() - begun:.0f} s) {failed or ''}", flush=True)
+        false = tests(package, *sorted(caught)) if caught else None
+    print(f"{len(wanted) - survived} of {len(wanted)} caught")
+    sys.exit(f"{false} fails without a mutant" if false else survived)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
