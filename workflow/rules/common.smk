@@ -18,7 +18,7 @@ from twodiscs.pipeline.configuration.files import (
     shared_tables,
 )
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.sources import fingerprint
+from twodiscs.model.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 
 FILES = Files(CONFIGURATION, BUILT)

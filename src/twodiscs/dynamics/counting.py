@@ -33,7 +33,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import a_scene
-from twodiscs.sampling.jit import compiled, optional, tally
+from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.rounds import Run, in_rounds
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
@@ -51,12 +51,13 @@ EVENTS_BETWEEN_RARE_HOPS = 64
 
 # How events are counted --------------------------------------------------------------------------
 
-# How a flight shows an event, as a function of the code of its end and the states before and after.
+# How a flight shows an event, as a function of the code of its end, of the states before and after,
+# of whether the discs are alike, and of gravity (None for both: they are not, there is none).
 
 
 def _hop_seen(event):
     k = "xy".index(event.axis)
-    return lambda code, a, b: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
+    return lambda code, a, b, alike, gravity: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
 
 
 @optional(lambda code, one, other, alike: code == one)
@@ -76,7 +77,7 @@ def facing(position, side, gravity):
 
 def _wall_seen(event):
     if event.axis == "x":
-        return lambda code, a, b, alike: hit(code, WALL_X1, WALL_X2, alike)
+        return lambda code, a, b, alike, gravity: hit(code, WALL_X1, WALL_X2, alike)
     side = float(event.side)
     return lambda code, a, b, alike, gravity: (
         hit(code, WALL_Y1, WALL_Y2, alike)
@@ -88,12 +89,16 @@ SEEN = by_kind(
     "dynamics/counting.py",
     {
         "hop": _hop_seen,
-        "collision": lambda event: lambda code: code == DISC,
+        "collision": lambda event: lambda code, a, b, alike, gravity: code == DISC,
         "wall": _wall_seen,
         # Collisions of the discs too; see ``all_walls``.
-        "walls": lambda event: lambda code: code > END_OF_TIME,
+        "walls": lambda event: lambda code, a, b, alike, gravity: code > END_OF_TIME,
     },
 )
+
+#: What is not watched (None) is not compiled; this says which entry of ``watched`` is that of a
+#: kind: hops, walls, the hits of all walls, and what is always watched.
+WATCHED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
 
 N = len(EVENTS)
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
@@ -106,14 +111,28 @@ if N > 2 * FIELDS:
     raise TypeError(f"dynamics/counting.py has room for {2 * FIELDS} events, not for {N}")
 
 
+def _and(add, event, unit):
+    """Return ``add`` extended by an ``event``: it adds a ``unit`` to the count if that is seen."""
+    seen, k = inlined(SEEN[event]), WATCHED[DECLARED[event].kind]
+
+    @optional(lambda count, code, before, after, alike, gravity, watched: count)
+    def add_one(count, code, before, after, alike, gravity, watched):
+        return count + (unit if seen(code, before, after, alike, gravity) else 0.0)
+
+    @inlined
+    def add_all(count, code, before, after, alike, gravity, watched):
+        count = add(count, code, before, after, alike, gravity, watched)
+        return add_one(count, code, before, after, alike, gravity, watched[k])
+
+    return add_all
+
+
 def _word(events):
-    # What is not watched is not compiled.
-    groups = {"hop": "hops", "wall": "walls", "walls": "rest"}
-    counters = (
-        (256.0**field, SEEN[event], groups.get(DECLARED[event].kind))
-        for field, event in enumerate(events)
-    )
-    return tally(counters, "code, before, after, alike, gravity, hops, walls, rest")
+    """Return a function that adds to a packed ``count`` what a flight shows of ``events``."""
+    add = inlined(lambda count, code, before, after, alike, gravity, watched: count)
+    for field, event in enumerate(events):
+        add = _and(add, event, 256.0**field)
+    return add
 
 
 first_word, second_word = _word(EVENTS[:FIELDS]), _word(EVENTS[FIELDS:])
@@ -153,6 +172,7 @@ def count_blocks(
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     busy = np.zeros(lanes, np.bool_)
     block, used, running, looks = first, replicas, 0, 0
+    watched = hops, walls, rest, True
 
     while True:
         for i in range(lanes):
@@ -192,11 +212,11 @@ def count_blocks(
                 after = after_event(before, times[i], code, law)
                 put_state(rows, i, after, law)
                 packed[i] = first_word(
-                    first_count, code, before, after, alike, law.gravity, hops, walls, rest
+                    first_count, code, before, after, alike, law.gravity, watched
                 )
                 if N > FIELDS:
                     more[i] = second_word(
-                        second_count, code, before, after, alike, law.gravity, hops, walls, rest
+                        second_count, code, before, after, alike, law.gravity, watched
                     )
         looks += 1
         if looks == LOOKS:

@@ -31,7 +31,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import a_scene
-from twodiscs.sampling.jit import compiled, inlined, optional, tally, written_out
+from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_share, power_chance, prism_of, propose_in_prism
 from twodiscs.sampling.rounds import as_many
 from twodiscs.sampling.separations import draw_constants, propose_separation
@@ -89,10 +89,21 @@ IN_SHELL = by_kind(
     SHELLS,
 )
 
-in_shells = tally(
-    ((256 ** (1 + i), IN_SHELL[event], None) for i, event in enumerate(SHELLS)),
-    "squares, square, place, ends",
-)
+
+def _and(add, unit, seen):
+    """Return ``add`` extended by one shell: it adds a ``unit`` to the count of what is ``seen``."""
+
+    @inlined
+    def add_all(count, squares, square, place, ends):
+        count = add(count, squares, square, place, ends)
+        return count + (unit if seen(squares, square, place, ends) else 0)
+
+    return add_all
+
+
+in_shells = inlined(lambda count, squares, square, place, ends: count)
+for field, event in enumerate(SHELLS, 1):
+    in_shells = _and(in_shells, 256**field, inlined(IN_SHELL[event]))
 BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 
@@ -452,18 +463,24 @@ def counted(state, share, power, weights):
     return power_chance(state, share, power)
 
 
-def _counter_of_shells():
-    """Return a function that counts a sample in all shells: ``totals`` from 1 on."""
-    absent = optional(lambda state, prism, place, separation, end: False)
-    names = {f"within_{i}": absent(IN_WEIGHTED_SHELL[event]) for i, event in enumerate(EVENTS)}
-    lines = (
-        f"totals[{1 + i}] += within_{i}(state, prism, place, separation, ends[{i}])"
-        for i in range(len(EVENTS))
-    )
-    return written_out("totals, state, prism, place, separation, ends", lines, names)
+def _and_weighted(count_some, k, seen):
+    """Return ``count_some`` extended by shell ``k``, whose count is next in totals."""
+
+    @optional(lambda totals, state, prism, place, separation, end: None)
+    def count_one(totals, state, prism, place, separation, end):
+        totals[k + 1] += seen(state, prism, place, separation, end)
+
+    @inlined
+    def count_all(totals, state, prism, place, separation, ends):
+        count_some(totals, state, prism, place, separation, ends)
+        count_one(totals, state, prism, place, separation, ends[k])
+
+    return count_all
 
 
-_count_each = _counter_of_shells()
+_count_each = inlined(lambda totals, state, prism, place, separation, ends: None)
+for k, event in enumerate(EVENTS):
+    _count_each = _and_weighted(_count_each, k, inlined(IN_WEIGHTED_SHELL[event]))
 
 
 @optional(lambda totals, state, prism, place, separation, share, ends: None)
