@@ -395,7 +395,7 @@ def test_what_the_tables_say_is_what_is_printed(paper, unchanged, cell, value):
     assert paper(change={cell: value}) != unchanged
 
 
-@pytest.mark.parametrize("name", ["DEARER", "RETURNS"])
+@pytest.mark.parametrize("name", ["COST_RATIO", "RETURNS"])
 def test_numbers_of_the_methods_are_those_of_the_code(paper, unchanged, name, monkeypatch):
     monkeypatch.setattr(manuscript, name, 3)
     assert paper() != unchanged

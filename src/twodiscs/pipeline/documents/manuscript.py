@@ -12,7 +12,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.results.record import write
-from twodiscs.sampling.montecarlo import DEARER
+from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: What the manuscript names the versions of, beside Python.
@@ -66,7 +66,7 @@ def typeset(template, output, contents):
     contents = contents | {
         "captions": captions(results, contents["scenes"][0]),
         "commit": commit(folder),
-        "dearer": DEARER,
+        "dearer": COST_RATIO,
         "intervals": RETURNS,
         "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
         "versions": versions(),

@@ -79,13 +79,18 @@ def unmet(scene, times, blocks, seed):
 def job(name, box, dynamics, seed, blocks=BLOCKS):
     """Return what is counted of a scene with effects, a dict for a JSON file.
 
-    ``dynamics`` are the arguments of ``counting.job`` but for the box, a dict for each radius, and
-    ``seed`` is the root of the random numbers. Keys: the ``name``, the box (its parameters) and
-    dynamics, the points; and unmet, for rough discs: how many of ``blocks`` × ``REPLICAS`` starts
-    have not met by each of ``TIMES``, for the scene and for smooth discs, at the radii where
-    meeting by chance takes much less.
+    ``dynamics`` has radius, accuracy, event_budget and seed of each point, and ``seed`` is the root
+    of the random numbers. Keys: the ``name``, the box (its parameters) and dynamics, the points;
+    and unmet, for rough discs: how many of ``blocks`` × ``REPLICAS`` starts have not met by each of
+    ``TIMES``, for the scene and for smooth discs, at the radii where meeting by chance takes much
+    less.
     """
-    points = [counting.job(box, **arguments) for arguments in dynamics]
+    points = [
+        counting.count_events(
+            box.scene(one["radius"]), one["accuracy"], one["event_budget"], one["seed"]
+        )
+        for one in dynamics
+    ]
     scenes = [box.scene(point["radius"]) for point in points]
     rough = "moment_of_inertia" in box.effects
     return {
