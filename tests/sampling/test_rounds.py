@@ -101,14 +101,14 @@ def test_sums_beyond_64_bits_are_exact():
     assert rounds.joined(run, parts).sums[0].tolist() == [2**63, 1]
 
 
-@pytest.mark.parametrize("budget", [math.inf, 5e6])
+@pytest.mark.parametrize("budget", [1e12, 5e6])
 def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     reports = []
     run, counts = fabricated(0.003, budget)
     done = rounds.in_rounds(run, lambda text, left: reports.append(left))
     total = int(counts[: done.blocks].sum())
     assert (int(done.sums[0][0]), len(reports)) == (total, done.rounds)
-    assert (done.excess[0] <= 1) == (budget == math.inf)
+    assert (done.excess[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
     assert all(late < early for early, late in pairwise(reports))
 
@@ -140,8 +140,8 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box,
         assert error / mean <= TARGET[hop]
 
 
-@pytest.mark.parametrize(("budget", "spent"), [(10**12, 1), (10**8, 10**8), (10**7, 10**7)])
-def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget, spent):
+@pytest.mark.parametrize("budget", [10**12, 10**7, 4 * 10**6])
+def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget):
     """Each part has what its own events need; a budget that is too small shortens all alike."""
     scene = PAPER.scene(0.24)
     coarse, fine = (
@@ -156,7 +156,7 @@ def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(bu
     else:
         for parts in (coarse, fine):
             events = sum(one.planned * one.block_events for one in parts.values())
-            assert spent * 0.9 < events < spent * (1 + 1 / 16) * 1.05
+            assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.2), (PAPER, 0.3838), (UNEQUAL, 0.15)])
