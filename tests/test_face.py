@@ -17,7 +17,7 @@ import twodiscs as td
 from twodiscs import cli
 from twodiscs.comparison.measurements import Measurement
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.dynamics.trajectory import ROUNDING, state_of
+from twodiscs.dynamics.trajectory import state_of
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.pipeline import jobs

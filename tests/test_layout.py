@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from twodiscs.model.sources import PACKAGE, imports_of, modules
 from twodiscs.pipeline.documents import architecture
-from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
 
 REPOSITORY = Path(__file__).parents[1]
 

@@ -16,7 +16,7 @@ from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.numbers.rounding import whole
 from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
-from twodiscs.sampling.montecarlo import DEARER
+from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: What the manuscript names the versions of, beside Python.
@@ -55,7 +55,7 @@ def printed(contents):
     """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
     scenes = contents["scenes"]
     found = numbers(read(contents["results"], scenes), scenes)
-    constants = {"dearer": DEARER, "intervals": RETURNS, "seed": contents["seed"]}
+    constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
     return found | {name: whole(value) for name, value in constants.items()}
 
 
