@@ -2,7 +2,6 @@
 
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -192,37 +191,6 @@ def test_a_box_that_is_none_is_one_sentence(text):
     assert manuscript.sides("1.5x1.0") == (1.5, 1.0)
     with pytest.raises(InputError, match=r"must be as 1\.5x1\.0, not '"):
         manuscript.sides(text)
-
-
-# Where it comes from ------------------------------------------------------------------------------
-
-
-def git(folder, *words):
-    identity = ("-c", "user.name=A", "-c", "user.email=a@example.org")
-    subprocess.run(["git", "-C", folder, *identity, *words], check=True, capture_output=True)
-
-
-def test_the_commit_is_that_of_the_template_and_says_if_files_differ(tmp_path):
-    assert manuscript.commit(tmp_path) == "unknown"
-    git(tmp_path, "init", "-q")
-    assert manuscript.commit(tmp_path) == "unknown"
-    file = tmp_path / "paper.typ"
-    file.write_text("one\n")
-    git(tmp_path, "add", "paper.typ")
-    git(tmp_path, "commit", "-q", "-m", "One")
-    clean = manuscript.commit(tmp_path)
-    assert re.fullmatch(r"[0-9a-f]{12}", clean)
-    git(tmp_path, "tag", "v1")
-    assert manuscript.commit(tmp_path) == clean
-    file.write_text("two\n")
-    assert manuscript.commit(tmp_path) == f"{clean} with changes"
-
-
-def test_versions_are_those_installed():
-    found = manuscript.versions()
-    assert next(iter(found)) == "python"
-    assert set(manuscript.PACKAGES) < set(found)
-    assert all(re.match(r"\d+\.\d+", version) for version in found.values())
 
 
 def test_what_captions_explain_alike_is_split_off(tmp_path):

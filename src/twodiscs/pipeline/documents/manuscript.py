@@ -2,9 +2,6 @@
 
 import json
 import os
-import platform
-import subprocess
-from importlib.metadata import version
 from pathlib import Path
 
 from twodiscs.dynamics.intervals import RETURNS
@@ -14,11 +11,9 @@ from twodiscs.pipeline.arguments import Parser, named, run
 from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.numbers.rounding import whole
 from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
+from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.sampling.montecarlo import DEARER
 from twodiscs.studies.catalogue import STUDY_FIGURES
-
-#: What the manuscript names the versions of, beside Python.
-PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
 
 def captions(results, scene):
@@ -30,23 +25,6 @@ def captions(results, scene):
         name: (*said(entry, results, scene), entry.note)
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
-
-
-def commit(folder):
-    """Return the commit that ``folder`` is at, marked where files differ from it, or "unknown"."""
-    words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
-    try:
-        run = subprocess.run(
-            [*words, "--dirty= with changes"], capture_output=True, text=True, check=True
-        )
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return run.stdout.strip()
-
-
-def versions():
-    """Return {name: version} of Python and of the packages that do the work."""
-    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
 
 
 def printed(contents):

@@ -19,8 +19,8 @@ from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.captions import caption
-from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.pipeline.numbers.rounding import rounded_up
+from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: The figures that the report opens on, and how many; others stand in for those that are not there.
