@@ -8,7 +8,7 @@ from pathlib import Path
 import architecture
 import pytest
 
-from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
+from twodiscs.model.sources import PACKAGE, imports_of, modules
 
 REPOSITORY = Path(__file__).parents[1]
 

@@ -7,9 +7,9 @@ import ast
 from pathlib import Path
 from textwrap import fill
 
+from twodiscs.model.sources import PACKAGE, imports_of, modules
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.report import direct
-from twodiscs.pipeline.sources import PACKAGE, imports_of, modules
 
 #: The rooms of the package from the lowest floor up; one may import those before it, and itself.
 ROOMS = (

@@ -209,13 +209,6 @@ def test_a_report_says_what_is_done_and_what_is_left():
     assert lefts[0] > 1 > 0.02 > lefts[-1] >= 0
 
 
-def test_a_job_takes_plain_values():
-    found = counting.job(Box(1.5, 1.0), 0.2, {"any_wall": 0.1}, 10**6, 1)
-    assert found == counting.count_events(PAPER, {"any_wall": 0.1}, 10**6, 1)
-    assert json.loads(json.dumps(found)) == found
-    assert found[counting.WORK] > 0
-
-
 def test_relative_errors_are_those_of_the_replicas():
     counts = np.random.default_rng(1).poisson([3.0, 5.0], (400, 2))
     counts = np.column_stack([counts, np.zeros(400, int)])

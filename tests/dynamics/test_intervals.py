@@ -1,6 +1,5 @@
 """Intervals between hops: exact draws, whose mean and density at zero are known."""
 
-import json
 import math
 
 import numpy as np
@@ -9,7 +8,6 @@ from effect_scenes import SCENES
 
 from twodiscs.dynamics import intervals
 from twodiscs.dynamics.law import law_of
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import origins
@@ -92,14 +90,6 @@ def test_wide_bins_widen():
     growth = np.diff(edges) / np.maximum(edges[:-1], 1)
     assert (growth >= intervals.GROWTH).all()
     assert edges[-1] <= intervals.BINS < (1 + intervals.GROWTH) * edges[-1]
-
-
-def test_a_job_takes_plain_values():
-    found = intervals.job(Box(1.5, 1.0), 0.2, "vertical_hop", 1, 9)
-    assert found == intervals.hop_intervals(PAPER, "vertical_hop", 1, 9)
-    assert json.loads(json.dumps(found)) == found
-    # A chain is the least: so many intervals of each of the chains that share a stream.
-    assert found[intervals.WORK] == intervals.CHAINS * intervals.RETURNS
 
 
 def test_a_blocked_hop_has_no_intervals():

@@ -1,9 +1,7 @@
 """Compiled code is kept, and never used for other sources than its own."""
 
 import json
-import math
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -13,8 +11,8 @@ import numpy as np
 import pytest
 
 import twodiscs
+from twodiscs.model.sources import fingerprint
 from twodiscs.sampling import jit
-from twodiscs.sampling.jit import numba
 
 SCRIPT = """
 import numpy as np
@@ -53,25 +51,26 @@ def output(process):
 
 
 def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
-    """However old the edited file says it is, and where a process inherits the cache of another.
-
-    Numba alone would go on as before, for the edited file is not the kernel's own.
-    """
+    """However old the edited file says it is. Numba alone would go on as before."""
     sources, environment = package
     # Two that find the cache empty do not race.
     before, same = map(output, [start(environment), start(environment)])
     assert same == before
-    (cache,) = (sources.parent / "cache").iterdir()
-    kernels = [path for path in cache.iterdir() if path.name != jit.MARK]
-    assert any("draw_velocity" in path.name for path in kernels)
-    # The same text elsewhere needs no compiling, and what was cut short is compiled again.
+
+    def kernels():
+        cache = sources.parent / "cache"
+        return {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb?")}
+
+    kept = kernels()
+    assert any("draw_velocity" in path.name for path in kept)
+    # The same sources elsewhere need no compiling, nor do other words about them.
     moved = shutil.copytree(sources.parent, sources.parents[1] / "elsewhere") / "twodiscs"
-    for path in kernels:
-        path.write_bytes(path.read_bytes()[: 0 if "splitmix" in path.name else 1000])
-    assert output(start(environment)) == before
-    again = {path: path.stat().st_mtime_ns for path in kernels}
+    streams = moved / "sampling" / "streams.py"
+    text = streams.read_text()
+    streams.write_text(text.replace('"""Random numbers', '# A word.\n"""More\n\nrandom numbers'))
+    assert streams.read_text() != text
     assert output(start(environment | {"PYTHONPATH": str(moved.parent)})) == before
-    assert again == {path: path.stat().st_mtime_ns for path in kernels}
+    assert kernels() == kept
 
     streams = sources / "sampling" / "streams.py"
     stamp, text = streams.stat().st_mtime, streams.read_text()
@@ -80,24 +79,33 @@ def test_an_edit_of_what_a_kernel_imports_changes_the_result(package):
     assert edited != text
     streams.write_text(edited)
     os.utime(streams, (stamp - 1000, stamp - 1000))
-    assert output(start(environment | {"NUMBA_CACHE_DIR": str(cache)})) != before
+    assert output(start(environment)) != before
+
+
+def test_two_processes_give_their_kernels_files_of_their_own(package):
+    """Else one of them could find the kernel of the other where it looks for its own."""
+    _, environment = package
+    script = """
+from twodiscs.sampling.streams import uniform
+print(uniform._cache._cache_file._data_name(1))
+"""
+    first, second = (finished(environment, script).stdout for _ in range(2))
+    assert first.startswith("uniform.")
+    assert first != second
 
 
 def test_old_caches_of_this_package_go_and_nothing_else(package):
     sources, environment = package
     home = sources.parent / "cache"
-    for i in range(9):
-        folder = home / f"kernels-{i:016x}"
-        folder.mkdir(parents=True)
-        (folder / jit.MARK).touch()
-        os.utime(folder, (i, i))
-    others = "something else", "sources-project1", "kernels-project1", f"kernels-{10:016x}"
-    for name in others:
-        (home / name).mkdir()
+    names = [f"kernels-{i:016x}" for i in range(3)]
+    for name in (*names, others := "kernels-project1"):
+        (home / name).mkdir(parents=True)
         os.utime(home / name, (0, 0))
+    os.utime(home / names[0])
     assert cache_folder(environment).parent == home
-    assert {path.name for path in home.iterdir()} >= set(others)
-    assert len(list(home.iterdir())) == 4 + len(others)
+    left = {path.name for path in home.iterdir()}
+    assert {names[0], others} < left
+    assert left.isdisjoint(names[1:])
 
 
 def finished(environment, script):
@@ -107,8 +115,11 @@ def finished(environment, script):
 
 
 def cache_folder(environment):
-    """Return where a process keeps the kernels of the dynamics, None where nowhere."""
-    script = "from twodiscs.sampling import jit; print(jit.cache_folder('dynamics'))"
+    """Return where a process keeps the kernels of the streams, None where nowhere."""
+    script = """
+from twodiscs.sampling import jit, streams
+print(streams.uniform._cache.cache_path if jit.cache_home() else None)
+"""
     done = finished(environment, script)
     assert (done.stderr != "") == (done.stdout == "None\n")
     return None if done.stdout == "None\n" else Path(done.stdout.rstrip())
@@ -119,11 +130,12 @@ def test_where_one_folder_cannot_be_made_another_is_taken_or_a_sentence_says_so(
     blocked = sources.parent / "file"
     blocked.touch()
     environment |= {"NUMBA_CACHE_DIR": str(blocked / "below")}
-    name = f"kernels-{jit.sources_hash('dynamics')}"
+    name = f"kernels-{fingerprint('sampling.streams')}"
     assert cache_folder(environment) == sources / "__pycache__" / name
     shutil.rmtree(sources / "__pycache__")
     (sources / "__pycache__").touch()
     assert cache_folder(environment) is None
+    assert output(start(environment)).startswith("(")  # compiled all the same
 
 
 def test_a_users_choice_of_processor_wins(package):
@@ -158,32 +170,7 @@ print(np.allclose(numba.njit(product)(a), product(a), rtol=1e-9, atol=0))
     assert done.stdout.split() == ["False", "True"], done.stderr
 
 
-def test_the_hash_knows_every_source_by_its_text_and_its_place(tmp_path, monkeypatch):
-    monkeypatch.setattr(jit, "PACKAGE", tmp_path)
-    sources = {"model/a.py": "x = 1", "dynamics/b.py": "y = 2", "figures/c.py": "z = 3"}
-
-    def hashed(room, **changes):
-        for path in tmp_path.rglob("*.py"):
-            path.unlink()
-        for name, text in (sources | changes).items():
-            (tmp_path / name).parent.mkdir(exist_ok=True)
-            (tmp_path / name).write_text(text)
-        return jit.sources_hash.__wrapped__(room)
-
-    first = hashed("dynamics")
-    assert re.fullmatch("[0-9a-f]{16}", first)
-    assert hashed("sampling") == first
-    changes = [{"model/a.py": "x = 3"}, {"dynamics/b.py": "y = 2 "}, {"sampling/b.py": ""}]
-    assert len({first, *(hashed("dynamics", **change) for change in changes)}) == 4
-    # What imports kernels changes none of them, but those that stand there themselves.
-    elsewhere = {"figures/c.py": "z = 4"}
-    assert hashed("dynamics", **elsewhere) == first
-    assert hashed("studies", **elsewhere) != hashed("studies")
-    (tmp_path / "model" / "notes.txt").write_text("no source")
-    assert hashed("dynamics") == first
-
-
-# Functions that are made --------------------------------------------------------------------
+# Effects that are absent ---------------------------------------------------------------------
 
 
 @jit.optional(lambda x, bonus: x)
@@ -208,48 +195,6 @@ def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
     assert with_bonus(1.0, None) == 1.0
     assert with_bonus(1.0, (10.0,)) == 11.0
     assert with_bonus.__doc__.startswith("Return x and a bonus")
-
-
-def test_lines_are_written_out_with_the_names_they_use():
-    doubled = jit.inlined_closure(lambda x: 2 * x)
-    lines = [f"out[{i}] = step_{i}(x) + y" for i in range(3)]
-    names = {"step_0": doubled, "step_1": abs, "step_2": math.sqrt}
-    fill = jit.written_out("out, x, y", lines, names)
-    out = np.zeros(3)
-    numba.njit(lambda out: fill(out, 4.0, 0.5))(out)
-    assert out.tolist() == [8.5, 4.5, 2.5]
-
-
-def test_a_tally_adds_the_unit_of_each_counter_that_says_yes():
-    count = jit.tally(
-        (
-            (1, lambda x: x > 0, None),
-            (256, lambda x, y: x > y, None),
-            (256**2, lambda x, y: y == 0, "extra"),
-        ),
-        "x, y, extra",
-    )
-    run = numba.njit(lambda start, x, y, extra: count(start, x, y, extra))
-    for x, y, expected in ((1, 2, 1), (2, 1, 1 + 256), (-1, -2, 256), (-1, 0, 256**2), (-2, -1, 0)):
-        assert run(0, x, y, True) == expected
-        assert run(5, x, y, True) == expected + 5
-        # Without its argument a counter is left out.
-        assert run(0, x, y, None) == expected % 256**2
-
-
-def test_a_counter_without_its_argument_need_not_make_sense():
-    """It is not even looked at: None has no items."""
-    count = jit.tally([(1, lambda x, items: x > items[0], "items")], "x, items")
-    run = numba.njit(lambda x, items: count(0, x, items))
-    assert run(3, None) == 0
-    assert run(3, (2, 4)) == 1
-
-
-def test_the_type_of_a_tally_is_that_of_its_units():
-    count = jit.tally([(np.uint64(1) << np.uint64(63), lambda x: x > 0, None)], "x")
-    run = numba.njit(lambda start, x: count(start, x))
-    assert run(np.uint64(1), 1.0) == 2**63 + 1
-    assert run(np.uint64(1), -1.0) == 1
 
 
 # What is absent is not compiled -----------------------------------------------------------------
@@ -281,7 +226,7 @@ def test_absent_effects_leave_no_instruction(package):
     """The kernel of the plain scene is the same where the package knows no effect at all.
 
     In the copy every optional function is what stands in for it, but for those that put discs on
-    walls and see either disc there; the compiler never sees the code of the effects.
+    walls and see either disc there, and counters; the compiler never sees the code of the effects.
     """
     sources, environment = package
     present = instructions(environment)  # in an empty cache: what is kept has no assembly
@@ -291,9 +236,12 @@ def test_absent_effects_leave_no_instruction(package):
     text = module.read_text(encoding="utf-8")
     mark = "    def decorate(present):"
     assert text.count(mark) == 1
-    kept = "present.__name__ in ('on_wall', 'hit')"
-    without = f"return lambda present: inlined(present if {kept} else absent)"
-    module.write_text(text.replace(mark, f"    {without}\n\n{mark}"), encoding="utf-8")
+    without = (
+        "        if present.__name__ != 'add_one':\n"
+        "            kept = present.__name__ in ('on_wall', 'hit')\n"
+        "            return inlined(present if kept else absent)\n"
+    )
+    module.write_text(text.replace(mark, f"{mark}\n{without}"), encoding="utf-8")
     assert instructions(environment) == present
     failed = subprocess.run(
         [sys.executable, "-c", INSTRUCTIONS, '{"moment_of_inertia": 0.5}'],

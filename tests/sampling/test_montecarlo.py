@@ -236,16 +236,3 @@ def test_what_has_no_place_is_refused():
         montecarlo.sample_point(SCENES["torus"], ["any_wall_area"], 1, 0.1, 1)
     with pytest.raises(ValueError, match="event must be one of vertical_hop, disc_collision, "):
         montecarlo.shell_thickness(SCENES["channel"], "right_wall", 0.1)
-
-
-# Jobs -------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("scene", [PAPER, SCENES["combination"]], ids=["plain", "combination"])
-def test_the_job_of_a_radius_is_the_point_of_its_scene(scene):
-    box, shape = Box.of(scene), (1, 0.1, 5)
-    found = montecarlo.job(box, scene.radius, ["vertical_hop"], True, *shape)
-    assert found == montecarlo.better_point(scene, ["volume", "vertical_hop_area"], *shape)
-    assert found[montecarlo.WORK] == montecarlo.BLOCK
-    without = montecarlo.job(box, scene.radius, ["any_wall"], False, *shape)
-    assert without == montecarlo.better_point(scene, ["any_wall_area"], *shape)

@@ -1,10 +1,13 @@
-"""Work in pieces: the same bits however it is cut, and nothing is done twice."""
+"""Work in rounds and in pieces: the same bits however it is cut, and nothing is done twice."""
 
+import json
 import math
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -16,167 +19,164 @@ PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
 
 
-def planned(runs, events, order=1):
-    """Return (what is ``Done`` of each run, all pieces) of plans in rounds; ``order`` may be −1."""
-    found = {name: {} for name in runs}
-    while True:
-        done = {
-            name: rounds.followed(run, [*chain(*found[name].values())])
-            for name, run in runs.items()
+def done_in_pieces(run, per_piece):
+    """Return the ``Progress`` of a run from its pieces, last one first, by way of JSON."""
+    parts = [
+        {
+            "first": first,
+            "stop": stop,
+            "sums": [np.asarray(s).tolist() for s in run.work(first, stop)],
         }
-        new = {
-            name: [p for p in rounds.pieces(run, events, done[name][1]) if p not in found[name]]
-            for name, run in runs.items()
-        }
-        if not any(new.values()):
-            return {name: one[0] for name, one in done.items()}, found
-        for name, places in new.items():
-            for place in places[::order]:
-                found[name] |= {place: rounds.piece(runs[name], *place)}
+        for first, stop in rounds.pieces(run.planned, per_piece)
+    ]
+    return rounds.joined(run, json.loads(json.dumps(parts[::-1])))
 
 
 def fabricated(error, budget=math.inf, block_events=1000):
-    """Return a ``Run`` whose block k has (7 k mod 11) counts, and errors of counts."""
+    """Return a ``SequentialRun`` whose block k has (7 k mod 11) counts, and errors of counts."""
     counts = np.arange(1 << 16) * 7 % 11
-    done = []
 
     def work(first, stop):
-        done.append((first, stop))
         return (np.array([counts[first:stop].sum()]),)
 
-    run = rounds.Run(
+    run = rounds.SequentialRun(
         work,
         lambda sums, blocks: sums[0] ** -0.5 / error,
         lambda sums: 200 * int(sums[0][0]),
         block_events,
         budget,
+        planned=1000,
     )
-    return run, counts, done
+    return run, counts
 
 
-@pytest.mark.parametrize("blocks", [1, 32, 33, 1000, 12345])
-@pytest.mark.parametrize("events", [1.0, 3e4, 1e5, 1e6, 1e9])
-def test_pieces_are_powers_of_two_of_an_absolute_grid(events, blocks):
-    run = fabricated(0.1)[0]
-    found = rounds.pieces(run, events, blocks)
-    assert [first for first, _ in found] == [0, *(stop for _, stop in found[:-1])]
-    assert found[-1][0] < blocks <= found[-1][1]
-    for first, stop in found:
-        size = stop - first
-        assert size == 1 << (size.bit_length() - 1)
-        assert first % size == 0
-        assert size <= max(rounds.FIRST_ROUND, math.sqrt(2) * events / run.block_events)
-    assert found == rounds.pieces(run, events, 10 * blocks)[: len(found)]
+@given(st.integers(0, 10**6), st.integers(4, 20))
+def test_pieces_are_those_of_an_absolute_grid(blocks, k):
+    found = rounds.pieces(blocks, 2**k)
+    assert [first for first, _ in found] == [0, *(stop for _, stop in found[:-1])][: len(found)]
+    assert all(first % 2**k == 0 and 0 < stop - first <= 2**k for first, stop in found)
+    assert sum(stop - first for first, stop in found) == blocks
+    # All but the last one are pieces of more blocks, too.
+    assert found[:-1] == rounds.pieces(2 * blocks, 2**k)[: max(0, len(found) - 1)]
 
 
-@pytest.mark.parametrize("events", [1.0, 1e5, 1e6, 1e9])
-@pytest.mark.parametrize("order", [1, -1])
+@given(st.floats(0.001, 1e12))
+def test_the_grid_has_sixteen_steps_while_a_number_doubles(blocks):
+    found = rounds.on_grid(blocks)
+    assert found >= blocks
+    assert found <= max(math.ceil(blocks), blocks * (1 + 1 / rounds.STEPS) + 1)
+    assert rounds.on_grid(found) == found
+    assert rounds.on_grid(2 * found) in (2 * found, max(2 * found, 2))
+
+
+def test_the_grid_is_the_same_at_every_scale():
+    points = sorted({rounds.on_grid(n) for n in range(1, 4097)})
+    assert points[:33] == [*range(1, 33), 34]
+    for k in (6, 9, 12):
+        assert sum(2 ** (k - 1) < n <= 2**k for n in points) == rounds.STEPS
+
+
+@pytest.mark.parametrize("per_piece", [1, 16, 256, 4096])
+def test_pieces_have_the_sums_of_the_whole(per_piece):
+    run, counts = fabricated(0.01)
+    found = done_in_pieces(run, per_piece)
+    assert (found.blocks, found.sums[0].tolist()) == (1000, [counts[:1000].sum()])
+    assert found.excess == rounds.all_at_once(run).excess == run.excess_of(found.sums, 1000)
+
+
 @pytest.mark.parametrize(
-    ("error", "budget"), [(0.5, math.inf), (0.01, math.inf), (0.005, 2e6), (1e-9, 5e6)]
-)
-def test_the_first_look_that_is_good_enough_is_the_end(error, budget, events, order):
-    run, counts, _ = fabricated(error, budget)
-    done = planned({"all": run}, events, order)[0]["all"]
-    looks, n = [], 0
-    while n < counts.size:
-        n = rounds.next_look(n)
-        looks.append(n)
-    sums = np.cumsum(counts)
-    for n, following in pairwise(looks):
-        total = int(sums[n - 1])
-        if total**-0.5 <= error or budget / (200 * total) * n < following:
-            break
-    assert (done.blocks, int(done.sums[0][0]), done.rounds) == (n, total, looks.index(n) + 1)
+    "ends", [[], [(0, 999)], [(1, 1000)], [(0, 500), (501, 1000)], [(0, 500), (400, 1000)],
+             [(0, 1000), (0, 1000)], [(0, 1000), (1000, 1001)]],
+)  # fmt: skip
+def test_pieces_that_miss_or_repeat_a_block_are_refused(ends):
+    run, counts = fabricated(0.01)
+    parts = [{"first": a, "stop": b, "sums": [[int(counts[a:b].sum())]]} for a, b in ends]
+    with pytest.raises(ValueError, match=r"pieces must cover blocks 0 to 1000 without gap or over"):
+        rounds.joined(run, parts)
+
+
+def test_sums_beyond_64_bits_are_exact():
+    run, _ = fabricated(0.01)
+    parts = [{"first": 500 * i, "stop": 500 * (i + 1), "sums": [[2**62, i]]} for i in range(2)]
+    assert rounds.joined(run, parts).sums[0].tolist() == [2**63, 1]
+
+
+@pytest.mark.parametrize("budget", [1e12, 5e6])
+def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
+    reports = []
+    run, counts = fabricated(0.003, budget)
+    done = rounds.in_rounds(run, lambda text, left: reports.append(left))
+    total = int(counts[: done.blocks].sum())
+    assert (int(done.sums[0][0]), len(reports)) == (total, done.rounds)
+    assert (done.excess[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
-
-
-def test_looks_are_close_and_at_every_power_of_two():
-    done, looks = rounds.FIRST_ROUND, []
-    while done < 1 << 20:
-        assert done < rounds.next_look(done) <= done * (1 + 1 / 32)
-        looks.append(done := rounds.next_look(done))
-    assert {1 << k for k in range(6, 21)} <= {*looks}
-
-
-def test_more_of_the_same_starts_where_the_last_one_ended():
-    found = {}
-    for error in (0.02, 0.005):
-        run, _, done = fabricated(error)
-        found[error] = (planned({"all": run}, 1e5)[1]["all"], done)
-    assert found[0.02][0].items() <= found[0.005][0].items()
-    starts = [first for first, _ in found[0.005][1]]
-    assert len(starts) == len({*starts})
-
-
-def test_there_may_be_nothing_to_wait_for():
-    run, _, done = fabricated(0.1)
-    run = run._replace(excess_of=lambda sums, blocks: np.array([]))
-    assert planned({"all": run}, 1.0)[0]["all"].blocks == rounds.FIRST_ROUND
-    assert max(stop for _, stop in done) == rounds.FIRST_ROUND
+    assert all(late < early for early, late in pairwise(reports))
 
 
 #: A wall and all of them: the kernel is the one that counts everything.
-COUNTED = {
-    "accuracy": {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003},
-    "event_budget": 4 * 10**7,
-}
+TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), (UNEQUAL, 0.15)])
-def test_counts_in_shards_are_those_of_their_blocks(box, radius):
+def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box, radius):
     """Of rare hops, too, which are counted from starts of their own."""
-    job = COUNTED | {"seed": 3}
-    runs = counting.runs(box, radius, **job)
-    assert {*runs} == ({"all", "horizontal_hop"} if box is PAPER else {"all"})
-    found = [counting.merged(box, radius, done=planned(runs, n)[0], **job) for n in (1e7, 1e9)]
+    scene = box.scene(radius)
+    run = counting.CountingRun(scene, TARGET, 4 * 10**7, 3)
+    assert {*run.parts} == ({"all", "horizontal_hop"} if box is PAPER else {"all"})
+    found = [
+        run.point({name: done_in_pieces(one, n) for name, one in run.parts.items()})
+        for n in (16, 1024)
+    ]
     assert found[0] == found[1]
     blocks = found[0]["replicas"] // REPLICAS
-    scene = box.scene(radius)
-    sums, _ = counting.run_blocks(scene, [*job["accuracy"]], 3, 0, blocks, found[0]["duration"])
+    assert blocks == run.parts["all"].planned
+    sums, _ = counting.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0]["duration"])
     assert [*found[0]["counts"].values()] == [
         sums[counting.EVENTS.index(event)] for event in found[0]["counts"]
     ]
     assert {*found[0]["status"].values()} == {"reached"}
     for hop, one in found[0]["strips"].items():
         mean, error = mean_of(**one["strata"])
-        assert error / mean <= job["accuracy"][hop]
+        assert error / mean <= TARGET[hop]
+
+
+@pytest.mark.parametrize("budget", [10**12, 10**7, 4 * 10**6])
+def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget):
+    """Each part has what its own events need; a budget that is too small shortens all alike."""
+    scene = PAPER.scene(0.24)
+    coarse, fine = (
+        counting.CountingRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
+        for error in (2e-3, 1e-3)
+    )
+    ratio = fine["horizontal_hop"].planned / fine["all"].planned
+    ratio /= coarse["horizontal_hop"].planned / coarse["all"].planned
+    assert 4 / (1 + 1 / 16) ** 2 < ratio < 4 * (1 + 1 / 16) ** 2
+    if budget == 10**12:
+        assert fine["all"].planned == coarse["all"].planned
+    else:
+        for parts in (coarse, fine):
+            events = sum(one.planned * one.block_events for one in parts.values())
+            assert 0.9 * budget < events < (1 + 1 / 16) * 1.05 * budget
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.2), (PAPER, 0.3838), (UNEQUAL, 0.15)])
-def test_samples_in_shards_are_those_of_one_job(box, radius):
-    job = {"areas": ["right_wall"], "volume": True, "shell": 0.02, "seed": 5}
-    found = [
-        montecarlo.merged(
-            box,
-            radius,
-            done=planned(montecarlo.runs(box, radius, samples=n, **job), 1e7)[0],
-            samples=n,
-            **job,
-        )
-        for n in (1, 2**20)
-    ]
-    assert found[0] == found[1]
-    samples = found[0]["samples"]
-    if found[0]["method"] == "conditioned":
-        samples *= montecarlo.DEARER
-    assert found[0] == montecarlo.job(box, radius, samples=samples, **job)
+def test_samples_in_pieces_are_those_of_one_process(box, radius):
+    scene, quantities = box.scene(radius), ["volume", "right_wall_area"]
+    run = montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5)
+    found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
+    assert found[0] == found[1] == run.alone()
+    assert found[0] == montecarlo.better_point(scene, quantities, 3 * 2**20, 0.02, 5)
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), (UNEQUAL, 0.15)])
-def test_intervals_in_shards_are_those_of_one_job(box, radius):
-    """But for the times of chains, which are rounded to a 16th of a bin where they are summed up.
-
-    The rounding of a chain is at most half of that, so the mean is as close; the error is as far
-    off as such a rounding in every chain could make it.
-    """
-    job = {"event": "vertical_hop", "seed": 5}
-    runs = intervals.runs(box, radius, intervals=1, **job)
-    found = intervals.merged(box, radius, done=planned(runs, 1e7)[0], intervals=1, **job)
-    whole = intervals.job(box, radius, intervals=found["intervals"], **job)
-    rounding = found["bin_width"] / intervals.GRAIN / intervals.RETURNS / 2
-    assert found["mean"] == pytest.approx(whole["mean"], abs=rounding, rel=0)
-    assert found["stderr"] == pytest.approx(
-        whole["stderr"], abs=2 * rounding / math.sqrt(found["chains"]), rel=0
-    )
-    same = found.keys() - {"mean", "stderr"}
-    assert {name: found[name] for name in same} == {name: whole[name] for name in same}
+def test_intervals_in_pieces_are_those_of_one_process(box, radius):
+    run = intervals.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
+    assert run.parts["all"].planned == 4
+    found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
+    assert found[0] == found[1] == run.alone()
+    # A second method: the sums of the chains in floating point.
+    totals, _ = intervals.recorded(run.scene, run.event, 4, intervals.CHAINS, intervals.RETURNS, 5)
+    means = totals / intervals.RETURNS
+    assert found[0]["mean"] == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
+    error = np.std(means, ddof=1) / math.sqrt(means.size)
+    assert found[0]["stderr"] == pytest.approx(error, rel=1e-13)

@@ -3,7 +3,6 @@
 import dataclasses
 import inspect
 import json
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,21 +27,11 @@ every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 HANDED = {"tables": {}, "report": None}
 
 
-@dataclass(frozen=True)
-class WithEffects:
-    """A configuration beside the scenes of ``config/scenes``, which the study of effects reads."""
-
-    configuration: object
-    effect_scenes: tuple
-
-    def __getattr__(self, name):
-        return getattr(self.configuration, name)
-
-
 def loaded(block):
+    """Return a configuration beside the scenes of ``config/scenes``, which effects reads."""
     paths = sorted((CONFIG / "scenes").glob("*.yaml"))
     scenes = tuple(load({"seed": 1} | read(path)).scenes[0] for path in paths)
-    return WithEffects(load(block), scenes)
+    return dataclasses.replace(load(block), effect_scenes=scenes)
 
 
 @pytest.fixture(scope="module")

@@ -30,7 +30,7 @@ def test_the_law_itself_stays_double():
     assert law.RESTING_SPEED == 4 * 2.0**-52
     assert names["next_event"] is not law.next_event
     assert names["DISC"].dtype == np.float32
-    assert set(names) == set(vars(law))
+    assert set(names) >= {name for name in vars(law) if name[0] != "_"}
     third = np.float32(1) / np.float32(3)
     gap, speed = names["wall_quotient"](third, np.float32(1), np.float32(0.5))
     assert gap == np.float32(0.5) - third

@@ -8,7 +8,7 @@ from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.arguments import box_arguments, word, words
 from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.sources import fingerprint
+from twodiscs.model.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs.studies.effects.study import SCENES as EFFECTS
 

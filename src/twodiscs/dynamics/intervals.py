@@ -5,6 +5,8 @@ no window could cut one off.
 """
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,9 +24,9 @@ from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import a_scene
+from twodiscs.model.scene import Scene, a_scene
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.rounds import as_many
+from twodiscs.sampling.rounds import all_at_once, fixed
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -33,10 +35,6 @@ from twodiscs.theory import exact
 RETURNS = 256
 CHAINS = 256
 BINS = 512
-
-#: The time of a chain is counted in such parts of the width of a bin; and a usual one.
-GRAIN = 16
-USUAL = GRAIN * RETURNS * 16
 
 #: The usual budget of wall and disc events.
 BUDGET = 10**11
@@ -173,32 +171,78 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
     or blocked, or a number out of range.
     """
-    blocks, seed = _blocks(scene, event, intervals, seed, budget)
-    totals, sums = recorded(scene, event, blocks, CHAINS, RETURNS, seed)
-    means = totals / RETURNS
-    mean, error = math.fsum(means) / means.size, float(np.std(means, ddof=1))
-    return _summary(scene, event, sums, totals.size, mean, error / math.sqrt(means.size))
+    return IntervalRun(scene, event, intervals, seed, budget).alone()
 
 
-def _blocks(scene, event, intervals, seed, budget):
-    """Return (the number of blocks, seed) of ``hop_intervals``, whose arguments are checked."""
-    a_scene(scene)
-    one_of("event", event, HOPS)
-    if not scene.is_possible(event):
-        raise InputError(
-            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
-        )
-    seed, budget = whole("seed", seed, 0), whole("budget", budget)
-    blocks = -(-whole("intervals", intervals) // (CHAINS * RETURNS))
-    require_room(scene)
-    events = exact.events_per_interval(scene, event)
-    blocks = min(blocks, int(budget / (CHAINS * RETURNS * events)))
-    if blocks == 0:
-        raise InputError(
-            f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} of "
-            f"{events:.2g} events each, not {budget!r}"
-        )
-    return blocks, seed
+@dataclass(frozen=True)
+class IntervalRun:
+    """``hop_intervals`` in blocks: frozen, its arguments checked."""
+
+    scene: Scene
+    event: str
+    intervals: int
+    seed: int
+    budget: int = BUDGET
+
+    def __post_init__(self):
+        scene = a_scene(self.scene)
+        one_of("event", self.event, HOPS)
+        if not scene.is_possible(self.event):
+            raise InputError(
+                f"event {self.event!r} is blocked at radius {scene.radius!r}: it has no intervals"
+            )
+        whole("seed", self.seed, 0)
+        whole("budget", self.budget)
+        whole("intervals", self.intervals)
+        require_room(scene)
+        if not self._blocks:
+            raise InputError(
+                f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} "
+                f"of {self._events:.2g} events each, not {self.budget!r}"
+            )
+
+    @property
+    def _events(self):
+        return exact.events_per_interval(self.scene, self.event)
+
+    @property
+    def _blocks(self):
+        wanted = -(-self.intervals // (CHAINS * RETURNS))
+        return min(wanted, int(self.budget / (CHAINS * RETURNS * self._events)))
+
+    @property
+    def _grain(self):
+        """The unit in which the times of chains are integers: in doubles none is finer."""
+        return _width(self.scene, self.event) * 2.0**-52
+
+    @cached_property
+    def parts(self):
+        """The ``SequentialRun`` of all blocks, {"all": run}.
+
+        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains.
+        """
+
+        def work(first, stop):
+            totals, sums = recorded(
+                self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first
+            )
+            times = [int(time) for time in totals / self._grain]
+            return sums, np.array([sum(times), sum(time * time for time in times)], object)
+
+        return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events)}
+
+    def point(self, progress):
+        """Return the dict for a JSON file, given {"all": its ``Progress``}."""
+        (sums, (total, squares)), blocks = progress["all"][:2]
+        n, total, squares = blocks * CHAINS, int(total), int(squares)
+        unit = self._grain / RETURNS
+        variance = (n * squares - total * total) / (n * n * (n - 1))
+        mean, stderr = total / n * unit, math.sqrt(variance) * unit
+        return _summary(self.scene, self.event, sums, n, mean, stderr)
+
+    def alone(self, report=None):
+        """Return the dict for a JSON file, all done in this process."""
+        return self.point({"all": all_at_once(self.parts["all"])})
 
 
 def _width(scene, event):
@@ -224,46 +268,3 @@ def _summary(scene, event, sums, chains, mean, stderr):
         "mean": mean,
         "stderr": stderr,
     }
-
-
-#: What the work of a job is counted in: an entry of its result.
-WORK = "intervals"
-
-
-def job(box, radius, event, intervals, seed, event_budget=BUDGET):
-    """Return ``hop_intervals`` for plain values: the job of one radius."""
-    return hop_intervals(box.scene(radius), event, intervals, seed, event_budget)
-
-
-def runs(box, radius, event, intervals, seed, event_budget=BUDGET):
-    """Return {"all": ``Run``} for the arguments of ``job``: what the shards of one radius share.
-
-    Beside the bins, the times of chains are summed up, and their squares: as integers, in 16ths of
-    the width of a bin, from what they are about.
-    """
-    scene = box.scene(radius)
-    blocks, seed = _blocks(scene, event, intervals, seed, event_budget)
-
-    def work(first, stop):
-        totals, sums = recorded(scene, event, stop - first, CHAINS, RETURNS, seed, first)
-        times = np.rint(totals * (GRAIN / _width(scene, event))).astype(np.int64) - USUAL
-        return sums, np.array([times.sum(), (times * times).sum()])
-
-    events = CHAINS * RETURNS * exact.events_per_interval(scene, event)
-    return {"all": as_many(work, blocks, events)}
-
-
-def merged(box, radius, event, intervals, seed, done, event_budget=BUDGET):
-    """Return what ``job`` does, given what is ``Done`` of ``runs``."""
-    scene, ((sums, (total, squares)), blocks) = box.scene(radius), done["all"][:2]
-    chains, unit = blocks * CHAINS, _width(scene, event) / GRAIN / RETURNS
-    spread = math.sqrt((squares - total * (total / chains)) / (chains - 1) / chains)
-    return _summary(scene, event, sums, chains, unit * (USUAL + int(total) / chains), unit * spread)
-
-
-def compile_kernels(box=None, event="vertical_hop"):
-    """Compile the kernel that records intervals of a hop, in a ``Box`` or in plain scenes.
-
-    It records none, for in some boxes one takes long.
-    """
-    recorded(box.tiny if box else Box(1.5, 1.0).scene(0.2), event, 0, CHAINS, RETURNS, 0)

@@ -34,7 +34,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import strip_of as place_of
-from twodiscs.sampling.rounds import Run
+from twodiscs.sampling.rounds import SequentialRun, on_grid
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_share_at, origins
 from twodiscs.sampling.strata import PARTS, mean_of, shares_of_speeds
 from twodiscs.sampling.streams import open_stream
@@ -56,6 +56,14 @@ MOST_EVENTS = 32
 
 #: The share of the time 2T that paths last, about: the more events the less, 1 to 0.55.
 LASTING = 0.75
+
+#: The square of a relative error times the count, at most: 0.07 to 0.18 at all radii of the
+#: repository's configuration, and 0.51 for rough discs. It says how many starts are needed.
+MARGIN_OF_COUNTS, MARGIN_OF_ROUGH = 0.2, 0.6
+
+#: How many times the time of an event of the ensemble one of these paths takes, roughly: they are
+#: short, and every start is drawn.
+COST_RATIO = 6
 
 #: Counts of hops and of events share a double: a hop counts so many events.
 HOP = 2.0**32
@@ -230,25 +238,23 @@ def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes
     )  # fmt: skip
 
 
-def compile_kernels(scene, hop):
-    """Compile the kernel that counts a ``hop`` in a ``Scene``."""
-    if scene.is_possible(hop):
-        run_blocks(scene, hop, strip(scene, hop, widest(scene, hop)), 0, 0, 1, replicas=1)
-
-
 def run_of(scene, hop, target, budget, seed):
-    """Return the ``Run`` that counts a ``hop`` from starts in its strip to an error ``target``.
+    """Return the ``SequentialRun`` that counts a ``hop`` in its strip to an error ``target``.
 
     Its streams are its own.
     """
     place = strip_of(scene, hop)
     seed, shares = stream_seed(seed, hop, "strip", key(scene.radius)), shares_of(scene, hop, place)
-    return Run(
+    hops = REPLICAS * 2 * place.time * exact.rate(scene, hop) / place.share
+    margin = MARGIN_OF_ROUGH if scene.moment_of_inertia else MARGIN_OF_COUNTS
+    return SequentialRun(
         lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
         lambda sums, blocks: np.array([relative_error(shares, sums[0]) / target]),
         lambda sums: int(sums[1]),
         REPLICAS * max(1.0, LASTING * expected_events(scene, hop, place)),
         budget,
+        on_grid(margin / target**2 / hops),
+        COST_RATIO,
     )
 
 
@@ -261,24 +267,24 @@ def relative_error(shares, found):
     return error / mean if mean else math.inf
 
 
-def summary(scene, hop, done):
+def summary(scene, hop, progress):
     """Return what was found of a rare ``hop``, for a JSON file.
 
     That is the duration 2T and the share P of configuration space, numbers of replicas, rounds,
     wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
     ΣN and ΣN².
     """
-    place, (found, events) = strip_of(scene, hop), done.sums
+    place, (found, events) = strip_of(scene, hop), progress.sums
     starts, counts, squares = found
     return {
         "duration": 2 * place.time,
         "share": place.share,
-        "replicas": done.blocks * REPLICAS,
-        "rounds": done.rounds,
+        "replicas": progress.blocks * REPLICAS,
+        "rounds": progress.rounds,
         "events": int(events),
         "count": int(counts.sum()),
         "squares": int(squares.sum()),
-        "status": "reached" if done.excess[0] <= 1 else "budget",
+        "status": "reached" if progress.excess[0] <= 1 else "budget",
         "strata": {
             "shares": shares_of(scene, hop, place).tolist(),
             "starts": starts.tolist(),

@@ -1,4 +1,4 @@
-"""One trajectory, event by event, for people to look at."""
+"""One trajectory, event by event: for people to look at, and for what is asked of one."""
 
 import math
 
@@ -21,10 +21,10 @@ from twodiscs.dynamics.law import (
     law_of,
     next_event,
 )
-from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, length, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import ENERGY, a_scene
+from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import components, states
 from twodiscs.theory import exact
 
@@ -54,6 +54,31 @@ _NAMES = {
     WRAP_Y: "wrap_y",
     WRAP_Z: "wrap_z",
 }
+
+
+@compiled
+def advance(state, law):
+    """Return the state after the next event, and the time and code of that event."""
+    time, code = next_event(state, math.inf, law)
+    return after_event(state, time, code, law), time, code
+
+
+@compiled
+def time_to_next(state, law, hop, longest):
+    """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
+
+    Where it is more than ``longest``, some such time is returned.
+    """
+    elapsed = 0.0
+    while elapsed <= longest:
+        before, rising = across(state, None)
+        state, time, code = advance(state, law)
+        if hop and crosses(before, across(state, None)[0]):
+            return elapsed + crossing_time(before, rising)
+        elapsed += time
+        if code == DISC and not hop:
+            break
+    return elapsed
 
 
 def _row(time, event, state, scene):
@@ -168,8 +193,3 @@ def trajectory(scene, seed, start=None, duration=None):
     else:
         start = state_of(scene, start)
     return list(follow(scene, tuple(start), float(duration)))
-
-
-def compile_kernels():
-    """Compile what follows a trajectory of a plain scene."""
-    trajectory(Box(1.5, 1.0).scene(0.2), 0)

@@ -65,9 +65,10 @@ def pilot(work):
         start = time.process_time()
         sums = part.work(0, blocks)
         taken = time.process_time() - start
-        worst = max(part.excess_of(sums, blocks), default=0.0)
-        affordable = max(1.0, part.budget / part.block_events / blocks)
-        times = min(max(1.0, worst * worst), affordable)
+        excess = part.excess_of(sums, blocks)
+        affordable = part.budget / part.block_events / blocks
+        needed = max(excess) ** 2 if len(excess) else part.planned / blocks
+        times = max(1.0, min(needed, affordable))
         events += times * blocks * part.block_events
         seconds += times * taken
     return Pilot(round(events), seconds)

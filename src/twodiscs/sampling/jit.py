@@ -4,34 +4,23 @@ Arithmetic is plain IEEE 754: no fastmath, no contraction, and kernels call noth
 library but the square root, which is correctly rounded. So every processor and vector width gives
 the same bits.
 
-Import this module, not numba, wherever something is compiled: the settings must precede the import.
+Compiled code is kept by numba's own cache, in a folder named by the ``fingerprint`` of the module
+that a kernel stands in: numba alone looks at that one file, and would go on using a kernel whose
+imported event law has been edited. Import this module, not numba, wherever something is compiled:
+the settings must precede the import.
 """
 
+import gc
 import os
-import pickle
-import re
 import shutil
 import sys
 import time
 import uuid
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from functools import cache
-from hashlib import blake2b
 from pathlib import Path
 
-#: The folder of the package.
-PACKAGE = Path(__file__).resolve().parents[1]
-
-#: The rooms whose sources make the kernels that stand in them: imports point down. A kernel that
-#: stands elsewhere is kept for exactly the package as it is.
-ROOMS = ("model", "theory", "sampling", "dynamics")
-
-#: How many versions of compiled code stay on disk; older ones belong to sources that were edited.
-#: What was used within so many seconds stays as well: another process may be about to read it.
-KEPT_CACHES, IN_USE = 4, 3600
-
-#: A file that says that a folder is a cache of this package, which it may remove.
-MARK = "compiled by twodiscs"
+from twodiscs.model.sources import PACKAGE, fingerprint
 
 
 def _use_wide_vectors():
@@ -47,13 +36,25 @@ def _use_wide_vectors():
 
 _use_wide_vectors()
 
-import llvmlite  # noqa: E402
+# What numba makes when it is imported stays: to look for garbage there is a fifth of the start.
+collecting = gc.isenabled()
+gc.disable()
+
 import numba  # noqa: E402
-import numpy as np  # noqa: E402
-from numba.core import types  # noqa: E402
-from numba.core.caching import CompileResultCacheImpl, FunctionCache  # noqa: E402
-from numba.core.serialize import dumps  # noqa: E402
+from numba.core import caching, types  # noqa: E402
 from numba.extending import overload  # noqa: E402
+
+# No kernel needs BLAS, and importing SciPy's, where numba looks for it, takes a quarter of a start.
+# For numba there is none, then; its own functions for inner products take their place.
+if (blas := "scipy.linalg.cython_blas") not in sys.modules:
+    sys.modules[blas] = None  # so an import of it fails at once
+    import numba.np.arraymath
+
+    del sys.modules[blas]
+
+gc.freeze()
+if collecting:
+    gc.enable()
 
 #: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No kernel is
 #: called from C.
@@ -61,164 +62,98 @@ OPTIONS = {
     "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
 }  # fmt: skip
 
+#: Compiled code that no process has used for so many seconds, of sources that were edited, goes.
+UNUSED = 30 * 86400
+
 
 @cache
-def sources_hash(room):
-    """Return 16 hexadecimal digits that change with the sources and packages that make a kernel.
+def cache_home():
+    """Return the folder for compiled code, None where no such folder can be written to.
 
-    Only the text of the files counts and their places in the package, for the kernels that stand in
-    ``room``, the first part of a module's name: not where the package is, nor any time stamp.
+    It is NUMBA_CACHE_DIR, ``twodiscs`` in XDG_CACHE_HOME or in ``~/.cache``, or else the package's.
     """
-    folders = [PACKAGE / name for name in ROOMS] if room in ROOMS else [PACKAGE]
-    versions = sys.version, numba.__version__, llvmlite.__version__, np.__version__
-    digest = blake2b(repr(versions).encode(), digest_size=8)
-    for path in sorted(path for folder in folders for path in folder.rglob("*.py")):
-        text = path.read_bytes()
-        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {len(text)}\n".encode() + text)
-    return digest.hexdigest()
-
-
-def _homes():
-    """Yield the folders where compiled code may be kept, the best one first."""
+    homes = [PACKAGE / "__pycache__"]
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
-        yield Path(chosen)
+        homes.insert(0, Path(chosen))
     elif chosen := os.environ.get("XDG_CACHE_HOME"):
-        yield Path(chosen) / "twodiscs"
+        homes.insert(0, Path(chosen) / "twodiscs")
     else:
         with suppress(RuntimeError):  # who runs this may have no entry in the list of users
-            yield Path.home() / ".cache" / "twodiscs"
-    yield PACKAGE / "__pycache__"
-
-
-@cache
-def cache_folder(room):
-    """Return the folder of the compiled code of a room, None where no such folder can be made.
-
-    Its name has the hash of the sources. Numba alone looks at the file that holds a function, and
-    would go on using a kernel whose imported event law has been edited.
-    """
-    for home in _homes():
-        folder = home / f"kernels-{sources_hash(room)}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / MARK).touch()
-            os.utime(folder)
-            _remove_old(home)
-        except OSError:
-            continue
-        return folder
+            homes.insert(0, Path.home() / ".cache" / "twodiscs")
+    for home in homes:
+        with suppress(OSError):
+            home.mkdir(parents=True, exist_ok=True)
+            if os.access(home, os.W_OK | os.X_OK):
+                return home
     print(
         "Compiled code is kept nowhere, so every process compiles anew: none of the folders "
-        f"{', '.join(map(str, _homes()))} can be written to; NUMBA_CACHE_DIR names another one",
+        f"{', '.join(map(str, homes))} can be written to; NUMBA_CACHE_DIR names another one",
         file=sys.stderr,
     )
     return None
 
 
-def _remove_old(home):
-    """Remove the caches that were used longest ago, of those that this package made."""
-    made = [
-        path
-        for path in home.glob("kernels-*")
-        if re.fullmatch("kernels-[0-9a-f]{16}", path.name) and (path / MARK).is_file()
-    ]
-    made.sort(key=lambda path: -path.stat().st_mtime)
-    for folder in made[KEPT_CACHES:]:
-        if folder.stat().st_mtime < time.time() - IN_USE:
-            shutil.rmtree(folder, ignore_errors=True)
+@cache
+def cache_folder(module):
+    """Return the folder of the compiled code of a ``module`` of this package, named from it on.
 
-
-@contextmanager
-def _without_blas():
-    """Let numba set itself up without BLAS: the import of SciPy's takes a quarter of the start.
-
-    No kernel needs it. Numba looks for it once; its own functions for inner products then take
-    their place in what others compile in this process.
+    What has been there unused for long is removed when a new one is made.
     """
-    module = "scipy.linalg.cython_blas"
-    if module in sys.modules:
-        yield
-        return
-    sys.modules[module] = None  # so an import of it fails at once
-    try:
-        yield
-    finally:
-        del sys.modules[module]
+    folder = cache_home() / f"kernels-{fingerprint(module)}"
+    if not folder.exists():
+        for old in cache_home().glob("kernels-" + 16 * "[0-9a-f]"):
+            if old.stat().st_mtime < time.time() - UNUSED:
+                shutil.rmtree(old, ignore_errors=True)
+    folder.mkdir(exist_ok=True)
+    os.utime(folder)
+    return folder
 
 
-class _Reduction(CompileResultCacheImpl):
-    """How numba turns a compiled function into what can be stored, whichever file has it."""
+class BySources(caching.UserProvidedCacheLocator):
+    """Tells numba's cache where a function is kept: its sources are in the name of the folder."""
 
-    def __init__(self):
-        """Choose no file."""
+    def __init__(self, function, file):
+        module = function.__module__.removeprefix(f"{PACKAGE.name}.")
+        self._cache_path = str(cache_folder(module))
 
+    def get_source_stamp(self):
+        """Return what else compiled code depends on; numba sees to its own version and Python's."""
+        return numba.llvmlite.__version__
 
-class KernelCache(FunctionCache):
-    """The compiled versions of one function, a file each, named by all that it was compiled for.
+    def get_disambiguator(self):
+        """Return nothing: a module has one function of a name, wherever it stands."""
+        return "kernel"
 
-    A file has a digest of its content: one that was cut short is compiled again. There is no index
-    that two processes could write at the same time.
-    """
-
-    def __init__(self, function):
-        self._py_func, self._name, self._impl = function, repr(function), _Reduction()
-        room = function.__module__.partition(".")[2].partition(".")[0]
-        self._cache_path = cache_folder(room)
-        self._enabled = self._cache_path is not None
-
-    def _file(self, signature, codegen):
-        code = self._py_func.__code__
-        key = repr((self._index_key(signature, codegen), code.co_firstlineno)).encode()
-        name = f"{self._py_func.__module__}.{self._py_func.__qualname__}".replace("<", "(")
-        return self._cache_path / (
-            f"{name.replace('>', ')')}-{blake2b(key, digest_size=16).hexdigest()}"
-        )
-
-    def load_overload(self, sig, target_context):
-        with _without_blas():
-            return super().load_overload(sig, target_context)
-
-    def _load_overload(self, sig, target_context):
-        if not self._enabled:
-            return None
-        path = self._file(sig, target_context.codegen())
-        try:
-            content = path.read_bytes()
-        except OSError:
-            return None
-        digest, stored = content[:32], content[32:]
-        if blake2b(stored, digest_size=32).digest() != digest:
-            return None
-        return self._impl.rebuild(target_context, pickle.loads(stored))
-
-    def _save_overload(self, sig, data):
-        if not self._enabled or not self._impl.check_cachable(data):
-            return
-        path = self._file(sig, data.codegen)
-        stored = dumps(self._impl.reduce(data))
-        part = path.with_name(f"{uuid.uuid4().hex}.part")
-        try:
-            part.write_bytes(blake2b(stored, digest_size=32).digest() + stored)
-            os.replace(part, path)
-        except OSError as error:
-            print(f"Compiled code was not kept: {error}", file=sys.stderr)
-            part.unlink(missing_ok=True)
-
-
-def _kept(dispatcher):
-    if not numba.config.DISABLE_JIT:  # else it is the function itself
-        dispatcher._cache = KernelCache(dispatcher.py_func)
-    return dispatcher
+    @classmethod
+    def from_function(cls, function, file):
+        """Return the locator of a ``function``."""
+        return cls(function, file)
 
 
 def compiled(function):
-    """Compile ``function`` with the house settings; what a kernel calls is compiled into it."""
-    return _kept(numba.njit(function, **OPTIONS))
+    """Compile ``function`` with the house settings; what a kernel calls is compiled into it.
+
+    It is kept on disk, where that is possible.
+    """
+    if cache_home() is None or not function.__module__.startswith(PACKAGE.name):
+        return numba.njit(function, **OPTIONS)
+    usual = numba.config.CACHE_LOCATOR_CLASSES
+    numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{BySources.__name__}"
+    try:
+        kept = numba.njit(function, cache=True, **OPTIONS)
+    finally:
+        numba.config.CACHE_LOCATOR_CLASSES = usual
+    if not numba.config.DISABLE_JIT:  # else it is the function itself
+        # Numba numbers its files, and two processes that save at once would give two kernels one.
+        kept._cache._cache_file._data_name_pattern = (
+            f"{function.__name__}.{uuid.uuid4().hex}.{{number:d}}.nbc"
+        )
+    return kept
 
 
 def inlined(function):
     """Compile ``function`` into whatever calls it, however long it is: for the innermost loops."""
-    return _kept(numba.njit(function, forceinline=True, **OPTIONS))
+    return numba.njit(function, forceinline=True, **OPTIONS)
 
 
 def optional(absent):
@@ -242,36 +177,3 @@ def optional(absent):
         return chosen
 
     return decorate
-
-
-def inlined_closure(function):
-    """Compile a function that is made at import like ``inlined``; it is kept in its kernel only."""
-    return numba.njit(function, forceinline=True, **OPTIONS)
-
-
-def written_out(arguments, lines, names):
-    """Return an inlined function of ``arguments`` with these ``lines`` of code.
-
-    For a kernel that does the same with each of several functions: a loop over functions is not
-    something that numba compiles. ``arguments`` is text as in "x, y"; ``names`` are those that the
-    lines use besides.
-    """
-    body = "".join(f"    {line}\n" for line in lines)
-    exec(f"def function({arguments}):\n{body}", names)
-    return inlined_closure(names["function"])
-
-
-def tally(counters, arguments):
-    """Return an inlined function (count, ``arguments``) that adds up the units of what is seen.
-
-    ``counters`` are triples: a unit, a number of the type of ``count`` such as 256, so that several
-    counts fit into one; a function of the first arguments that says yes or no; and the name of an
-    argument without which (None) the counter is not compiled, or None.
-    """
-    lines, names = [], {}
-    for i, (unit, seen, needed) in enumerate(counters):
-        taken = ", ".join(arguments.split(", ")[: seen.__code__.co_argcount])
-        names |= {f"unit_{i}": unit, f"zero_{i}": type(unit)(0), f"seen_{i}": inlined_closure(seen)}
-        only = "" if needed is None else f"if {needed} is not None: "
-        lines.append(f"{only}count += unit_{i} if seen_{i}({taken}) else zero_{i}")
-    return written_out(f"count, {arguments}", [*lines, "return count"], names)

@@ -23,6 +23,8 @@ Thickness is then measured in the metric of the masses, as ``weighted.shell_expe
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -30,10 +32,10 @@ import numpy as np
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.scene import a_scene
-from twodiscs.sampling.jit import compiled, inlined, optional, tally, written_out
+from twodiscs.model.scene import Scene, a_scene
+from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_share, power_chance, prism_of, propose_in_prism
-from twodiscs.sampling.rounds import as_many
+from twodiscs.sampling.rounds import all_at_once, fixed
 from twodiscs.sampling.separations import draw_constants, propose_separation
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
 from twodiscs.theory import exact
@@ -49,8 +51,10 @@ PASSES = 128
 #: Proposals of the conditioned sampler that share a random stream.
 PROPOSALS = 1 << 16
 
-#: How many times the time of a sample of the prism one of them takes, roughly.
-DEARER = 64
+#: How many times the time of a sample of the prism one of them takes, roughly; and one that is
+#: weighted, in a scene with effects.
+COST_RATIO = 64
+WEIGHTED_COST_RATIO = 40
 
 
 # Plain scenes -----------------------------------------------------------------------------------
@@ -89,10 +93,21 @@ IN_SHELL = by_kind(
     SHELLS,
 )
 
-in_shells = tally(
-    ((256 ** (1 + i), IN_SHELL[event], None) for i, event in enumerate(SHELLS)),
-    "squares, square, place, ends",
-)
+
+def _and(add, unit, seen):
+    """Return ``add`` extended by one shell: it adds a ``unit`` to the count of what is ``seen``."""
+
+    @inlined
+    def add_all(count, squares, square, place, ends):
+        count = add(count, squares, square, place, ends)
+        return count + (unit if seen(squares, square, place, ends) else 0)
+
+    return add_all
+
+
+in_shells = inlined(lambda count, squares, square, place, ends: count)
+for field, event in enumerate(SHELLS, 1):
+    in_shells = _and(in_shells, 256**field, inlined(IN_SHELL[event]))
 BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 
@@ -237,12 +252,14 @@ class Sampler(NamedTuple):
     """Draws in blocks of so many samples.
 
     ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
-    what is found, as ``sample_point`` does.
+    what is found, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over that of one
+    of the prism.
     """
 
     block: int
     count: Callable
     point: Callable
+    cost_ratio: float = 1.0
 
 
 def _drawn(sampler, samples):
@@ -370,6 +387,7 @@ def conditioned(scene, quantities, shell, seed):
         PROPOSALS,
         lambda first, stop: propose_blocks(np.uint64(seed), first, stop, draw, ends),
         lambda n, counts: _point(scene, "conditioned", wanted, epsilon, n, 2 * draw.mass, counts),
+        COST_RATIO,
     )
 
 
@@ -452,18 +470,24 @@ def counted(state, share, power, weights):
     return power_chance(state, share, power)
 
 
-def _counter_of_shells():
-    """Return a function that counts a sample in all shells: ``totals`` from 1 on."""
-    absent = optional(lambda state, prism, place, separation, end: False)
-    names = {f"within_{i}": absent(IN_WEIGHTED_SHELL[event]) for i, event in enumerate(EVENTS)}
-    lines = (
-        f"totals[{1 + i}] += within_{i}(state, prism, place, separation, ends[{i}])"
-        for i in range(len(EVENTS))
-    )
-    return written_out("totals, state, prism, place, separation, ends", lines, names)
+def _and_weighted(count_some, k, seen):
+    """Return ``count_some`` extended by shell ``k``, whose count is next in totals."""
+
+    @optional(lambda totals, state, prism, place, separation, end: None)
+    def count_one(totals, state, prism, place, separation, end):
+        totals[k + 1] += seen(state, prism, place, separation, end)
+
+    @inlined
+    def count_all(totals, state, prism, place, separation, ends):
+        count_some(totals, state, prism, place, separation, ends)
+        count_one(totals, state, prism, place, separation, ends[k])
+
+    return count_all
 
 
-_count_each = _counter_of_shells()
+_count_each = inlined(lambda totals, state, prism, place, separation, ends: None)
+for k, event in enumerate(EVENTS):
+    _count_each = _and_weighted(_count_each, k, inlined(IN_WEIGHTED_SHELL[event]))
 
 
 @optional(lambda totals, state, prism, place, separation, share, ends: None)
@@ -508,6 +532,7 @@ def weighted(scene, quantities, shell, seed):
         BLOCK,
         lambda first, stop: weighted_blocks(np.uint64(seed), first, stop, prism, ends),
         lambda n, found: _point(scene, "monte_carlo", wanted, epsilon, n, measure, found),
+        WEIGHTED_COST_RATIO,
     )
 
 
@@ -518,11 +543,10 @@ def better_point(scene, quantities, samples, shell, seed):
     """Estimate the volume and areas of a ``Scene`` by the sampler that suits it.
 
     That is ``sample_point`` with effects, and where a sample of the prism is free with a
-    probability of at least 1/``DEARER``; else it is ``conditioned_point``, with as many samples as
-    take the same time. Arguments, result and errors are those of either.
+    probability of at least 1/``COST_RATIO``; else it is ``conditioned_point``, with as many samples
+    as take the same time. Arguments, result and errors are those of either.
     """
-    sampler, samples = plan(scene, samples)
-    return _drawn(sampler(scene, quantities, shell, seed), samples)
+    return SamplingRun(scene, quantities, samples, shell, seed).alone()
 
 
 def plan(scene, samples):
@@ -533,57 +557,49 @@ def plan(scene, samples):
     in_blocks = -(-whole("samples", samples) // BLOCK) * BLOCK
     if a_scene(scene).has_effects:
         return weighted, in_blocks
-    if exact.free_share(scene) >= 1 / DEARER:
+    if exact.free_share(scene) >= 1 / COST_RATIO:
         return in_prism, in_blocks
-    return conditioned, -(-samples // (DEARER * PROPOSALS)) * PROPOSALS
+    return conditioned, -(-samples // (COST_RATIO * PROPOSALS)) * PROPOSALS
 
 
-#: What the work of a job is counted in: an entry of its result.
-WORK = "samples"
+@dataclass(frozen=True)
+class SamplingRun:
+    """``better_point`` in blocks: frozen, its arguments checked.
 
-
-def job(box, radius, areas, volume, samples, shell, seed):
-    """Return ``better_point`` for plain values: the job of one radius.
-
-    ``areas`` are events and ``volume`` says whether it is sampled too.
+    ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are those of
+    ``sample_point``, which says what is an ``InputError``.
     """
-    return better_point(box.scene(radius), _quantities(areas, volume), samples, shell, seed)
 
+    scene: Scene
+    quantities: tuple
+    samples: int
+    shell: float
+    seed: int
 
-def _quantities(areas, volume):
-    return ["volume"] * volume + [f"{event}_area" for event in areas]
+    def __post_init__(self):
+        self._sampler  # noqa: B018 - checks what is given
 
+    @cached_property
+    def _sampler(self):
+        sampler, _ = plan(self.scene, self.samples)
+        return sampler(self.scene, self.quantities, self.shell, self.seed)
 
-def _sampler(scene, areas, volume, samples, shell, seed):
-    """Return (the ``Sampler`` of ``job``, the number of its samples)."""
-    sampler, samples = plan(scene, samples)
-    return sampler(scene, _quantities(areas, volume), shell, seed), samples
+    @cached_property
+    def parts(self):
+        """The ``SequentialRun`` of all samples, {"all": run}."""
+        one, samples = self._sampler, plan(self.scene, self.samples)[1]
+        return {
+            "all": fixed(
+                lambda first, stop: (one.count(first, stop),), samples // one.block, one.block,
+                one.cost_ratio,
+            )
+        }  # fmt: skip
 
+    def point(self, progress):
+        """Return the dict for a JSON file, given {"all": its ``Progress``}."""
+        (counts,), blocks = progress["all"][:2]
+        return self._sampler.point(blocks * self._sampler.block, counts)
 
-def runs(box, radius, **given):
-    """Return {"all": ``Run``} for the arguments of ``job``: what the shards of one radius share."""
-    sampler, samples = _sampler(box.scene(radius), **given)
-    each = PROPOSALS * DEARER if sampler.block == PROPOSALS else sampler.block
-    return {
-        "all": as_many(
-            lambda first, stop: (sampler.count(first, stop),), samples // sampler.block, each
-        )
-    }
-
-
-def merged(box, radius, done, **given):
-    """Return what ``job`` does, given what is ``Done`` of ``runs``."""
-    sampler, _ = _sampler(box.scene(radius), **given)
-    (counts,), blocks = done["all"][:2]
-    return sampler.point(blocks * sampler.block, counts)
-
-
-def compile_kernels(box=None, areas=(), volume=True):
-    """Compile the kernel that samples these quantities in a ``Box``; without one the plain ones."""
-    if box is not None:
-        better_point(box.tiny, _quantities(areas, volume), 1, 0.1, 0)
-        return
-    scene = Box(1.5, 1.0).scene(0.2)
-    for quantities in (["volume"], ["volume", f"{SHELLS[-1]}_area"]):
-        sample_point(scene, quantities, 1, 0.1, 0)
-    conditioned_point(scene, ["volume"], 1, 0.1, 0)
+    def alone(self, report=None):
+        """Return the dict for a JSON file, all done in this process."""
+        return self.point({"all": all_at_once(self.parts["all"])})

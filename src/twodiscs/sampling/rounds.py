@@ -1,18 +1,19 @@
-"""Work in rounds, and its pieces: how much is done, and what may be done elsewhere.
+"""Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
-Work is a row of blocks whose sums are integers. One job does it in rounds (``in_rounds``). Where it
-is more than one job should do, it is cut into pieces of an absolute grid (``pieces``), which depend
-on neither the errors nor the budget, and is looked at on a grid of its own, 32 to 64 times while
-the work doubles (``next_look``): the first look at which all is known well enough is the end. So
-the result is the same bits however large pieces are and whoever does them, and more of the same
-work starts where the last one ended.
+One process works in rounds until all is known well enough (``in_rounds``), or does the blocks that
+are planned at once (``all_at_once``). Many processes do the ``pieces`` of as many blocks as are
+planned before anything runs, and their sums are ``joined``: the same bits however large the pieces
+are and whoever does them.
 """
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+
+from twodiscs.model.checks import InputError
 
 #: Blocks of the first round, and how many times the work done so far a round may be: an error seen
 #: in few events predicts badly.
@@ -22,39 +23,33 @@ GROWTH = 8.0
 #: A round is this much longer than it seems to need, so that it need not come back for a little.
 MARGIN = 1.05
 
-#: The first piece is so much smaller than the largest ones: it says how many of those it takes.
-FIRST_PIECE = 32
+#: Steps of the grid of planned blocks while their number doubles.
+STEPS = 16
 
 
-class Run(NamedTuple):
+@dataclass(frozen=True)
+class SequentialRun:
     """Work on one thing until it is known well enough or a budget is spent.
 
     ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays;
     ``excess_of(sums, blocks)`` their errors over those asked for, an array, which is empty where
     there is nothing to wait for; ``events_of(sums)`` the events simulated. ``block_events`` is
-    about what a block has, ``budget`` the most of them there may be.
+    about what a block has, ``budget`` the most of them there may be. ``planned`` is the number of
+    blocks for many processes, known before anything runs, and ``cost_ratio`` the time of an event
+    over that of one of the plain ensemble.
     """
 
     work: Callable
     excess_of: Callable
     events_of: Callable
     block_events: float
-    budget: int
+    budget: float
+    planned: int
+    cost_ratio: float = 1.0
 
 
-def as_many(work, blocks, block_events):
-    """Return the ``Run`` of so many ``blocks``, or a few more of them: up to the next look."""
-    return Run(
-        work,
-        lambda sums, done: np.sqrt([blocks / done]),
-        lambda sums: 1,
-        block_events,
-        math.inf,
-    )
-
-
-class Done(NamedTuple):
-    """What a ``Run`` has found: sums of so many blocks after so many rounds, and their errors."""
+class Progress(NamedTuple):
+    """What a run has found: sums of so many blocks after so many rounds, and their errors."""
 
     sums: list
     blocks: int
@@ -62,12 +57,26 @@ class Done(NamedTuple):
     excess: np.ndarray
 
 
+def fixed(work, blocks, block_events, cost_ratio=1.0):
+    """Return the ``SequentialRun`` of exactly so many ``blocks``."""
+    return SequentialRun(
+        work, lambda sums, done: np.array([]), lambda sums: 1, block_events, math.inf, blocks,
+        cost_ratio,
+    )  # fmt: skip
+
+
 def _added(sums, part):
     return list(part) if sums is None else [a + b for a, b in zip(sums, part, strict=True)]
 
 
+def all_at_once(run):
+    """Return the ``Progress`` when the planned blocks of a run are done, in this process."""
+    sums = list(run.work(0, run.planned))
+    return Progress(sums, run.planned, 1, run.excess_of(sums, run.planned))
+
+
 def in_rounds(run, report=None):
-    """Return what is ``Done`` when all is known well enough or the budget is spent.
+    """Return the ``Progress`` when all is known well enough or the budget is spent.
 
     The first round is small, no more than the budget affords or one block, the next ones as long as
     the errors seen so far predict; without anything to wait for it is the only one. ``report``, if
@@ -92,62 +101,54 @@ def in_rounds(run, report=None):
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
         blocks = min(blocks, math.floor(affordable * done))
-    return Done(sums, done, rounds, excess)
+    return Progress(sums, done, rounds, excess)
 
 
 # Pieces ------------------------------------------------------------------------------------------
 
 
-def next_look(done):
-    """Return after how many blocks a run is looked at next that has ``done`` some."""
-    step = 1 << max(0, done.bit_length() - 6)
-    return max(FIRST_ROUND, (done // step + 1) * step)
+def on_grid(blocks):
+    """Return the next number of blocks on a grid of ``STEPS`` while it doubles, at least 1.
 
-
-def pieces(run, events, blocks):
-    """Return the pieces (first, stop) that hold the first ``blocks`` of a run.
-
-    The largest ones have about so many ``events``, and the first one a 32nd of them; each other
-    doubles what there is until that is as large. Their numbers of blocks are powers of two.
+    So a somewhat tighter accuracy asks for the same pieces, or for some more of them.
     """
-    largest = max(FIRST_ROUND, 1 << round(math.log2(max(1.0, events / run.block_events))))
-    first, stop, found = 0, max(FIRST_ROUND, largest // FIRST_PIECE), []
-    while first < blocks:
-        found.append((first, stop))
-        first, stop = stop, stop + min(stop, largest)
-    return found
+    blocks = max(1, math.ceil(blocks))
+    step = max(1, (1 << (blocks - 1).bit_length()) // (2 * STEPS))
+    return -(-blocks // step) * step
 
 
-def piece(run, first, stop):
-    """Return the sums of a piece between looks: a list of {"first", "stop", "sums"}, for JSON."""
-    found = []
-    while first < stop:
-        end = min(next_look(first), stop)
-        sums = [np.asarray(part).tolist() for part in run.work(first, end)]
-        found.append({"first": first, "stop": end, "sums": sums})
-        first = end
-    return found
+def pieces(blocks, per_piece):
+    """Return the pieces [(first, stop), …] of so many ``blocks``, on an absolute grid.
 
-
-def followed(run, found):
-    """Return (what is ``Done``, the blocks it needs in all) of a run, given the sums ``found``.
-
-    Those are what ``piece`` returns, of any pieces in any order. A run that has ended needs what is
-    done; one that has not needs more, and is done as far as pieces reach.
+    They begin at multiples of ``per_piece``, a power of two; the last one is cut at ``blocks``.
     """
-    at = {part["first"]: part for part in found}
-    done, needed = Done(None, 0, 0, np.array([])), 1
-    while True:
-        stop, sums, place = next_look(done.blocks), done.sums, done.blocks
-        while place < stop and place in at:
-            sums = _added(sums, (np.array(part, np.int64) for part in at[place]["sums"]))
-            place = at[place]["stop"]
-        if place != stop:
-            return done, needed
-        done = Done(sums, stop, done.rounds + 1, run.excess_of(sums, stop))
-        worst = float(np.max(done.excess, initial=0.0))
-        affordable = run.budget / run.events_of(sums) * stop
-        if worst <= 1.0 or affordable < next_look(stop):
-            return done, stop
-        needed = math.ceil(min(worst * worst * stop, GROWTH * stop, affordable))
-        needed = max(needed, next_look(stop))
+    return [(first, min(first + per_piece, blocks)) for first in range(0, blocks, per_piece)]
+
+
+def _narrow(sums):
+    try:
+        return np.array(sums, np.int64)
+    except OverflowError:
+        return sums
+
+
+def joined(run, parts):
+    """Return the ``Progress`` of the planned blocks of a run, from the sums of its pieces.
+
+    ``parts`` is a list of {"first", "stop", "sums"} in any order, the sums as nested lists of
+    integers. Raises ``InputError`` unless they cover all planned blocks without gap or overlap.
+    """
+    parts, stop, sums = sorted(parts, key=lambda part: part["first"]), 0, None
+    for part in parts:
+        if part["first"] != stop:
+            break
+        sums = _added(sums, (np.array(one, object) for one in part["sums"]))
+        stop = part["stop"]
+    else:
+        if stop == run.planned:
+            sums = [_narrow(one) for one in sums]
+            return Progress(sums, stop, 1, run.excess_of(sums, stop))
+    given = ", ".join(f"{part['first']} to {part['stop']}" for part in parts) or "none"
+    raise InputError(
+        f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"
+    )

@@ -14,8 +14,7 @@ class Study:
     ``Configuration`` and, as ``tables``, the rows of what it ``reads``: {name: (name of a scene or
     None, table)}. Other tables have rules of their own.
 
-    ``figures`` are {name: ``Entry``}. ``kernels`` names the compiled code that is to be there
-    first. ``about_plain`` studies are about scenes without effects. ``seconds`` is what the table
+    ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects. ``seconds`` is what the table
     takes, a round figure or what a ``Configuration`` says. ``timed`` tables hold seconds, so that
     they differ from run to run. One that is not ``shared`` is built only when asked for. Pages list
     studies by their ``order``.
@@ -29,7 +28,6 @@ class Study:
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}
-    kernels: tuple = ()
     about_plain: bool = True
     timed: tuple = ()
     shared: bool = True

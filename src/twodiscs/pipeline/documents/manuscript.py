@@ -2,25 +2,22 @@
 
 import json
 import os
-import platform
-import subprocess
-from importlib.metadata import version
 from pathlib import Path
 
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.arguments import Parser, parameters, run
-from twodiscs.pipeline.configuration.files import Files
-from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.arguments import Parser, named, run
 from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.numbers.rounding import whole
 from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
+<<<<<<< HEAD
+from twodiscs.sampling.montecarlo import COST_RATIO
+=======
+from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.sampling.montecarlo import DEARER
+>>>>>>> numbers
 from twodiscs.studies.catalogue import STUDY_FIGURES
-
-#: What the manuscript names the versions of, beside Python.
-PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
 
 def captions(results, scene):
@@ -34,40 +31,23 @@ def captions(results, scene):
     }
 
 
-def commit(folder):
-    """Return the commit that ``folder`` is at, marked where files differ from it, or "unknown"."""
-    words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
-    try:
-        run = subprocess.run(
-            [*words, "--dirty= with changes"], capture_output=True, text=True, check=True
-        )
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    return run.stdout.strip()
-
-
-def versions():
-    """Return {name: version} of Python and of the packages that do the work."""
-    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
-
-
 def printed(contents):
     """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
     scenes = contents["scenes"]
     found = numbers(read(contents["results"], scenes), scenes)
-    constants = {"dearer": DEARER, "intervals": RETURNS, "seed": contents["seed"]}
+    constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
     return found | {name: whole(value) for name, value in constants.items()}
 
 
 def typeset(template, output, contents, found):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
-    ``contents`` are as ``Files.manuscript`` returns them, and ``found`` is {name: ``Number``}. The
-    template finds them under ``sys.inputs.contents``, as JSON: the texts of ``numbers``, the
-    ``captions`` of all figures, the ``commit`` of the template, the ``versions``, and ``results``,
-    their folder, as a path from the root that results and the project have in common. The same
-    inputs at the same commit give the same bytes on every machine: fonts are those that come with
-    Typst.
+    ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
+    "seed"; ``found`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
+    as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
+    template, the ``versions``, and ``results``, their folder, as a path from the root that results
+    and the project have in common. The same inputs at the same commit give the same bytes on every
+    machine: fonts are those that come with Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
@@ -94,20 +74,55 @@ def typeset(template, output, contents, found):
         raise InputError(f"{template} does not compile: {error.message}; {error.trace}") from None
 
 
+def contents_of(files, boxes, output):
+    """Return what is there for the manuscript ``output``, a path in the folder of all results.
+
+    ``files`` are the paths of figures and tables; ``boxes`` is {scene: (width, height)}, of which
+    the first is what the manuscript is about. {"results": folder, "figures": those of no scene,
+    "scenes": [{"name", "width", "height", "figures", "tables"}]}.
+    """
+    figures, tables = {None: []}, {None: []}
+    for path in map(Path, files):
+        table = path.suffix == ".csv"
+        folder = path.parent if table else path.parent.parent
+        own = folder.name if folder.name in boxes else None
+        (tables if table else figures).setdefault(own, []).append(path.stem)
+    scenes = [
+        {"name": name, "width": width, "height": height}
+        | {"figures": figures.get(name, []), "tables": tables.get(name, [])}
+        for name, (width, height) in boxes.items()
+    ]
+    return {"results": str(Path(output).parent), "figures": figures[None], "scenes": scenes}
+
+
+def sides(text):
+    """Return (width, height) of a box that is given as 1.5x1.0."""
+    try:
+        width, height = map(float, text.split("x"))
+    except ValueError:
+        raise InputError(f"the box of a scene must be as 1.5x1.0, not {text!r}") from None
+    return width, height
+
+
 def main():
     parser = Parser(prog="twodiscs.pipeline.documents.manuscript", description=__doc__)
-    parser.add_argument("--results", required=True, help="the folder of all results")
-    parser.add_argument(
-        "--configuration",
-        help="JSON, or a file of it as @PATH; by default configuration.json of the results",
-    )
+    parser.add_argument("files", nargs="+", metavar="FILE", help="figures and tables, PDF and CSV")
     parser.add_argument("--template", required=True, help="the Typst file")
-    parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of the numbers")
+    parser.add_argument(
+        "--boxes",
+        nargs="+",
+        required=True,
+        metavar="SCENE=WIDTHxHEIGHT",
+        help="scenes without effects; the first one is what the manuscript is about",
+    )
+    parser.add_argument("--seed", required=True, type=int, help="the seed of the configuration")
+    parser.add_argument("--configuration", required=True, help="its hash")
+    parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of numbers")
     parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
     options = parser.parse_args()
-    kept = f"@{Path(options.results, 'configuration.json')}"
-    configuration = load(parameters(options.configuration or kept))
-    contents = Files(configuration, options.results).manuscript(options.results)
+    boxes = {scene: sides(box) for scene, box in named(options.boxes, "boxes").items()}
+    contents = contents_of(options.files, boxes, options.output)
+    contents |= {"configuration": options.configuration, "seed": options.seed}
     found = printed(contents)
     PaperNumbers.write(options.numbers, table_rows(found))
     typeset(options.template, options.output, contents, found)

@@ -19,6 +19,7 @@ from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.captions import caption
+from twodiscs.pipeline.numbers.rounding import rounded_up
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
@@ -48,7 +49,7 @@ def agreement(folder, scene):
         "box": scene["box"],
         "comparisons": len(rows),
         "events": sum(row["events"] for row in cost),
-        "independent": sum(row["independent"] for row in rows),
+        "tests": sum(row["independent"] for row in rows),
         "failed": sum(not row["passed"] for row in rows),
         "largest": max((abs(row["z"]) for row in rows), default=0.0),
         "name": scene["name"],
@@ -173,6 +174,7 @@ def page(template, shown):
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["short"] = short
+    environment.filters["rounded_up"] = lambda x: f"{rounded_up(x):f}"
     return environment.from_string(template).render(shown)
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables import NUMBER, TEXT, Table
+from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
 from twodiscs.pipeline.numbers import agreement, costs, distributions, laws
 from twodiscs.pipeline.numbers.rounding import Number
 from twodiscs.studies.catalogue import STUDY_TABLES

@@ -1,14 +1,15 @@
 """The lock-step ensemble in another precision: what single precision buys, and where it fails.
 
-The law of ``dynamics.law`` is not written again: its functions are compiled a second time, from the
-same code, with every constant rounded to the precision asked for. So the law in double precision
+The law of ``dynamics.law`` is not written again: its source is read a second time, with every
+constant rounded to the precision asked for. So the law in double precision
 stays as it is, bit for bit, and the two cannot drift apart.
 
 For comparisons only. Where discs have little room, a number of 24 bits cannot even hold the room.
 """
 
+import ast
+import inspect
 from functools import cache
-from types import FunctionType
 
 import numpy as np
 
@@ -24,23 +25,28 @@ from twodiscs.sampling.streams import open_stream
 from twodiscs.studies.accuracy_cost.scalar import ANY_WALLS, COLLISIONS, N
 
 
+class _Rounded(ast.NodeTransformer):
+    """Puts a name in the place of every floating-point constant of a source: {name: constant}."""
+
+    def __init__(self):
+        self.constants = {}
+
+    def visit_Constant(self, node):
+        if not isinstance(node.value, float):
+            return node
+        name = f"constant_{len(self.constants)}"
+        self.constants[name] = node.value
+        return ast.copy_location(ast.Name(name, ast.Load()), node)
+
+
 def law_in(dtype):
-    """Return {name: constant or compiled function} of ``dynamics.law`` for numbers of ``dtype``.
-
-    What is compiled here is not kept on disk, for it depends on more than its source. What stands
-    in for absent effects has no constants, and is taken as it is.
-    """
-
-    def rounded(value):
-        return dtype(value) if isinstance(value, float) else value
-
-    names = {name: rounded(value) for name, value in vars(law_module).items()}
-    names["RESTING_SPEED"] = dtype(4 * np.finfo(dtype).eps)
-    for name, value in vars(law_module).items():
-        if hasattr(value, "py_func"):
-            code = value.py_func.__code__
-            code = code.replace(co_consts=tuple(map(rounded, code.co_consts)))
-            names[name] = numba.njit(FunctionType(code, names, name), forceinline=True, **OPTIONS)
+    """Return {name: constant or compiled function} of ``dynamics.law`` for numbers of ``dtype``."""
+    rounded = _Rounded()
+    tree = rounded.visit(ast.parse(inspect.getsource(law_module)))
+    names = {name: dtype(value) for name, value in rounded.constants.items()}
+    names["__name__"] = f"law_in_{dtype.__name__}"
+    exec(compile(tree, law_module.__file__, "exec"), names)
+    names |= {"NEVER": dtype(law_module.NEVER), "RESTING_SPEED": dtype(4 * np.finfo(dtype).eps)}
     return names
 
 

@@ -50,7 +50,6 @@ STUDY = Study(
         ),
     },
     parameters=lambda configuration: configuration.accuracy_cost,
-    kernels=("montecarlo", "dynamics"),
     about_plain=False,
     timed=("accuracy_cost",),
 )

@@ -48,5 +48,4 @@ STUDY = Study(
         ),
     },
     parameters=_parameters,
-    kernels=("dynamics",),
 )

@@ -10,7 +10,8 @@ import numpy as np
 
 from twodiscs.comparison import estimates
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
-from twodiscs.dynamics.law import DISC, after_event, law_of, next_event
+from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import ascending, whole
 from twodiscs.model.radii import key, stream_seed
@@ -45,14 +46,7 @@ def follow_unmet(seed, first, stop, replicas, times, law, draw, prism):
         draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
         for i in range(replicas):
             put_state(rows, 0, starts[:, i], law)
-            elapsed = 0.0
-            while elapsed <= times[-1]:
-                state = state_at(rows, 0, law)
-                time, code = next_event(state, np.inf, law)
-                elapsed += time
-                if code == DISC:
-                    break
-                put_state(rows, 0, after_event(state, time, code, law), law)
+            elapsed = time_to_next(state_at(rows, 0, law), law, False, times[-1])
             for k in range(times.size):
                 unmet[k] += elapsed > times[k]
     return unmet

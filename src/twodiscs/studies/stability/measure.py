@@ -19,7 +19,8 @@ from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
-from twodiscs.dynamics.law import after_event, contact_quotient, law_of, next_event, wall_quotient
+from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
+from twodiscs.dynamics.trajectory import advance
 from twodiscs.model.checks import LARGEST_INTEGER, whole
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
@@ -447,13 +448,6 @@ def dynamics_rows(box, seed, ordinary, hard):
 
 
 # Reversal ---------------------------------------------------------------------------------------
-
-
-@compiled
-def advance(state, law):
-    """Return the state after the next event, and the time and code of that event."""
-    time, code = next_event(state, np.inf, law)
-    return after_event(state, time, code, law), time, code
 
 
 @compiled

@@ -52,7 +52,6 @@ STUDY = Study(
         ),
     },
     parameters=_parameters(1),
-    kernels=("montecarlo", "dynamics"),
 )
 
 LONG_RUNS = Study(
@@ -62,6 +61,5 @@ LONG_RUNS = Study(
     seconds=200.0,
     order=8,
     parameters=_parameters(10),
-    kernels=("montecarlo", "dynamics"),
     shared=False,
 )

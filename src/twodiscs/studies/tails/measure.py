@@ -20,7 +20,8 @@ import numpy as np
 
 from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two
-from twodiscs.dynamics.law import DISC, after_event, crosses, crossing_time, law_of, next_event
+from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
+from twodiscs.dynamics.trajectory import advance, time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, ascending, one_of, whole
 from twodiscs.model.events import HOPS
@@ -57,22 +58,7 @@ def draw_drifting_velocity(state, largest, least):
 
 
 @compiled
-def wait(state, law, hop):
-    """Return the time to the next vertical hop, or to the next disc collision if not ``hop``."""
-    elapsed = 0.0
-    while True:
-        time, code = next_event(state, np.inf, law)
-        if code == DISC and not hop:
-            return elapsed + time
-        before, rising = across(state, None)
-        state = after_event(state, time, code, law)
-        if hop and crosses(before, across(state, None)[0]):
-            return elapsed + crossing_time(before, rising)
-        elapsed += time
-
-
-@compiled
-def straddled(seed, first, stop, strata, samples, times, law, draw, hop):
+def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
     """Return ⟨1[F + G > t]/(F + G)⟩ for each of blocks ``first`` … ``stop`` − 1 and each time.
 
     A block has ``samples`` starts in each of ``strata`` strata; ``times`` ascend. The result has
@@ -89,8 +75,8 @@ def straddled(seed, first, stop, strata, samples, times, law, draw, hop):
             for _ in range(samples):
                 x1, y1, x2, y2 = draw_configuration(state, draw, 0, 0)
                 u1, v1, u2, v2 = draw_drifting_velocity(state, largest, least)
-                interval = wait((x1, y1, x2, y2, u1, v1, u2, v2), law, hop)
-                interval += wait((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop)
+                interval = time_to_next((x1, y1, x2, y2, u1, v1, u2, v2), law, hop, np.inf)
+                interval += time_to_next((x1, y1, x2, y2, -u1, -v1, -u2, -v2), law, hop, np.inf)
                 for i in range(times.size):
                     if interval <= times[i]:
                         break
@@ -117,9 +103,8 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
             state = state_in(starts, replica)
             now, last = 0.0, -1.0
             while True:
-                time, code = next_event(state, np.inf, law)
                 before, rising = across(state, None)
-                state = after_event(state, time, code, law)
+                state, time, code = advance(state, law)
                 if hop:
                     met = crosses(before, across(state, None)[0])
                     moment = now + crossing_time(before, rising)
@@ -166,7 +151,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
-    means = straddled(
+    means = length_biased(
         np.uint64(seed), 0, blocks, strata, samples, times, law_of(upright),
         draw_constants(upright), hop,
     )  # fmt: skip

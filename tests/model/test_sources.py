@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from twodiscs.pipeline import sources
+from twodiscs.model import sources
 
 MODULES = {
     "__init__.py": "",
@@ -267,7 +267,7 @@ def test_fingerprints_are_the_same_for_another_version_of_python():
     if python is None:
         pytest.skip("there is no other version of Python")
     code = (
-        "import json, sys; from twodiscs.pipeline import sources\n"
+        "import json, sys; from twodiscs.model import sources\n"
         "print(json.dumps({name: sources.fingerprint(name) for name in sys.argv[1:]}))"
     )
     run = subprocess.run(
@@ -293,7 +293,7 @@ def test_what_python_really_imports_is_listed():
 
 
 def test_standard_library_only():
-    code = "import sys, twodiscs.pipeline.sources; print(*sys.modules)"
+    code = "import sys, twodiscs.model.sources; print(*sys.modules)"
     run = subprocess.run(
         [
             sys.executable,
@@ -305,45 +305,4 @@ def test_standard_library_only():
         text=True,
         check=True,
     )
-    assert "twodiscs.pipeline.sources" in run.stdout.split()
-
-
-def test_an_edit_of_the_same_size_and_time_is_run(package, monkeypatch):
-    """Python alone would run what it has compiled: it looks at nothing else."""
-    module = package / "helper.py"
-    environment = os.environ | {"PYTHONPATH": str(package.parent)}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
-
-    def runs(text):
-        module.write_text(text)
-        os.utime(module, (1e9, 1e9))
-        command = [sys.executable, "-c", "import twodiscs.helper as h; print(h.x)"]
-        return subprocess.run(command, env=environment, capture_output=True, text=True).stdout
-
-    monkeypatch.setattr(sources, "_used", {})
-    assert runs("x = 1") == "1\n"
-    assert runs("x = 2") == "1\n"
-    sources.fingerprint("helper")
-    assert runs("x = 2") == "2\n"
-
-
-@pytest.mark.parametrize("damage", [None, "", "[1]", "{"])
-def test_what_is_remembered_of_sources_changes_no_fingerprint(place, package, monkeypatch, damage):
-    """The memory is by the text of each file; one that cannot be read is as good as none."""
-    monkeypatch.setattr(sources, "_used", {})
-    memory = package.parent / ".snakemake" / "memory.json"
-    memory.parent.mkdir()
-    monkeypatch.setattr(sources, "MEMORY", memory)
-    sources._memory.cache_clear()
-    first = sources.fingerprint("chain")
-    sources._remember()
-    assert len(json.loads(memory.read_text())) == len(sources.imported("chain"))
-    if damage is not None:
-        memory.write_text(damage)
-    place(package)
-    sources._memory.cache_clear()
-    if damage is None:
-        monkeypatch.setattr(sources, "_parsed", None)  # what is remembered is not parsed
-    assert sources.fingerprint("chain") == first
-    monkeypatch.undo()
-    sources._memory.cache_clear()
+    assert "twodiscs.model.sources" in run.stdout.split()

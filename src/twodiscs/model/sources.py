@@ -6,22 +6,21 @@ Standard library only: the Snakefile imports this.
 """
 
 import ast
-import atexit
-import json
-import os
 import re
-from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
-from importlib.util import cache_from_source
 from pathlib import Path
 
 from twodiscs.model.checks import InputError
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
-#: Where what is known of sources outlives a process, by the text of each; it may go at any time.
-MEMORY = Path(".snakemake", "twodiscs-sources.json")
+#: A string, which is kept, or a comment.
+STRING_OR_COMMENT = re.compile(
+    rb"""("{3}(?:\\.|[^\\])*?"{3}|'{3}(?:\\.|[^\\])*?'{3}"""
+    rb"""|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|#[^\n]*""",
+    re.DOTALL,
+)
 
 
 def imported(*modules, without=()):
@@ -86,63 +85,28 @@ def _file(name):
 
 
 @cache
-def _memory():
-    """Return {digest of a file: what ``_parsed`` found in it}, as the last process left it."""
-    try:
-        found = json.loads(MEMORY.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
-
-
-#: What this process has read, in the form of ``_memory``.
-_used = {}
-
-
-def _remember():
-    """Keep what was read for the next process, where Snakemake keeps what it knows."""
-    if MEMORY.parent.is_dir() and _used.keys() - _memory().keys():
-        part = MEMORY.with_suffix(f".{os.getpid()}")
-        with suppress(OSError):
-            part.write_text(json.dumps(_used), encoding="utf-8")
-            part.replace(MEMORY)
-
-
-@cache
 def _read(path):
-    """Return what ``_parsed`` finds in a source file, which is parsed once for each text of it."""
-    text = path.read_bytes()
-    key = blake2b(text, digest_size=16).hexdigest()
-    if not _used:
-        atexit.register(_remember)
-    known = _memory().get(key)
-    if not known:
-        # Python sees an edit by size and time stamp alone, and would go on with what it compiled.
-        with suppress(OSError):
-            os.unlink(cache_from_source(path))
-    _used[key] = known or _parsed(text, path)
-    return _used[key]
-
-
-def _parsed(text, path):
     """Return (hash of a source without comments, docstrings and blank lines, its imports).
 
     The hash is that of the text, not of the syntax tree, whose form depends on the version of
     Python. Strings that are statements of their own are docstrings, of attributes too. Imports are
     triples (dotted module, number of leading dots, names).
     """
-    lines, strings, imports = text.splitlines(), [], []
-    for node in ast.walk(ast.parse(text, filename=str(path))):
+    text = path.read_bytes()
+    lines, imports = text.splitlines(), []
+    queue = [ast.parse(text, filename=str(path))]
+    while queue:  # of statements only: what they are made of is half of the time
+        node = queue.pop()
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            queue += getattr(node, block, ())
         if isinstance(node, ast.Expr) and _is_text(node.value):
             _cut(lines, node)
-        elif isinstance(node, ast.JoinedStr) or _is_text(node):
-            strings.append(node)
         elif isinstance(node, ast.Import):
             imports += [(alias.name, 0, []) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             imports.append((node.module or "", node.level, [alias.name for alias in node.names]))
-    _cut_comments(lines, strings)
-    code = b"\n".join(line.rstrip() for line in lines if line.strip())
+    code = STRING_OR_COMMENT.sub(rb"\1", b"\n".join(lines)).splitlines()
+    code = b"\n".join(line.rstrip() for line in code if line.strip())
     return blake2b(code, digest_size=8).hexdigest(), imports
 
 
@@ -155,22 +119,6 @@ def _cut(lines, node):
     first, last = node.lineno - 1, node.end_lineno - 1
     before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
     lines[first : last + 1] = [before + after] + [b""] * (last - first)
-
-
-def _cut_comments(lines, strings):
-    """Cut everything from a # on that does not stand in one of ``strings``, nodes of the tree."""
-    covered = {}
-    for node in strings:
-        for number in range(node.lineno, node.end_lineno + 1):
-            start = node.col_offset if number == node.lineno else 0
-            stop = node.end_col_offset if number == node.end_lineno else len(lines[number - 1])
-            covered.setdefault(number, []).append((start, stop))
-    for number, line in enumerate(lines, start=1):
-        for mark in re.finditer(b"#", line):
-            inside = (start <= mark.start() < stop for start, stop in covered.get(number, ()))
-            if not any(inside):
-                lines[number - 1] = line[: mark.start()]
-                break
 
 
 @cache
