@@ -11,12 +11,8 @@ from twodiscs.pipeline.arguments import Parser, named, run
 from twodiscs.pipeline.documents.captions import said
 from twodiscs.pipeline.numbers.rounding import whole
 from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
-<<<<<<< HEAD
-from twodiscs.sampling.montecarlo import COST_RATIO
-=======
 from twodiscs.pipeline.results.provenance import commit, versions
-from twodiscs.sampling.montecarlo import DEARER
->>>>>>> numbers
+from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 
