@@ -1,5 +1,7 @@
 """The price of jobs: what limits them, how it scales, and which shards they take."""
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -56,7 +58,7 @@ def test_shards_cover_all_blocks_once(stage):
         pieces = sorted((first, stop) for name, first, stop in shards if name == part)
         assert pieces[0][0] == 0
         assert pieces[-1][1] == run.planned
-        assert all(a[1] == b[0] for a, b in zip(pieces, pieces[1:], strict=False))
+        assert all(a[1] == b[0] for a, b in pairwise(pieces))
         most = max(stop - first for first, stop in pieces)
         assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
 

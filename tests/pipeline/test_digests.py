@@ -31,9 +31,10 @@ def test_an_edit_is_refused_or_changes_nothing(tmp_path_factory, data):
     content[place] = data.draw(st.integers(0, 255))
     path.write_bytes(content)
     try:
-        assert read_json(path) == CONTENT  # another blank between two words, say
-    except InputError as error:
-        assert str(error).endswith(SENTENCE)
+        found = read_json(path)
+    except InputError:
+        return
+    assert found == CONTENT  # another blank between two words, say
 
 
 @pytest.mark.parametrize(

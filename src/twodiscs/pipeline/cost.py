@@ -99,7 +99,6 @@ def days(scenes):
     found = 0.0
     for scene in scenes:
         for stage, keys in scene.keys.items():
-            some = [*keys.values()][:: -(-len(keys) // SOME) or 1]
             found += len(keys) * _seconds(scene, stage, _most(scene, stage)) / DAY
             if found > 1:
                 return sum(_days(scene) for scene in scenes)

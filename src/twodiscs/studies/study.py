@@ -14,10 +14,10 @@ class Study:
     ``Configuration`` and, as ``tables``, the rows of what it ``reads``: {name: (name of a scene or
     None, table)}. Other tables have rules of their own.
 
-    ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects. ``seconds`` is what the table
-    takes, a round figure or what a ``Configuration`` says. ``timed`` tables hold seconds, so that
-    they differ from run to run. One that is not ``shared`` is built only when asked for. Pages list
-    studies by their ``order``.
+    ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
+    ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
+    tables hold seconds, so that they differ from run to run. One that is not ``shared`` is built
+    only when asked for. Pages list studies by their ``order``.
     """
 
     name: str

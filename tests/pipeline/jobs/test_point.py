@@ -1,6 +1,7 @@
 """Jobs of one radius: what they write, that shards add up to the same bytes, what they refuse."""
 
 import json
+from pathlib import Path
 
 import pytest
 from fabricated import command
@@ -12,14 +13,14 @@ from twodiscs.pipeline.results.digests import read_json, write_json
 SCENE = Scene(1.5, 1.0, 0.2)
 BOX = ("--width", 1.5, "--height", 1, "--radius", 0.2)
 WORK = {
-    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 3 << 20, "--shell", 0.02),
+    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 3 << 20, "--shell", 0.1),
     "dynamics": ("--target", "vertical_hop=0.5", "top_wall=0.1", "--budget", "1e6"),
     "intervals": ("--event", "vertical_hop", "--intervals", 3 << 16, "--budget", "1e9"),
 }  # fmt: skip
 
 #: What a shard is told: neither accuracy nor budget is of consequence to it.
 SHARD = {
-    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 1, "--shell", 0.02),
+    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 1, "--shell", 0.1),
     "dynamics": ("--target", "vertical_hop=0.5", "top_wall=0.5", "--budget", "1"),
     "intervals": ("--event", "vertical_hop", "--intervals", 1, "--budget", "1e15"),
 }  # fmt: skip
@@ -81,10 +82,9 @@ def test_what_is_missing_of_a_point_is_said(run, capsys):
 
 def test_an_edited_shard_is_refused(run, capsys):
     (file,) = shards(run, "monte_carlo", [(0, 3)])
-    content = json.loads(open(file).read())
+    content = json.loads(Path(file).read_text())
     content["sums"][0][0] += 1
-    with open(file, "w") as edited:
-        json.dump(content, edited)
+    Path(file).write_text(json.dumps(content))
     assert run("monte_carlo", *WORK["monte_carlo"], "--shards", file, "--output", "a.json") == 2
     assert "all-0-3.json is not what its job wrote; delete it" in capsys.readouterr().err
 

@@ -77,7 +77,7 @@ class Files:
         return own | {name: of_main[name] for name in entry.main_tables if name in of_main}
 
     def studied(self, kind):
-        """Return all "tables", or all "figures" as PDF, of the studies that the manuscript reads."""
+        """Return all "tables", or "figures" as PDF, of the studies that the manuscript reads."""
         if kind == "figures":
             return [f"{self.folder}/figures/{name}.pdf" for name in STUDY_FIGURES]
         shared = (study for study in STUDIES.values() if study.shared)

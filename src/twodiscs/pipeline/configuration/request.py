@@ -139,7 +139,7 @@ class SceneRequest:
         return settings[stage] | {"seed": self.seed_of(stage, radius)}
 
     def shard_arguments(self, stage, radius):
-        """Return ``arguments`` of a shard: neither accuracy nor budgets are of consequence to it."""
+        """Return ``arguments`` of a shard, to which accuracy and budgets are of no consequence."""
         whatever = {
             "monte_carlo": {"samples": 1},
             "dynamics": {"target": dict.fromkeys(self.target, 0.5), "budget": 1},
