@@ -124,17 +124,6 @@ class Laws:
         }
 
 
-def store(folder, points):
-    """Write ``points`` as JSON files, a name each, and return their paths as texts."""
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for name, point in points.items():
-        path = folder / f"{name}.json"
-        path.write_text(json.dumps(point, sort_keys=True))
-        paths.append(str(path))
-    return paths
-
-
 def command(monkeypatch, module, *arguments):
     """Run the ``main`` of a ``module`` in this process and return its exit status.
 
