@@ -26,7 +26,7 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline import cost
 from twodiscs.pipeline.configuration import load
 from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.numbers.rounding import rounded_up
+from twodiscs.pipeline.documents.numbers.rounding import rounded_up
 from twodiscs.pipeline.results import verdict
 
 PAGES = [

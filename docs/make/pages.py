@@ -13,8 +13,7 @@ from twodiscs.comparison import check
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document, schema
-from twodiscs.pipeline.results.tables import TABLES
-from twodiscs.studies.catalogue import STUDIES
+from twodiscs.studies.catalogue import STUDIES, TABLES
 
 INTRODUCTION = """\
 Tables are CSV files with one row for each thing said. Floats are written with all their digits,

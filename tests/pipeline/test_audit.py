@@ -5,10 +5,10 @@ from fabricated import BOX, command
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.digests import write_json
 from twodiscs.pipeline.jobs.point import monte_carlo
 from twodiscs.pipeline.jobs.table import rows_of
 from twodiscs.pipeline.results import audit, manifest
-from twodiscs.pipeline.results.digests import write_json
 
 CONFIGURATION = {
     "scenes": [

@@ -10,7 +10,7 @@ from twodiscs.figures.catalogue import FIGURES, NOTES
 from twodiscs.figures.kit import style
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.documents import manuscript
-from twodiscs.pipeline.numbers.rounding import Number
+from twodiscs.pipeline.documents.numbers.rounding import Number
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"

@@ -10,7 +10,14 @@ import pytest
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
-from twodiscs.pipeline.numbers import agreement, costs, distributions, laws, rounding, table
+from twodiscs.pipeline.documents.numbers import (
+    agreement,
+    costs,
+    distributions,
+    laws,
+    rounding,
+    table,
+)
 from twodiscs.studies.catalogue import STUDY_TABLES
 
 SOURCE = (Path(__file__).resolve().parents[2] / "paper" / "paper.typ").read_text()

@@ -8,6 +8,9 @@ from that. Standard library only: the Snakefile imports this.
 from importlib import import_module
 from pathlib import Path
 
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Forecast
+from twodiscs.studies.effects.table import Benchmark
 from twodiscs.studies.study import Study
 
 
@@ -24,5 +27,6 @@ STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order
 #: The figures of studies, {name: ``Entry``}.
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
 
-#: The tables of studies, {name: table}.
+#: The tables of studies, {name: table}, and all that there are.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
+TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}

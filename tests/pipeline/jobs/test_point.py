@@ -7,14 +7,14 @@ import pytest
 from fabricated import command
 
 from twodiscs.model.scene import Scene
+from twodiscs.pipeline.digests import read_json, write_json
 from twodiscs.pipeline.jobs import point
-from twodiscs.pipeline.results.digests import read_json, write_json
 
 SCENE = Scene(1.5, 1.0, 0.2)
 BOX = ("--width", 1.5, "--height", 1, "--radius", 0.2)
 WORK = {
     "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 3 << 20, "--shell", 0.1),
-    "dynamics": ("--target", "vertical_hop=0.5", "top_wall=0.1", "--budget", "1e6"),
+    "dynamics": ("--target", "vertical_hop=0.01", "top_wall=0.1", "--budget", "1e7"),
     "intervals": ("--event", "vertical_hop", "--intervals", 3 << 16, "--budget", "1e9"),
 }  # fmt: skip
 
@@ -61,7 +61,9 @@ def test_work_of_known_length_gives_the_same_bytes_in_shards(run, stage, tmp_pat
 
 def test_counts_are_the_same_bytes_in_any_number_of_shards(run, tmp_path):
     stop = (
-        point.dynamics(SCENE, {"vertical_hop": 0.5, "top_wall": 0.1}, 10**6, 7).parts["all"].planned
+        point.dynamics(SCENE, {"vertical_hop": 0.01, "top_wall": 0.1}, 10**7, 7)
+        .parts["all"]
+        .planned
     )
     assert stop >= 3
     cuts = {"one": [(0, stop)], "some": [(i, i + 1) for i in range(stop)][::-1]}

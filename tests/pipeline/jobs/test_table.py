@@ -3,13 +3,14 @@
 import csv
 import json
 
+import numpy as np
 import pytest
 from fabricated import BOX, RADII, Laws, command, scenes
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline.arguments import box_arguments
+from twodiscs.pipeline.digests import write_json
 from twodiscs.pipeline.jobs import figure, study, table
-from twodiscs.pipeline.results.digests import write_json
 
 WORDS = box_arguments(BOX).split()
 
@@ -21,10 +22,10 @@ def run(monkeypatch, tmp_path):
 
 
 @pytest.fixture
-def points(run, rng, tmp_path):
+def points(run, tmp_path):
     """The arguments that name the exact values and fabricated points of some radii."""
     assert run(table, "theory", *WORDS, "--radii", *RADII, "--output", "theory.csv") == 0
-    words = ["--theory", "theory.csv"]
+    words, rng = ["--theory", "theory.csv"], np.random.default_rng(1)
     for stage in ("monte_carlo", "dynamics"):
         samples = {"monte_carlo": {"samples": 10**7}, "dynamics": {}}[stage]
         words.append(f"--{stage}")

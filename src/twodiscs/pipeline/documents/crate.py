@@ -16,9 +16,9 @@ from urllib.parse import quote
 import yaml
 
 from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.pipeline.digests import digest
 from twodiscs.pipeline.documents.report import ENTRIES
-from twodiscs.pipeline.results.digests import digest
-from twodiscs.pipeline.results.tables import TABLES
+from twodiscs.studies.catalogue import TABLES
 
 #: The profiles that the crate follows, below w3id.org, and where sha256 is defined.
 PROFILES = {

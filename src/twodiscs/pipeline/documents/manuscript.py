@@ -9,8 +9,8 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, named, run
 from twodiscs.pipeline.documents.captions import said
-from twodiscs.pipeline.numbers.rounding import whole
-from twodiscs.pipeline.numbers.table import PaperNumbers, numbers, read, table_rows
+from twodiscs.pipeline.documents.numbers.rounding import whole
+from twodiscs.pipeline.documents.numbers.table import PaperNumbers, numbers, read, table_rows
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs.studies.catalogue import STUDY_FIGURES

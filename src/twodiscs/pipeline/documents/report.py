@@ -19,7 +19,7 @@ from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.captions import caption
-from twodiscs.pipeline.numbers.rounding import rounded_up
+from twodiscs.pipeline.documents.numbers.rounding import rounded_up
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 

@@ -8,8 +8,8 @@ from importlib import import_module
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.arguments import Parser, add_box, box_of, number, run
+from twodiscs.pipeline.digests import digest
 from twodiscs.pipeline.jobs.study import read_tables
-from twodiscs.pipeline.results.digests import digest
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}

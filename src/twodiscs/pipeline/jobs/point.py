@@ -21,7 +21,7 @@ from twodiscs.pipeline.arguments import (
     scene_of,
     whole_number,
 )
-from twodiscs.pipeline.results.digests import read_json, write_json
+from twodiscs.pipeline.digests import read_json, write_json
 
 
 def monte_carlo(scene, quantities, samples, shell, seed):

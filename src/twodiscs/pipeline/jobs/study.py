@@ -12,8 +12,7 @@ from pathlib import Path
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, named, parameters, print_progress, run
-from twodiscs.pipeline.results.tables import TABLES
-from twodiscs.studies.catalogue import STUDY_TABLES
+from twodiscs.studies.catalogue import STUDY_TABLES, TABLES
 
 
 class Tables(dict):

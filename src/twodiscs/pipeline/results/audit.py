@@ -14,8 +14,8 @@ from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.files import GATHERED
 from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.digests import digest, read_json
 from twodiscs.pipeline.jobs.table import read_points, rows_of
-from twodiscs.pipeline.results.digests import digest, read_json
 
 EDITED = "is not what its job wrote"
 

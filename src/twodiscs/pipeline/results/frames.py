@@ -7,8 +7,8 @@ from pathlib import Path
 import pandas as pd
 
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.results.digests import digest
-from twodiscs.pipeline.results.tables import TABLES
+from twodiscs.pipeline.digests import digest
+from twodiscs.studies.catalogue import TABLES
 
 #: What the values of a column are to pandas: kinds that know an empty cell.
 KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}

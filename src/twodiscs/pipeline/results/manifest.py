@@ -8,7 +8,7 @@ Files are named from the folder of the manifest, as ``sha256sum --check`` reads 
 from pathlib import Path
 
 from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.results.digests import digest
+from twodiscs.pipeline.digests import digest
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 
 #: The tables of no study that hold seconds, and the documents that show them.

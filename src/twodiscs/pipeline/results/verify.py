@@ -19,8 +19,8 @@ from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, parameters, run
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.results.digests import digest, read_json
-from twodiscs.pipeline.results.tables import TABLES
+from twodiscs.pipeline.digests import digest, read_json
+from twodiscs.studies.catalogue import TABLES
 
 #: How far floats may differ, relative to their size.
 RELATIVE = 1e-12

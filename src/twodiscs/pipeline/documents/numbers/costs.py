@@ -3,7 +3,7 @@
 import math
 from statistics import median_high
 
-from twodiscs.pipeline.numbers.rounding import (
+from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_most,
     percent_at_least,

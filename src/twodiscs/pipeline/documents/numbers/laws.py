@@ -2,8 +2,8 @@
 
 import re
 
-from twodiscs.pipeline.numbers.agreement import scores
-from twodiscs.pipeline.numbers.rounding import (
+from twodiscs.pipeline.documents.numbers.agreement import scores
+from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_most,
     in_words,

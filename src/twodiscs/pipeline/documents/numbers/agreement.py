@@ -1,6 +1,6 @@
 """How simulations agree with the exact theory, and what they took: numbers of all boxes."""
 
-from twodiscs.pipeline.numbers.rounding import (
+from twodiscs.pipeline.documents.numbers.rounding import (
     at_most,
     in_words,
     sides,

@@ -2,8 +2,8 @@
 
 import math
 
-from twodiscs.pipeline.numbers.agreement import scores
-from twodiscs.pipeline.numbers.rounding import (
+from twodiscs.pipeline.documents.numbers.agreement import scores
+from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_least,
     at_most,

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
-from twodiscs.pipeline.numbers import agreement, costs, distributions, laws
-from twodiscs.pipeline.numbers.rounding import Number
+from twodiscs.pipeline.documents.numbers import agreement, costs, distributions, laws
+from twodiscs.pipeline.documents.numbers.rounding import Number
 from twodiscs.studies.catalogue import STUDY_TABLES
 
 #: The tables that numbers are taken from: those of scenes, and those of studies.
