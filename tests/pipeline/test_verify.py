@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from twodiscs.comparison.scene_tables import Areas
+from twodiscs.comparison.tables.monte_carlo import Areas
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.pipeline.digests import read_json, write_json
 from twodiscs.pipeline.results import verify
 from twodiscs.pipeline.results.manifest import is_reproducible, manifest
 from twodiscs.studies.catalogue import STUDIES
@@ -64,7 +65,7 @@ def results(tmp_path):
     }.items():
         (points / method).mkdir(parents=True)
         for point in found:
-            (points / method / f"{point['radius']}.json").write_text(json.dumps(point))
+            write_json(points / method / f"{point['radius']}.json", point)
     path = folder / "small" / "areas.csv"
     Areas.write(path, [area(0.1), area(0.24)])
     text = manifest(folder, [path])
@@ -80,9 +81,9 @@ def expected(results, tmp_path):
 
 
 def edit_point(folder, change, path="small/points/monte_carlo/0.24.json"):
-    point = json.loads((folder / path).read_text())
+    point = read_json(folder / path)
     change(point)
-    (folder / path).write_text(json.dumps(point))
+    write_json(folder / path, point)
 
 
 def test_the_same_is_the_same(results, expected):
@@ -226,7 +227,7 @@ def test_nothing_expected_is_a_mistake(results, tmp_path):
 
 def test_a_file_that_is_no_point_is_a_mistake(results, expected):
     (results / "small" / "points" / "monte_carlo" / "0.24.json").write_text("{")
-    with pytest.raises(ValueError, match="must hold points alone"):
+    with pytest.raises(ValueError, match="is not what its job wrote"):
         verify.verify(results, expected)
 
 

@@ -23,8 +23,8 @@ from twodiscs.pipeline.arguments import Parser, end_with_workflow, parameters, r
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.studies.catalogue import STUDIES
 
-#: Blocks of a pilot, and the events or samples that it does at most beyond one block.
-BLOCKS, EVENTS = 32, 4e7
+#: The events or samples that a pilot does at most beyond one block.
+EVENTS = 4e7
 
 #: Pilots of a stage of a scene, evenly spread over its radii where there are more of them.
 MOST_PILOTS = 64
@@ -58,17 +58,22 @@ class Pilot(NamedTuple):
 
 def pilot(work):
     """Return the ``Pilot`` of a job, given what it runs (see ``jobs.point``)."""
+    from twodiscs.sampling.rounds import FIRST_ROUND, MARGIN
+
     events = seconds = 0.0
     for part in work.parts.values():
         part.work(0, 1)  # compiled, or loaded
-        blocks = max(1, min(BLOCKS, part.planned, int(EVENTS / part.block_events)))
+        affordable = part.budget / part.block_events
+        blocks = int(max(1, min(FIRST_ROUND, EVENTS / part.block_events, affordable)))
         start = time.process_time()
         sums = part.work(0, blocks)
         taken = time.process_time() - start
         excess = part.excess_of(sums, blocks)
-        affordable = part.budget / part.block_events / blocks
-        needed = max(excess) ** 2 if len(excess) else part.planned / blocks
-        times = max(1.0, min(needed, affordable))
+        if len(excess):
+            needed = max(FIRST_ROUND / blocks, MARGIN * max(excess) ** 2)
+            times = max(1.0, min(needed, affordable / blocks))
+        else:
+            times = part.planned / blocks
         events += times * blocks * part.block_events
         seconds += times * taken
     return Pilot(round(events), seconds)

@@ -13,7 +13,7 @@ from twodiscs.pipeline.jobs import point
 SCENE = Scene(1.5, 1.0, 0.2)
 BOX = ("--width", 1.5, "--height", 1, "--radius", 0.2)
 WORK = {
-    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 3 << 20, "--shell", 0.1),
+    "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", "3e6", "--shell", 0.1),
     "dynamics": ("--target", "vertical_hop=0.01", "top_wall=0.1", "--budget", "1e7"),
     "intervals": ("--event", "vertical_hop", "--intervals", 3 << 16, "--budget", "1e9"),
 }  # fmt: skip
