@@ -16,7 +16,7 @@ from twodiscs.pipeline.configuration.schema import document, schema
 from twodiscs.studies.catalogue import STUDIES, TABLES
 
 INTRODUCTION = """\
-Tables are CSV files with one row for each thing said. Floats are written with all their digits,
+Tables are CSV files with one row per statement. Floats are written with all their digits,
 integers as integers, truth values as `true` and `false`; an empty cell is a value that does not
 exist. Lengths are in the unit of the box, and the time unit is that in which the speed √(v1² + v2²)
 is one.\
