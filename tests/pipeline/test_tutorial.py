@@ -6,7 +6,7 @@ import re
 import pytest
 from checkout import REPOSITORY
 
-from twodiscs.pipeline.documents import tutorial
+import tutorial
 
 nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes notebooks")
 

@@ -32,7 +32,7 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.tails.measure import wait
+from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.theory import exact, tails
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
@@ -76,9 +76,9 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
             x1, y1, x2, y2, u1, v1, u2, v2 = draw_crossing(state, half_x, half_y, draw.beyond_x)
             # The disc that gets above the other one is called the first.
             if v1 > v2:
-                time = wait((x1, y1, x2, y2, u1, v1, u2, v2), law, True)
+                time = time_to_next((x1, y1, x2, y2, u1, v1, u2, v2), law, True, np.inf)
             else:
-                time = wait((x2, y2, x1, y1, u2, v2, u1, v1), law, True)
+                time = time_to_next((x2, y2, x1, y1, u2, v2, u1, v1), law, True, np.inf)
             histogram[min(np.int64(time * per_width), last_bin)] += 1
             beyond = max(time - cut, 0.0)
             sums[0] += time
@@ -86,7 +86,7 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
             sums[2] += time * time - beyond * beyond
         for _ in range(passages):
             start = draw_configuration(state, draw, 0, 0) + draw_velocity(state)
-            time = wait(start, law, True)
+            time = time_to_next(start, law, True, np.inf)
             sums[3] += time
             sums[4] += min(time, cut)
         sums[:3] /= intervals
