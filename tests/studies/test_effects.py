@@ -70,17 +70,17 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
         first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
     law = law_of(scene)
-    found = effects.follow_unmet(seed, 0, 1, replicas, np.array(times), law, draw, prism)
+    found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, draw, prism)
     assert list(found) == expected
     assert 0 < expected[0] < replicas
 
 
 def test_unmet_starts_add_up_over_blocks_and_times_descend():
-    found = effects.unmet(ROUGH, (1.0, 10.0, 100.0), 2, 5)
+    found = effects.survivors(ROUGH, (1.0, 10.0, 100.0), 2, 5)
     assert found == sorted(found, reverse=True)
     draw, prism = origins(ROUGH)
     arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), law_of(ROUGH), draw, prism
-    parts = [effects.follow_unmet(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
+    parts = [effects.follow_survivors(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
     assert found == list(sum(parts))
 
 
@@ -90,9 +90,9 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
     The share of smooth discs is within 40 % of its law by then: what is left to go falls as τ/t.
     """
     starts = 256 * REPLICAS
-    (rough,) = effects.unmet(ROUGH, (100.0,), 256, 1)
+    (rough,) = effects.survivors(ROUGH, (100.0,), 256, 1)
     smooth_scene = Scene(1.5, 1.0, 0.1)
-    (smooth,) = effects.unmet(smooth_scene, (100.0,), 256, 1)
+    (smooth,) = effects.survivors(smooth_scene, (100.0,), 256, 1)
     share = estimates.binomial_estimate(rough, starts, 1.0)
     assert abs(share.value - 2.28e-3) < 5 * share.stderr + 5 * 5e-5  # from 2^20 other starts
     law = starts * effects._law(smooth_scene, 100.0)
@@ -111,7 +111,7 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
 )
 def test_bad_requests_are_refused(arguments, said):
     with pytest.raises(ValueError, match=said):
-        effects.unmet(*arguments)
+        effects.survivors(*arguments)
 
 
 # The table ----------------------------------------------------------------------------------------
@@ -158,7 +158,7 @@ def fabricated(rng, name):
         Laws(scene).dynamics(rng, relative=1e-2, events=scene.events)
         for scene in map(asked.box.scene, asked.radii)
     ]
-    unmet = [
+    survivors = [
         {"radius": 0.24, "effects": some, "starts": 10**6, "counts": counts}
         for some, counts in ((asked.effects, [2400, 2000, 1900]), ({}, [15, 1, 0]))
     ]
@@ -166,7 +166,7 @@ def fabricated(rng, name):
         "name": name,
         "box": asked.box.parameters(),
         "dynamics": points,
-        "unmet": unmet if name == "rough" else [],
+        "unmet": survivors if name == "rough" else [],
     }
 
 

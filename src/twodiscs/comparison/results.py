@@ -263,9 +263,9 @@ def sample(scene, samples, seed, quantities, shell, name):
     samples = count("samples", samples)
     shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     from twodiscs.sampling.montecarlo import better_point
-    from twodiscs.sampling.starts import require_share
+    from twodiscs.sampling.starts import require_free_fraction
 
-    require_share(scene)
+    require_free_fraction(scene)
     point, exact = better_point(scene, quantities, samples, shell, seed), _exact(scene)
     areas = [event for event in EVENTS if f"{event}_area" in quantities]
     found = rows.volume_rows(exact, [point]) + rows.area_rows(scene, exact, [point], areas)

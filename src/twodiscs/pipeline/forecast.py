@@ -162,7 +162,7 @@ def pilot_strip(scene, hop, job):
 
     count(1)
     (found, events), cost = _timed(lambda: count(FIRST_ROUND), lambda sums: sums[1])
-    error = strip.relative_error(strip.shares_of(scene, hop, place), found)
+    error = strip.relative_error(strip.fractions_of(scene, hop, place), found)
     excess = error / job["accuracy"][hop]
     needed = min(max(1.0, MARGIN * excess**2) * events, job["event_budget"])
     return Pilot(round(needed), cost)

@@ -38,25 +38,25 @@ BY_CHANCE = 20
 
 
 @compiled
-def follow_unmet(seed, first, stop, replicas, times, law, draw, prism):
+def follow_survivors(seed, first, stop, replicas, times, law, draw, prism):
     """Return how many starts of blocks ``first`` … ``stop`` − 1 have no collision by each time.
 
     Starts, ``replicas`` a block, come from ``draw``, or from ``prism`` unless it is None. ``times``
     ascend.
     """
     rows, starts = new_rows(1, law), np.zeros((12, replicas))
-    unmet = np.zeros(times.size, np.int64)
+    survivors = np.zeros(times.size, np.int64)
     for block in range(first, stop):
         draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
         for i in range(replicas):
             put_state(rows, 0, starts[:, i], law)
             elapsed = time_to_next(state_at(rows, 0, law), law, False, times[-1])
             for k in range(times.size):
-                unmet[k] += elapsed > times[k]
-    return unmet
+                survivors[k] += elapsed > times[k]
+    return survivors
 
 
-def unmet(scene, times, blocks, seed):
+def survivors(scene, times, blocks, seed):
     """Return for how many starts of a ``Scene`` the discs have not met by each of ``times``.
 
     Of ``blocks`` × ``REPLICAS`` starts of the invariant measure, a list of integers. Raises
@@ -66,7 +66,7 @@ def unmet(scene, times, blocks, seed):
     law, (draw, prism) = law_of(a_scene(scene)), origins(scene)
     values = ascending("times", times)
     blocks, seed = whole("blocks", blocks), np.uint64(whole("seed", seed, 0))
-    found = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
+    found = follow_survivors(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
     return [int(n) for n in found]
 
 
@@ -91,11 +91,11 @@ def job(name, box, dynamics, seed, blocks=BLOCKS):
         "name": name,
         "box": box.parameters(),
         "dynamics": points,
-        "unmet": list(_unmet_points(name, scenes, seed, blocks)) if rough else [],
+        "unmet": list(_survivor_points(name, scenes, seed, blocks)) if rough else [],
     }
 
 
-def _unmet_points(name, scenes, seed, blocks):
+def _survivor_points(name, scenes, seed, blocks):
     """Yield the counts of starts that have not met, with rough discs and with smooth ones."""
     for rough in scenes:
         for scene in (rough, replace(rough, moment_of_inertia=None)):
@@ -105,7 +105,7 @@ def _unmet_points(name, scenes, seed, blocks):
                     "radius": scene.radius,
                     "effects": scene.effects,
                     "starts": blocks * REPLICAS,
-                    "counts": unmet(scene, TIMES, blocks, stream),
+                    "counts": survivors(scene, TIMES, blocks, stream),
                 }
 
 
@@ -127,7 +127,7 @@ def rows(points):
             yield start | _mean_time_row(box, row)
         for point in one["unmet"]:
             for time, n in zip(TIMES, point["counts"], strict=True):
-                yield start | _unmet_row(box, point, time, n)
+                yield start | _survivor_row(box, point, time, n)
 
 
 def _compared(box, points):
@@ -160,7 +160,7 @@ def _law(plain, time):
     return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
-def _unmet_row(box, point, time, count):
+def _survivor_row(box, point, time, count):
     """Return the row of the share of starts that have not met by a ``time``."""
     plain = _plain(box, point["radius"])
     share = estimates.binomial_estimate(count, point["starts"], 1.0)
