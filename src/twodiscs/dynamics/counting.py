@@ -341,7 +341,7 @@ class CountingRun:
         Rounds share the budget evenly. Planned blocks follow the errors asked for, and all of them
         are fewer where their events are more than the budget.
         """
-        scene, work = self.scene, exact.work_per_event(self.scene)
+        scene, work = self.scene, work_per_event(self.scene)
         budget = max(1, int(self.budget / work))
         runs = {"all": self._everything(budget // (1 + len(self._rare)))}
         for hop in self._rare:
@@ -369,6 +369,7 @@ class CountingRun:
             REPLICAS * exact.event_rate(scene) * duration,
             budget,
             on_grid(max(replicas, default=0.0) / REPLICAS),
+            1 + strip.PROPOSAL * _proposals(scene),
         )
 
     def point(self, progress):
@@ -400,6 +401,21 @@ class CountingRun:
     def alone(self, report=None):
         """Return the dict for a JSON file, all done in this process, in rounds."""
         return self.point({name: in_rounds(run, report) for name, run in self.parts.items()})
+
+
+def work_per_event(scene):
+    """Return how many times as much an event costs as usual, at most, with the draws of starts.
+
+    A start is drawn by proposals, of which ``strip.PROPOSALS_PER_EVENT`` are in what an event costs
+    anyhow.
+    """
+    return max(exact.work_per_event(scene), _proposals(scene) / strip.PROPOSALS_PER_EVENT)
+
+
+def _proposals(scene):
+    """Return the proposals of starts for each event, with effects; without, they are few."""
+    events = exact.event_rate(scene) * replica_duration(scene)
+    return 1 / exact.free_share(scene) / events if scene.has_effects else 0.0
 
 
 def relative_variance(count):

@@ -33,7 +33,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.prism import neck_of
+from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
 from twodiscs.sampling.rounds import SequentialRun, on_grid
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fraction_at, origins
 from twodiscs.sampling.strata import PARTS, fractions_of_speeds, mean_of
@@ -64,6 +64,10 @@ MARGIN_OF_COUNTS, MARGIN_OF_ROUGH = 0.2, 0.6
 #: How many times the time of an event of the ensemble one of these paths takes, roughly: they are
 #: short, and every start is drawn.
 COST_RATIO = 6
+
+#: How many times the time of an event a proposal of a start takes, roughly; and how many proposals
+#: an event of the budget may have. Where it takes more, fewer events are what the budget allows.
+PROPOSAL, PROPOSALS_PER_EVENT = 2, 64
 
 #: Counts of hops and of events share a double: a hop counts so many events.
 HOP = 2.0**32
@@ -109,10 +113,12 @@ def widest(scene, hop):
 def expected_events(scene, hop, strip):
     """Return about how many events come in a time 2T: 2βT over the mean room in the neck.
 
-    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41.
+    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41. Anywhere
+    else a large disc may have more of them, if it fits between two walls with hardly any room.
     """
     arch = strip.within**2 / (6 * scene.contact_distance)
-    return 2 * strip.time * scene.fastest / (scene.room(hop) + arch)
+    rate = scene.fastest / (scene.room(hop) + arch)
+    return 2 * strip.time * max(rate, exact.event_rate(scene))
 
 
 def strip_of(scene, hop):
@@ -137,14 +143,31 @@ def fractions_of(scene, hop, strip):
     return np.outer(distances, fractions_of_speeds(scene.velocity_components))
 
 
+def acceptance(scene, hop, strip):
+    """Return the share of proposals that become starts in a ``Strip``, at least; about 1/4 to 1.
+
+    With effects it may be anything: in a field there is hardly any energy left where the discs can
+    pass, or hardly any of the neck is free.
+    """
+    if not scene.has_effects:
+        return 0.25
+    measure = proposed_measure(prism_of(scene, hop, strip.within))
+    return strip.fraction * exact.volume(scene) / measure
+
+
 def rare_hops(scene):
-    """Return the hops that are counted from strips: those that are rare because of a neck."""
+    """Return the hops that are counted from strips: those that are rare because of a neck.
+
+    But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
+    whole (``exact.LEAST_SHARE``). They are waited for like everything else, mostly in vain.
+    """
     return tuple(
         hop
         for hop in HOPS
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
         and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK
+        and acceptance(scene, hop, strip_of(scene, hop)) >= exact.LEAST_SHARE
     )
 
 
@@ -260,14 +283,16 @@ def run_of(scene, hop, target, budget, seed):
     )
     hops = REPLICAS * 2 * strip.time * exact.rate(scene, hop) / strip.fraction
     margin = MARGIN_OF_ROUGH if scene.moment_of_inertia else MARGIN_OF_COUNTS
+    events = max(1.0, LASTING * expected_events(scene, hop, strip))
+    proposals = 1 / acceptance(scene, hop, strip) / events
     return SequentialRun(
         lambda first, stop: run_blocks(scene, hop, strip, seed, first, stop),
         lambda sums, blocks: np.array([relative_error(fractions, sums[0]) / target]),
         lambda sums: int(sums[1]),
-        REPLICAS * max(1.0, LASTING * expected_events(scene, hop, strip)),
-        budget,
+        REPLICAS * events,
+        max(1, int(budget / max(1.0, proposals / PROPOSALS_PER_EVENT))),
         on_grid(margin / target**2 / hops),
-        COST_RATIO,
+        COST_RATIO + PROPOSAL * proposals,
     )
 
 

@@ -93,6 +93,26 @@ def prism_of(scene, hop=None, within=None):
     )
 
 
+def proposed_measure(prism):
+    """Return the volume that ``propose_anywhere`` fills, times the largest weight of a place.
+
+    The weighted volume of the places that are accepted, over this, is the chance of a proposal.
+    """
+    neck, measure = prism.neck, 1.0
+    for axis, (half_1, half_2) in enumerate(zip(prism.half_1, prism.half_2, strict=True)):
+        if not half_1 and not half_2:
+            continue  # z in the plane
+        if neck is None or (axis != neck.axis and neck.least[axis] == 0.0):
+            measure *= 4 * half_1 * half_2
+        elif axis == neck.axis:
+            measure *= 4 * half_1 * neck.within
+        elif prism.period[axis]:
+            measure *= 4 * half_1 * neck.span[axis]
+        else:
+            measure *= 2 * math.prod(min(neck.span[axis], 2 * half) for half in (half_1, half_2))
+    return measure if neck is None else measure * neck.most ** (prism.components / 2 - 1)
+
+
 @compiled
 def nearest(separation, period):
     """Return a ``separation`` to the nearest image; ``period`` 0 stands for walls."""
