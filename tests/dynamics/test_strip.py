@@ -62,12 +62,12 @@ class Endless(strip.Strip):
     fastest = math.inf
 
 
-def check_rate(scene, hop, place, blocks=24, seed=1):
+def check_rate(scene, hop, band, blocks=24, seed=1):
     """Five sigma."""
-    found, events = strip.run_blocks(scene, hop, place, seed, 0, blocks)
-    mean, error = mean_of(strip.shares_of(scene, hop, place), *found)
+    found, events = strip.run_blocks(scene, hop, band, seed, 0, blocks)
+    mean, error = mean_of(strip.fractions_of(scene, hop, band), *found)
     assert error / mean < 0.05
-    true = exact.rate(scene, hop) * 2 * place.time / place.share
+    true = exact.rate(scene, hop) * 2 * band.time / band.fraction
     assert abs(mean - true) < 5 * error
     return events / (blocks * REPLICAS)
 
@@ -75,26 +75,26 @@ def check_rate(scene, hop, place, blocks=24, seed=1):
 @at_places
 @pytest.mark.parametrize("shorter", [1, 8])
 def test_any_strip_has_the_exact_rate(scene, hop, shorter):
-    place = strip.strip_of(scene, hop)
-    place = strip.strip(scene, hop, place.time / shorter)
-    assert place.within == scene.fastest * place.time
-    lasting = check_rate(scene, hop, place) / check_rate(scene, hop, Endless(*place))
+    band = strip.strip_of(scene, hop)
+    band = strip.strip_around(scene, hop, band.time / shorter)
+    assert band.within == scene.fastest * band.time
+    lasting = check_rate(scene, hop, band) / check_rate(scene, hop, Endless(*band))
     assert 0.5 < lasting < 1
 
 
 @pytest.mark.parametrize(("scene", "hop"), COUNTED)
 def test_strips_of_effects_have_the_exact_rate(scene, hop):
-    place = strip.strip_of(scene, hop)
-    check_rate(scene, hop, place)
-    check_rate(scene, hop, strip.strip(scene, hop, place.time / 4), seed=2)
+    band = strip.strip_of(scene, hop)
+    check_rate(scene, hop, band)
+    check_rate(scene, hop, strip.strip_around(scene, hop, band.time / 4), seed=2)
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *COUNTED])
 def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
     """χ² of the numbers of starts in all strata; one false alarm in 10⁶."""
-    place = strip.strip_of(scene, hop)
-    shares = strip.shares_of(scene, hop, place)
-    (starts, _, _), _ = strip.run_blocks(scene, hop, place, 4, 0, 100)
+    band = strip.strip_of(scene, hop)
+    shares = strip.fractions_of(scene, hop, band)
+    (starts, _, _), _ = strip.run_blocks(scene, hop, band, 4, 0, 100)
     assert starts.sum() == 100 * REPLICAS
     expected = starts.sum() * shares
     assert shares.shape == starts.shape
@@ -105,22 +105,22 @@ def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
 
 @at_places
 def test_strata_take_most_of_the_scatter(scene, hop):
-    place = strip.strip_of(scene, hop)
-    found, _ = strip.run_blocks(scene, hop, place, 2, 0, 100)
-    alike = mean_of([[1.0]], *(part.sum(keepdims=True) for part in found))
-    assert mean_of(strip.shares_of(scene, hop, place), *found)[1] ** 2 < alike[1] ** 2 / 3
+    band = strip.strip_of(scene, hop)
+    found, _ = strip.run_blocks(scene, hop, band, 2, 0, 100)
+    unstratified = mean_of([[1.0]], *(part.sum(keepdims=True) for part in found))
+    assert mean_of(strip.fractions_of(scene, hop, band), *found)[1] ** 2 < unstratified[1] ** 2 / 3
 
 
 @at_places
 def test_the_share_is_exact(scene, hop):
     """Against ∫ (A − u)(B − k(u))₊² du by quadrature in fifty digits, k = √(σ² − u²)₊."""
-    place = strip.strip_of(scene, hop)
+    band = strip.strip_of(scene, hop)
     with mp.workdps(50):
         sides = mp.mpf(scene.width), mp.mpf(scene.height)
         a, b = (
             side - 2 * mp.mpf(scene.radius) for side in (sides if AXIS[hop] == "x" else sides[::-1])
         )
-        sigma, end = 2 * mp.mpf(scene.radius), mp.mpf(place.within)
+        sigma, end = 2 * mp.mpf(scene.radius), mp.mpf(band.within)
 
         def density(u):
             k = mp.sqrt(max(sigma**2 - u**2, 0))
@@ -130,7 +130,7 @@ def test_the_share_is_exact(scene, hop):
         cuts = sorted({least, min(sigma, a), a})
         volume = mp.quad(density, [c for c in cuts if c >= least])
         share = mp.quad(density, [0, end / 4, end]) / volume
-        assert abs(exact.share_near(scene, hop, place.within) / share - 1) < 1e-13
+        assert abs(exact.share_near(scene, hop, band.within) / share - 1) < 1e-13
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *NECKS.values()])
@@ -171,28 +171,28 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
 
 @pytest.mark.parametrize(("scene", "hop"), [*PLACES, *COUNTED])
 def test_paths_end_only_where_no_hop_can_follow(scene, hop):
-    place = strip.strip_of(scene, hop)
-    found, events = strip.run_blocks(scene, hop, place, 3, 0, 8)
-    the_same, all_events = strip.run_blocks(scene, hop, Endless(*place), 3, 0, 8)
+    band = strip.strip_of(scene, hop)
+    found, events = strip.run_blocks(scene, hop, band, 3, 0, 8)
+    the_same, all_events = strip.run_blocks(scene, hop, Endless(*band), 3, 0, 8)
     assert np.array_equal(found, the_same)
     assert events < all_events
 
 
 @at_places
 def test_events_are_about_as_many_as_expected(scene, hop):
-    place = Endless(*strip.strip_of(scene, hop))
-    events = strip.run_blocks(scene, hop, place, 1, 0, 24)[1] / (24 * REPLICAS)
+    band = Endless(*strip.strip_of(scene, hop))
+    events = strip.run_blocks(scene, hop, band, 1, 0, 24)[1] / (24 * REPLICAS)
     # The choice of T needs no more than that.
-    assert events == pytest.approx(strip.expected_events(scene, hop, place), rel=0.2)
+    assert events == pytest.approx(strip.expected_events(scene, hop, band), rel=0.2)
 
 
 def test_lanes_and_shards_do_not_matter():
     scene = PAPER.with_radius(0.245)
-    place = strip.strip_of(scene, "horizontal_hop")
-    whole = strip.run_blocks(scene, "horizontal_hop", place, 7, 0, 3, replicas=100)
-    other = strip.run_blocks(scene, "horizontal_hop", place, 7, 0, 3, replicas=100, lanes=5)
+    band = strip.strip_of(scene, "horizontal_hop")
+    whole = strip.run_blocks(scene, "horizontal_hop", band, 7, 0, 3, replicas=100)
+    other = strip.run_blocks(scene, "horizontal_hop", band, 7, 0, 3, replicas=100, lanes=5)
     parts = [
-        strip.run_blocks(scene, "horizontal_hop", place, 7, a, b, replicas=100)
+        strip.run_blocks(scene, "horizontal_hop", band, 7, a, b, replicas=100)
         for a, b in ((0, 1), (1, 3))
     ]
     for one, same, *pieces in zip(whole, other, *parts, strict=True):
@@ -203,13 +203,13 @@ def test_lanes_and_shards_do_not_matter():
 @at_places
 def test_intervals_cover_as_they_say(scene, hop):
     """95 % intervals of 800 blocks: between 92 and 98 %, which is four standard errors."""
-    place, true = strip.strip_of(scene, hop), exact.mean_times(scene)[hop]
-    shares, covered = strip.shares_of(scene, hop, place), []
+    band, true = strip.strip_of(scene, hop), exact.mean_times(scene)[hop]
+    shares, covered = strip.fractions_of(scene, hop, band), []
     for block in range(800):
-        found, _ = strip.run_blocks(scene, hop, place, 9, block, block + 1)
+        found, _ = strip.run_blocks(scene, hop, band, 9, block, block + 1)
         total, squares = int(found[1].sum()), int(found[2].sum())
         time = estimates.mean_time(
-            total, squares, REPLICAS, 2 * place.time / place.share, mean_of(shares, *found)
+            total, squares, REPLICAS, 2 * band.time / band.fraction, mean_of(shares, *found)
         )
         covered.append(time.covers(true))
     assert 0.92 <= np.mean(covered) <= 0.98

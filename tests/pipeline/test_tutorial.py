@@ -4,9 +4,8 @@ import math
 import re
 
 import pytest
-from checkout import REPOSITORY
-
 import tutorial
+from checkout import REPOSITORY
 
 nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes notebooks")
 

@@ -238,7 +238,7 @@ def test_absent_effects_leave_no_instruction(package):
     assert text.count(mark) == 1
     without = (
         "        if present.__name__ != 'add_one':\n"
-        "            kept = present.__name__ in ('on_wall', 'hit')\n"
+        "            kept = present.__name__ in ('snap_to_wall', 'hit')\n"
         "            return inlined(present if kept else absent)\n"
     )
     module.write_text(text.replace(mark, f"{mark}\n{without}"), encoding="utf-8")

@@ -7,11 +7,11 @@ import pytest
 from scipy.special import betainc
 
 from twodiscs.sampling.strata import (
-    LEAST_SHARE,
+    LEAST_FRACTION,
     PARTS,
+    fraction_below,
+    fractions_of_speeds,
     mean_of,
-    share_below,
-    shares_of_speeds,
 )
 
 
@@ -20,20 +20,20 @@ def test_the_share_of_directions_is_that_of_the_beta_law(components):
     """The square of a component is of the beta law (1/2, (n − 1)/2)."""
     for cosine in (0.0, 0.125, 0.5, 0.9, 1.0):
         expected = betainc(0.5, (components - 1) / 2, cosine**2)
-        assert share_below(cosine, components) == pytest.approx(expected, rel=1e-13)
+        assert fraction_below(cosine, components) == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.parametrize("components", range(2, 11))
 def test_only_the_fastest_starts_are_taken_together(components):
-    shares = shares_of_speeds(components)
+    shares = fractions_of_speeds(components)
     assert math.fsum(shares) == pytest.approx(1, rel=1e-15)
-    assert shares[-1] >= LEAST_SHARE
+    assert shares[-1] >= LEAST_FRACTION
     below = np.cumsum(shares)[:-1]
     assert below == pytest.approx(
-        [share_below((part + 1) / PARTS, components) for part in range(below.size)], rel=1e-13
+        [fraction_below((part + 1) / PARTS, components) for part in range(below.size)], rel=1e-13
     )
     if len(shares) < PARTS:
-        assert 1 - share_below(len(shares) / PARTS, components) < LEAST_SHARE
+        assert 1 - fraction_below(len(shares) / PARTS, components) < LEAST_FRACTION
 
 
 SHARES = np.outer([0.1, 0.2, 0.3, 0.25, 0.15], [0.5, 0.3, 0.2])

@@ -54,17 +54,17 @@ def test_unmet_starts_are_those_whose_paths_have_no_collision(scene):
         first.append(next((row[0] for row in rows if row[5] == "disc_collision"), np.inf))
     expected = [sum(moment > time for moment in first) for time in times]
     law = law_of(scene)
-    found = effects.follow_unmet(seed, 0, 1, replicas, np.array(times), law, draw, prism)
+    found = effects.follow_survivors(seed, 0, 1, replicas, np.array(times), law, draw, prism)
     assert list(found) == expected
     assert 0 < expected[0] < replicas
 
 
 def test_unmet_starts_add_up_over_blocks_and_times_descend():
-    found = effects.unmet(ROUGH, (1.0, 10.0, 100.0), 2, 5)
+    found = effects.survivors(ROUGH, (1.0, 10.0, 100.0), 2, 5)
     assert found == sorted(found, reverse=True)
     draw, prism = origins(ROUGH)
     arguments = REPLICAS, np.array([1.0, 10.0, 100.0]), law_of(ROUGH), draw, prism
-    parts = [effects.follow_unmet(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
+    parts = [effects.follow_survivors(np.uint64(5), i, i + 1, *arguments) for i in range(2)]
     assert found == list(sum(parts))
 
 
@@ -74,9 +74,9 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
     The share of smooth discs is within 40 % of its law by then: what is left to go falls as τ/t.
     """
     starts = 256 * REPLICAS
-    (rough,) = effects.unmet(ROUGH, (100.0,), 256, 1)
+    (rough,) = effects.survivors(ROUGH, (100.0,), 256, 1)
     smooth_scene = Scene(1.5, 1.0, 0.1)
-    (smooth,) = effects.unmet(smooth_scene, (100.0,), 256, 1)
+    (smooth,) = effects.survivors(smooth_scene, (100.0,), 256, 1)
     share = estimates.binomial_estimate(rough, starts, 1.0)
     assert abs(share.value - 2.28e-3) < 5 * share.stderr + 5 * 5e-5  # from 2^20 other starts
     law = starts * effects._law(smooth_scene, 100.0)
@@ -95,7 +95,7 @@ def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
 )
 def test_bad_requests_are_refused(arguments, said):
     with pytest.raises(ValueError, match=said):
-        effects.unmet(*arguments)
+        effects.survivors(*arguments)
 
 
 # The table ----------------------------------------------------------------------------------------
@@ -127,12 +127,12 @@ BOXES = {name: request(name).box.parameters() for name in NAMES}
 def rows(tmp_path_factory):
     """The rows of effects.csv of the six scenes, with fabricated counts."""
 
-    def unmet(scene, times, blocks, seed):
+    def survivors(scene, times, blocks, seed):
         return [2400, 2000, 1900] if scene.has_effects else [15, 1, 0]
 
     tables = tables_of(NAMES, np.random.default_rng(1))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(effects, "unmet", unmet)
+        patch.setattr(effects, "survivors", unmet)
         return written(
             tmp_path_factory.mktemp("effects"), Effects, tables=tables, scenes=BOXES, seed=SEED
         )
@@ -154,8 +154,8 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
     ]
     assert {row["replicas"] for row in rows} == {REPLICAS}
     for i, scene in enumerate(pairs[:2]):
-        stream = stream_seed(SEED, "rough", "unmet", key(scene.radius))
-        counts = effects.unmet(scene, effects.TIMES, 1, stream)
+        stream = stream_seed(SEED, "rough", "survivors", key(scene.radius))
+        counts = effects.survivors(scene, effects.TIMES, 1, stream)
         assert [row["count"] for row in rows[3 * i : 3 * i + 3]] == counts
 
 

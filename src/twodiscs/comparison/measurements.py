@@ -267,9 +267,9 @@ def sample(scene, samples, seed, quantities, shell, name):
     samples = count("samples", samples)
     shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     from twodiscs.sampling.montecarlo import better_point
-    from twodiscs.sampling.starts import require_share
+    from twodiscs.sampling.starts import require_free_fraction
 
-    require_share(scene)
+    require_free_fraction(scene)
     points = {"monte_carlo": [better_point(scene, quantities, samples, shell, seed)]}
     theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)

@@ -54,18 +54,18 @@ EVENTS_BETWEEN_RARE_HOPS = 64
 # How events are counted --------------------------------------------------------------------------
 
 # How a flight shows an event, as a function of the code of its end, of the states before and after,
-# of whether the discs are alike, and of gravity (None for both: they are not, there is none).
+# of whether the discs are identical, and of gravity (None for both: they are not, there is none).
 
 
 def _hop_seen(event):
     k = "xy".index(event.axis)
-    return lambda code, a, b, alike, gravity: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
+    return lambda code, a, b, identical, gravity: crosses(a[k] - a[k + 2], b[k] - b[k + 2])
 
 
-@optional(lambda code, one, other, alike: code == one)
-def hit(code, one, other, alike):
-    """Say whether disc 1 is on a wall, or any disc if they are ``alike``."""
-    return (code == one) | (code == other)
+@optional(lambda code, first, second, identical: code == first)
+def hit(code, first, second, identical):
+    """Say whether disc 1 is on a wall, or any disc if they are ``identical``."""
+    return (code == first) | (code == second)
 
 
 @optional(lambda position, side, gravity: True)
@@ -79,10 +79,10 @@ def facing(position, side, gravity):
 
 def _wall_seen(event):
     if event.axis == "x":
-        return lambda code, a, b, alike, gravity: hit(code, WALL_X1, WALL_X2, alike)
+        return lambda code, a, b, identical, gravity: hit(code, WALL_X1, WALL_X2, identical)
     side = float(event.side)
-    return lambda code, a, b, alike, gravity: (
-        hit(code, WALL_Y1, WALL_Y2, alike)
+    return lambda code, a, b, identical, gravity: (
+        hit(code, WALL_Y1, WALL_Y2, identical)
         & facing(b[1] if code == WALL_Y1 else b[3], side, gravity)
     )
 
@@ -91,10 +91,10 @@ SEEN = by_kind(
     "dynamics/counting.py",
     {
         "hop": _hop_seen,
-        "collision": lambda event: lambda code, a, b, alike, gravity: code == DISC,
+        "collision": lambda event: lambda code, a, b, identical, gravity: code == DISC,
         "wall": _wall_seen,
         # Collisions of the discs too; see ``all_walls``.
-        "walls": lambda event: lambda code, a, b, alike, gravity: code > END_OF_TIME,
+        "walls": lambda event: lambda code, a, b, identical, gravity: code > END_OF_TIME,
     },
 )
 
@@ -117,21 +117,21 @@ def _and(add, event, unit):
     """Return ``add`` extended by an ``event``: it adds a ``unit`` to the count if that is seen."""
     seen, k = inlined(SEEN[event]), WATCHED[DECLARED[event].kind]
 
-    @optional(lambda count, code, before, after, alike, gravity, watched: count)
-    def add_one(count, code, before, after, alike, gravity, watched):
-        return count + (unit if seen(code, before, after, alike, gravity) else 0.0)
+    @optional(lambda count, code, before, after, identical, gravity, watched: count)
+    def add_one(count, code, before, after, identical, gravity, watched):
+        return count + (unit if seen(code, before, after, identical, gravity) else 0.0)
 
     @inlined
-    def add_all(count, code, before, after, alike, gravity, watched):
-        count = add(count, code, before, after, alike, gravity, watched)
-        return add_one(count, code, before, after, alike, gravity, watched[k])
+    def add_all(count, code, before, after, identical, gravity, watched):
+        count = add(count, code, before, after, identical, gravity, watched)
+        return add_one(count, code, before, after, identical, gravity, watched[k])
 
     return add_all
 
 
 def _word(events):
     """Return a function that adds to a packed ``count`` what a flight shows of ``events``."""
-    add = inlined(lambda count, code, before, after, alike, gravity, watched: count)
+    add = inlined(lambda count, code, before, after, identical, gravity, watched: count)
     for field, event in enumerate(events):
         add = _and(add, event, 256.0**field)
     return add
@@ -157,20 +157,33 @@ def unpack(packed, more, counts, lane):
 
 @compiled
 def count_blocks(
-    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, alike, hops, walls, rest
+    seed,
+    first,
+    stop,
+    replicas,
+    lanes,
+    duration,
+    law,
+    draw,
+    prism,
+    sides,
+    identical,
+    hops,
+    walls,
+    rest,
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
     the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
-    from ``prism`` unless it is None. ``alike``, whether the discs are, ``hops``, ``walls``
+    from ``prism`` unless it is None. ``identical``, whether the discs are that, ``hops``, ``walls``
     and ``rest``, whether the hits of all walls need a counter, are True or None: what is None is
     not compiled.
     """
-    rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
+    rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, more = np.zeros(lanes), np.zeros(lanes)
-    counts, one = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
+    counts, replica_counts = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     busy = np.zeros(lanes, np.bool_)
     block, used, running, looks = first, replicas, 0, 0
@@ -183,20 +196,20 @@ def count_blocks(
             if busy[i]:
                 unpack(packed, more, counts, i)
                 for e in range(N):
-                    one[e] = counts[e, i]
+                    replica_counts[e] = counts[e, i]
                     counts[e, i] = 0
-                one[ANY_WALLS] = all_walls(one, rest)
+                replica_counts[ANY_WALLS] = all_walls(replica_counts, rest)
                 for e in range(N):
-                    sums[e] += one[e]
+                    sums[e] += replica_counts[e]
                     for f in range(e, N):
-                        products[e, f] += one[e] * one[f]
+                        products[e, f] += replica_counts[e] * replica_counts[f]
                 busy[i] = False
                 running -= 1
             if used == replicas and block < stop:
-                draw_any_starts(open_stream(seed, block), draw, sides, starts, prism)
+                draw_any_starts(open_stream(seed, block), draw, sides, initial_states, prism)
                 block, used = block + 1, 0
             if used < replicas:
-                put_state(rows, i, starts[:, used], law)
+                put_state(rows, i, initial_states[:, used], law)
                 remaining[i] = duration
                 busy[i] = True
                 running += 1
@@ -214,11 +227,11 @@ def count_blocks(
                 after = after_event(before, times[i], code, law)
                 put_state(rows, i, after, law)
                 packed[i] = first_word(
-                    first_count, code, before, after, alike, law.gravity, watched
+                    first_count, code, before, after, identical, law.gravity, watched
                 )
                 if N > FIELDS:
                     more[i] = second_word(
-                        second_count, code, before, after, alike, law.gravity, watched
+                        second_count, code, before, after, identical, law.gravity, watched
                     )
         looks += 1
         if looks == LOOKS:
@@ -327,7 +340,7 @@ class CountingRun:
         Rounds share the budget evenly. Planned blocks follow the errors asked for, and all of them
         are fewer where their events are more than the budget.
         """
-        scene, work = self.scene, exact.work_per_event(self.scene)
+        scene, work = self.scene, work_per_event(self.scene)
         budget = max(1, int(self.budget / work))
         runs = {"all": self._everything(budget // (1 + len(self._rare)))}
         for hop in self._rare:
@@ -355,6 +368,7 @@ class CountingRun:
             REPLICAS * exact.event_rate(scene) * duration,
             budget,
             on_grid(max(replicas, default=0.0) / REPLICAS),
+            1 + strip.PROPOSAL * _proposals(scene),
         )
 
     def point(self, progress):
@@ -370,7 +384,7 @@ class CountingRun:
             "duration": replica_duration(self.scene),
             "replicas": blocks * REPLICAS,
             "rounds": rounds,
-            "events": simulated_events(sums) + sum(one["events"] for one in strips.values()),
+            "events": simulated_events(sums) + sum(strips[hop]["events"] for hop in strips),
             "counts": {EVENTS[e]: int(sums[e]) for e in watched},
             "products": {
                 f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
@@ -379,13 +393,28 @@ class CountingRun:
                 if e <= f
             },
             "target": {event: self.target[event] for event in self._events},
-            "status": status | {hop: one["status"] for hop, one in strips.items()},
+            "status": status | {hop: strips[hop]["status"] for hop in strips},
             "strips": strips,
         }
 
     def alone(self, report=None):
         """Return the dict for a JSON file, all done in this process, in rounds."""
         return self.point({name: in_rounds(run, report) for name, run in self.parts.items()})
+
+
+def work_per_event(scene):
+    """Return how many times as much an event costs as usual, at most, with the draws of starts.
+
+    A start is drawn by proposals, of which ``strip.PROPOSALS_PER_EVENT`` are in what an event costs
+    anyhow.
+    """
+    return max(exact.work_per_event(scene), _proposals(scene) / strip.PROPOSALS_PER_EVENT)
+
+
+def _proposals(scene):
+    """Return the proposals of starts for each event, with effects; without, they are few."""
+    events = exact.event_rate(scene) * replica_duration(scene)
+    return 1 / exact.free_share(scene) / events if scene.has_effects else 0.0
 
 
 def relative_variance(count):

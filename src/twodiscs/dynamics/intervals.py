@@ -72,7 +72,11 @@ def record_returns(
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     endless = np.full(lanes, np.inf)
     age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    chain, found, finder = np.full(lanes, -1), np.zeros(lanes + 1), np.zeros(lanes + 1, np.int64)
+    chain, finished, lane_of = (
+        np.full(lanes, -1),
+        np.zeros(lanes + 1),
+        np.zeros(lanes + 1, np.int64),
+    )
     totals, counts = np.zeros((stop - first) * chains), np.zeros((lanes, sums.shape[1]), np.int64)
     per_width, last_bin, wanted = 1.0 / width, wide.size - 1, np.float64(returns)
     surface = 1 if horizontal is None else 0
@@ -124,12 +128,12 @@ def record_returns(
                 left[i] = to_come - 1.0 if hop else to_come
             n = 0
             for i in range(lanes):
-                found[n], finder[n] = intervals[i], i
+                finished[n], lane_of[n] = intervals[i], i
                 n += 1 if intervals[i] >= 0.0 else 0
             for k in range(n):
-                place = min(np.int64(found[k] * per_width), last_bin)
-                counts[finder[k], place] += 1
-                counts[finder[k], wide[place]] += 1
+                index = min(np.int64(finished[k] * per_width), last_bin)
+                counts[lane_of[k], index] += 1
+                counts[lane_of[k], wide[index]] += 1
 
 
 def recorded(scene, event, blocks, chains, returns, seed, first=0):

@@ -74,7 +74,7 @@ def divided(whole, first, second):
 def law_of(scene):
     """Return the ``Law`` of a ``Scene``."""
     m1, m2 = scene.masses
-    shares = divided(1.0, m2, m1)
+    fractions = divided(1.0, m2, m1)
     halves = [
         {axis: (scene.side(axis) - 2 * radius) / 2 for axis in scene.walled}
         for radius in scene.radii
@@ -86,7 +86,10 @@ def law_of(scene):
         for disc in range(1 if equal else 2)
     }
     wraps = {
-        f"wrap_{axis}": (scene.side(axis) / 2, *(scene.side(axis) * share for share in shares))
+        f"wrap_{axis}": (
+            scene.side(axis) / 2,
+            *(scene.side(axis) * fraction for fraction in fractions),
+        )
         for axis in scene.periodic
     }
     inertia = scene.moment_of_inertia
@@ -105,7 +108,7 @@ def law_of(scene):
 
 
 @optional(lambda other, own: other)
-def either(other, own):
+def value_or(other, own):
     """Return ``own``, or ``other`` where that is None."""
     return own
 
@@ -153,7 +156,7 @@ def spins(state, rough):
 
 
 @optional(lambda position, velocity, time, gravity: (position + velocity * time, velocity))
-def flown(position, velocity, time, gravity):
+def free_flight(position, velocity, time, gravity):
     """Return position and velocity after a flight, parabolic in a field."""
     gained = gravity * time
     return position + (velocity - 0.5 * gained) * time, velocity - gained
@@ -183,7 +186,7 @@ def wrapped(q1, q2, relative, hit, wrap):
 
 
 @optional(lambda position, hit, half: position)
-def on_wall(position, hit, half):
+def snap_to_wall(position, hit, half):
     """Return the position, put on the wall at ±``half`` exactly if it is ``hit``."""
     return math.copysign(half, position) if hit else position
 
@@ -204,8 +207,8 @@ def deep_after(state, time, code, kick, law, depth):
     """Return what balls append to the state after an event with this ``kick`` along z."""
     z1, z2, w1, w2 = depth_part(state, depth)
     relative = w1 - w2
-    z1 = on_wall(z1 + w1 * time, code == WALL_Z1, law.half_z1)
-    z2 = on_wall(z2 + w2 * time, code == WALL_Z2, either(law.half_z1, law.half_z2))
+    z1 = snap_to_wall(z1 + w1 * time, code == WALL_Z1, law.half_z1)
+    z2 = snap_to_wall(z2 + w2 * time, code == WALL_Z2, value_or(law.half_z1, law.half_z2))
     z1, z2 = wrapped(z1, z2, relative, code == WRAP_Z, law.wrap_z)
     w1 = (-w1 if code == WALL_Z1 else w1) - scaled(kick, 0, law.weights)
     w2 = (-w2 if code == WALL_Z2 else w2) + scaled(kick, 1, law.weights)
@@ -213,7 +216,7 @@ def deep_after(state, time, code, kick, law, depth):
 
 
 @optional(lambda state, before, dx, dy, code, weights, rough: state)
-def rolled(state, before, dx, dy, code, weights, rough):
+def rough_collision(state, before, dx, dy, code, weights, rough):
     """Return ``state`` with what rough surfaces do at the event: their velocities are reversed.
 
     ``before`` is the state just before the event and (dx, dy) the separation. Where surfaces touch,
@@ -234,17 +237,17 @@ def rolled(state, before, dx, dy, code, weights, rough):
     u1, v1 = u1 - scaled(push_x, 0, weights), v1 - scaled(push_y, 0, weights)
     u2, v2 = u2 + scaled(push_x, 1, weights), v2 + scaled(push_y, 1, weights)
     s1, s2 = s1 + scaled(slip * spin, 0, weights), s2 + scaled(slip * spin, 1, weights)
-    u1, v1, s1 = rolled_on_wall(
+    u1, v1, s1 = rough_wall_collision(
         u1, v1, s1, before[4], before[5], code == WALL_X1, code == WALL_Y1, turn, spin
     )
-    u2, v2, s2 = rolled_on_wall(
+    u2, v2, s2 = rough_wall_collision(
         u2, v2, s2, before[6], before[7], code == WALL_X2, code == WALL_Y2, turn, spin
     )
     return x1, y1, x2, y2, u1, v1, u2, v2, s1, s2
 
 
 @inlined
-def rolled_on_wall(u, v, s, u_before, v_before, on_x, on_y, turn, spin):
+def rough_wall_collision(u, v, s, u_before, v_before, on_x, on_y, turn, spin):
     """Return (u, v, s) of a rough disc that may be on a wall of x or of y."""
     side_x, side_y = math.copysign(1.0, u_before), math.copysign(1.0, v_before)
     slip_y, slip_x = v_before + side_x * s, u_before - side_y * s
@@ -290,7 +293,7 @@ def fall_quotient(position, velocity, limit, gravity):
 
 def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
     gap1, speed1 = fall_quotient(q1, p1, half1, gravity)
-    gap2, speed2 = fall_quotient(q2, p2, either(half1, half2), gravity)
+    gap2, speed2 = fall_quotient(q2, p2, value_or(half1, half2), gravity)
     # A speed of 0 never wins, because 0 · gap < gap · speed is false; nor does NaN. Disc 1 at rest
     # on its wall is 0/0, against which disc 2 would not win either, and is set aside.
     second = (gap2 * speed1 < gap1 * speed2) | (speed1 == 0.0)
@@ -401,8 +404,8 @@ def after_event(state, time, code, law):
     z1, z2, w1, w2 = depth_part(state, law.depth)
     du, dv, dw = u1 - u2, v1 - v2, difference(w1, w2)
     x1, x2 = x1 + u1 * time, x2 + u2 * time
-    y1, v1 = flown(y1, v1, time, law.gravity)
-    y2, v2 = flown(y2, v2, time, law.gravity)
+    y1, v1 = free_flight(y1, v1, time, law.gravity)
+    y2, v2 = free_flight(y2, v2, time, law.gravity)
     dx, dy, dz = x1 - x2, y1 - y2, difference(moved(z1, time, w1), moved(z2, time, w2))
     square = dot(dx, dy, dz, dx, dy, dz)
     exchange = dot(dx, dy, dz, du, dv, dw) / square
@@ -410,10 +413,10 @@ def after_event(state, time, code, law):
     kick_x, kick_y, kick_z = exchange * dx, exchange * dy, product(exchange, dz)
     before = (x1, y1, x2, y2, u1, v1, u2, v2)
 
-    x1 = on_wall(x1, code == WALL_X1, law.half_x1)
-    y1 = on_wall(y1, code == WALL_Y1, law.half_y1)
-    x2 = on_wall(x2, code == WALL_X2, either(law.half_x1, law.half_x2))
-    y2 = on_wall(y2, code == WALL_Y2, either(law.half_y1, law.half_y2))
+    x1 = snap_to_wall(x1, code == WALL_X1, law.half_x1)
+    y1 = snap_to_wall(y1, code == WALL_Y1, law.half_y1)
+    x2 = snap_to_wall(x2, code == WALL_X2, value_or(law.half_x1, law.half_x2))
+    y2 = snap_to_wall(y2, code == WALL_Y2, value_or(law.half_y1, law.half_y2))
     x1, x2 = wrapped(x1, x2, du, code == WRAP_X, law.wrap_x)
     y1, y2 = wrapped(y1, y2, dv, code == WRAP_Y, law.wrap_y)
     u1 = (-u1 if code == WALL_X1 else u1) - scaled(kick_x, 0, law.weights)
@@ -421,7 +424,9 @@ def after_event(state, time, code, law):
     u2 = (-u2 if code == WALL_X2 else u2) + scaled(kick_x, 1, law.weights)
     v2 = (-v2 if code == WALL_Y2 else v2) + scaled(kick_y, 1, law.weights)
     after = (x1, y1, x2, y2, u1, v1, u2, v2)
-    after = rolled(after, before + spins(state, law.rough), dx, dy, code, law.weights, law.rough)
+    after = rough_collision(
+        after, before + spins(state, law.rough), dx, dy, code, law.weights, law.rough
+    )
     return after + deep_after(state, time, code, kick_z, law, law.depth)
 
 

@@ -33,10 +33,10 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.prism import strip_of as place_of
+from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
 from twodiscs.sampling.rounds import SequentialRun, on_grid
-from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_share_at, origins
-from twodiscs.sampling.strata import PARTS, mean_of, shares_of_speeds
+from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fraction_at, origins
+from twodiscs.sampling.strata import PARTS, fractions_of_speeds, mean_of
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
@@ -65,6 +65,10 @@ MARGIN_OF_COUNTS, MARGIN_OF_ROUGH = 0.2, 0.6
 #: short, and every start is drawn.
 COST_RATIO = 6
 
+#: How many times the time of an event a proposal of a start takes, roughly; and how many proposals
+#: an event of the budget may have. Where it takes more, fewer events are what the budget allows.
+PROPOSAL, PROPOSALS_PER_EVENT = 2, 64
+
 #: Counts of hops and of events share a double: a hop counts so many events.
 HOP = 2.0**32
 
@@ -74,7 +78,7 @@ class Strip(NamedTuple):
 
     time: float
     within: float
-    share: float
+    fraction: float
 
     @property
     def fastest(self):
@@ -82,19 +86,19 @@ class Strip(NamedTuple):
         return self.within / self.time
 
 
-def strip(scene, hop, time):
+def strip_around(scene, hop, time):
     """Return the ``Strip`` of a ``time`` T of at most ``widest``."""
     within = scene.fastest * time
     if scene.field:
         # That high up there is less energy left, in the strip that is wide enough in any case.
-        within *= math.sqrt(place_of(scene, hop, within).most)
+        within *= math.sqrt(neck_of(scene, hop, within).most)
     return Strip(time, within, exact.share_near(scene, hop, within))
 
 
-def _fill(scene, hop, place):
+def _fill(scene, hop, strip):
     """Return the density of configurations at Δ = 0, all but, over the mean one in the strip."""
-    narrow = strip(scene, hop, place.time / 1024)
-    return narrow.share / narrow.within * place.within / place.share
+    narrow = strip_around(scene, hop, strip.time / 1024)
+    return narrow.fraction / narrow.within * strip.within / strip.fraction
 
 
 def widest(scene, hop):
@@ -106,13 +110,15 @@ def widest(scene, hop):
     return math.ldexp(1.0, math.frexp(0.999 * limit / scene.fastest)[1] - 1)
 
 
-def expected_events(scene, hop, place):
+def expected_events(scene, hop, strip):
     """Return about how many events come in a time 2T: 2βT over the mean room in the neck.
 
-    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41.
+    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41. Anywhere
+    else a large disc may have more of them, if it fits between two walls with hardly any room.
     """
-    arch = place.within**2 / (6 * scene.contact_distance)
-    return 2 * place.time * scene.fastest / (scene.room(hop) + arch)
+    arch = strip.within**2 / (6 * scene.contact_distance)
+    rate = scene.fastest / (scene.room(hop) + arch)
+    return 2 * strip.time * max(rate, exact.event_rate(scene))
 
 
 def strip_of(scene, hop):
@@ -122,29 +128,46 @@ def strip_of(scene, hop):
     """
     time = widest(scene, hop)
     while True:
-        found = strip(scene, hop, time)
-        few = expected_events(scene, hop, found) <= MOST_EVENTS
-        if few and _fill(scene, hop, found) >= FILL:
-            return found
+        strip = strip_around(scene, hop, time)
+        few = expected_events(scene, hop, strip) <= MOST_EVENTS
+        if few and _fill(scene, hop, strip) >= FILL:
+            return strip
         time /= 2
 
 
-def shares_of(scene, hop, place):
+def fractions_of(scene, hop, strip):
     """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``PARTS``, m)."""
-    ends = [place.within * part / PARTS for part in range(1, PARTS + 1)]
+    ends = [strip.within * part / PARTS for part in range(1, PARTS + 1)]
     near = [exact.share_near(scene, hop, end) for end in ends]
     distances = np.diff([0.0, *near]) / near[-1]
-    return np.outer(distances, shares_of_speeds(scene.velocity_components))
+    return np.outer(distances, fractions_of_speeds(scene.velocity_components))
+
+
+def acceptance(scene, hop, strip):
+    """Return the share of proposals that become starts in a ``Strip``, at least; about 1/4 to 1.
+
+    With effects it may be anything: in a field there is hardly any energy left where the discs can
+    pass, or hardly any of the neck is free.
+    """
+    if not scene.has_effects:
+        return 0.25
+    measure = proposed_measure(prism_of(scene, hop, strip.within))
+    return strip.fraction * exact.volume(scene) / measure
 
 
 def rare_hops(scene):
-    """Return the hops that are counted from strips: those that are rare because of a neck."""
+    """Return the hops that are counted from strips: those that are rare because of a neck.
+
+    But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
+    whole (``exact.LEAST_SHARE``). They are waited for like everything else, mostly in vain.
+    """
     return tuple(
         hop
         for hop in HOPS
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
-        and _fill(scene, hop, strip(scene, hop, widest(scene, hop))) < NO_NECK
+        and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK
+        and acceptance(scene, hop, strip_of(scene, hop)) >= exact.LEAST_SHARE
     )
 
 
@@ -160,11 +183,11 @@ def count_hops(
     events, all int64. The hops are vertical ones, or horizontal ones if ``horizontal`` is True
     instead of None.
     """
-    rows, starts = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
+    rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, near, slow = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    found = np.zeros((3, PARTS, sizes[2]), np.int64)
+    sums = np.zeros((3, PARTS, sizes[2]), np.int64)
     block, used, running, events = first, replicas, 0, 0
 
     while True:
@@ -179,27 +202,31 @@ def count_hops(
             if legs[i] == 2:
                 count = np.int64(packed[i] * (1.0 / HOP))
                 events += np.int64(packed[i] - count * HOP)
-                found[0, near[i], slow[i]] += 1
-                found[1, near[i], slow[i]] += count
-                found[2, near[i], slow[i]] += count * count
+                sums[0, near[i], slow[i]] += 1
+                sums[1, near[i], slow[i]] += count
+                sums[2, near[i], slow[i]] += count * count
                 legs[i] = 0
                 running -= 1
             if used == replicas and block < stop:
-                draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
+                draw_any_starts(open_stream(seed, block), draw, (0, 0), initial_states, prism)
                 block, used = block + 1, 0
             if used < replicas:
-                put_state(rows, i, starts[:, used], law)
-                separation, speed = across(starts[:, used], horizontal)
-                speed /= math.sqrt(kinetic_share_at(starts, used, prism))
+                put_state(rows, i, initial_states[:, used], law)
+                separation, speed = across(initial_states[:, used], horizontal)
+                speed /= math.sqrt(kinetic_fraction_at(initial_states, used, prism))
                 near[i] = min(np.int64(abs(separation) / sizes[0]), PARTS - 1)
                 slow[i] = min(np.int64(abs(speed) / sizes[1]), sizes[2] - 1)
                 for k in range(COMPONENTS):
-                    origin[k, i] = -starts[k, used] if law_reverses(k, law) else starts[k, used]
+                    origin[k, i] = (
+                        -initial_states[k, used]
+                        if law_reverses(k, law)
+                        else initial_states[k, used]
+                    )
                 remaining[i], packed[i], legs[i] = time, 0.0, 1
                 used += 1
                 running += 1
         if running == 0:
-            return found, events
+            return sums, events
 
         for _ in range(PASSES):
             for i in range(lanes):
@@ -221,20 +248,20 @@ def law_reverses(k, law):
     return 4 <= k < 8 or k >= (10 if law.depth is not None else 8)
 
 
-def run_blocks(scene, hop, place, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
+def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
     """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
 
-    Returns (found, events) as ``count_hops`` does. They are integers: two shards add up.
+    Returns (sums, events) as ``count_hops`` does. They are integers: two shards add up.
     """
     horizontal = True if hop == "horizontal_hop" else None
-    speeds = len(shares_of_speeds(scene.velocity_components))
-    sizes = place.within / PARTS, scene.fastest / PARTS, speeds
+    speeds = len(fractions_of_speeds(scene.velocity_components))
+    sizes = strip.within / PARTS, scene.fastest / PARTS, speeds
     if not scene.has_effects and not horizontal:
         # That is a horizontal hop of the box on its side.
         scene, hop, horizontal = Box.of(scene).turned().scene(scene.radius), "horizontal_hop", True
     return count_hops(
-        np.uint64(seed), first, stop, replicas, lanes, place.time, place.fastest, sizes,
-        law_of(scene), *origins(scene, hop, place.within), horizontal,
+        np.uint64(seed), first, stop, replicas, lanes, strip.time, strip.fastest, sizes,
+        law_of(scene), *origins(scene, hop, strip.within), horizontal,
     )  # fmt: skip
 
 
@@ -243,27 +270,32 @@ def run_of(scene, hop, target, budget, seed):
 
     Its streams are its own.
     """
-    place = strip_of(scene, hop)
-    seed, shares = stream_seed(seed, hop, "strip", key(scene.radius)), shares_of(scene, hop, place)
-    hops = REPLICAS * 2 * place.time * exact.rate(scene, hop) / place.share
+    strip = strip_of(scene, hop)
+    seed, fractions = (
+        stream_seed(seed, hop, "strip", key(scene.radius)),
+        fractions_of(scene, hop, strip),
+    )
+    hops = REPLICAS * 2 * strip.time * exact.rate(scene, hop) / strip.fraction
     margin = MARGIN_OF_ROUGH if scene.moment_of_inertia else MARGIN_OF_COUNTS
+    events = max(1.0, LASTING * expected_events(scene, hop, strip))
+    proposals = 1 / acceptance(scene, hop, strip) / events
     return SequentialRun(
-        lambda first, stop: run_blocks(scene, hop, place, seed, first, stop),
-        lambda sums, blocks: np.array([relative_error(shares, sums[0]) / target]),
+        lambda first, stop: run_blocks(scene, hop, strip, seed, first, stop),
+        lambda sums, blocks: np.array([relative_error(fractions, sums[0]) / target]),
         lambda sums: int(sums[1]),
-        REPLICAS * max(1.0, LASTING * expected_events(scene, hop, place)),
-        budget,
+        REPLICAS * events,
+        max(1, int(budget / max(1.0, proposals / PROPOSALS_PER_EVENT))),
         on_grid(margin / target**2 / hops),
-        COST_RATIO,
+        COST_RATIO + PROPOSAL * proposals,
     )
 
 
-def relative_error(shares, found):
+def relative_error(fractions, sums):
     """Return the relative standard error of ⟨N⟩, inf where nothing was counted.
 
-    ``shares`` are those of ``shares_of``, ``found`` is what ``run_blocks`` found by strata.
+    ``fractions`` are those of ``fractions_of``, ``sums`` is what ``run_blocks`` found by strata.
     """
-    mean, error = mean_of(shares, *found)
+    mean, error = mean_of(fractions, *sums)
     return error / mean if mean else math.inf
 
 
@@ -274,11 +306,11 @@ def summary(scene, hop, progress):
     wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
     ΣN and ΣN².
     """
-    place, (found, events) = strip_of(scene, hop), progress.sums
-    starts, counts, squares = found
+    strip, (sums, events) = strip_of(scene, hop), progress.sums
+    initial_states, counts, squares = sums
     return {
-        "duration": 2 * place.time,
-        "share": place.share,
+        "duration": 2 * strip.time,
+        "share": strip.fraction,
         "replicas": progress.blocks * REPLICAS,
         "rounds": progress.rounds,
         "events": int(events),
@@ -286,8 +318,8 @@ def summary(scene, hop, progress):
         "squares": int(squares.sum()),
         "status": "reached" if progress.excess[0] <= 1 else "budget",
         "strata": {
-            "shares": shares_of(scene, hop, place).tolist(),
-            "starts": starts.tolist(),
+            "shares": fractions_of(scene, hop, strip).tolist(),
+            "starts": initial_states.tolist(),
             "counts": counts.tolist(),
             "squares": squares.tolist(),
         },

@@ -132,11 +132,11 @@ def state_of(scene, start):
         side = scene.side(axis)
         if axis in scene.walled:
             for disc, radius in enumerate(scene.radii, 1):
-                reach, place = side / 2 - radius, state[f"{axis}{disc}"]
-                if abs(place) > reach + ROUNDING * side:
+                reach, centre = side / 2 - radius, state[f"{axis}{disc}"]
+                if abs(centre) > reach + ROUNDING * side:
                     raise InputError(
                         f"start must have disc {disc} inside the box, with {axis}{disc} between "
-                        f"{-reach!r} and {reach!r}, not {place!r}"
+                        f"{-reach!r} and {reach!r}, not {centre!r}"
                     )
         apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
         if axis in scene.periodic:
@@ -156,15 +156,15 @@ def state_of(scene, start):
 
 def _energy(scene, state):
     """Return the total energy of a state, {name: value}, of a ``Scene``."""
-    found = 0.0
+    energy = 0.0
     for disc, (mass, radius) in enumerate(zip(scene.masses, scene.radii, strict=True), 1):
         speeds = [state[f"{name}{disc}"] for name in "uvw"[: len(scene.axes)]]
-        found += mass * math.fsum(speed * speed for speed in speeds) / 2
+        energy += mass * math.fsum(speed * speed for speed in speeds) / 2
         if scene.moment_of_inertia is not None:
-            found += mass * scene.moment_of_inertia * state[f"s{disc}"] ** 2 / 2
+            energy += mass * scene.moment_of_inertia * state[f"s{disc}"] ** 2 / 2
         if scene.field:
-            found += mass * scene.field * (state[f"y{disc}"] + scene.height / 2 - radius)
-    return found
+            energy += mass * scene.field * (state[f"y{disc}"] + scene.height / 2 - radius)
+    return energy
 
 
 def trajectory(scene, seed, start=None, duration=None):

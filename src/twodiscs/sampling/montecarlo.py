@@ -34,7 +34,7 @@ from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.prism import kinetic_share, power_chance, prism_of, propose_in_prism
+from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
 from twodiscs.sampling.rounds import all_at_once, fixed
 from twodiscs.sampling.separations import draw_constants, propose_separation
 from twodiscs.sampling.streams import GOLDEN, next_bits, open_stream, splitmix, uniform
@@ -72,19 +72,19 @@ if SETS > 8:
 
 def _hop_shell(event):
     row, k = SHELLS.index(event.name), "xy".index(event.axis)
-    return lambda squares, square, place, ends: squares[k] <= ends[row]
+    return lambda squares, square, centre, ends: squares[k] <= ends[row]
 
 
 def _collision_shell(event):
     row = SHELLS.index(event.name)
-    return lambda squares, square, place, ends: square <= ends[row]
+    return lambda squares, square, centre, ends: square <= ends[row]
 
 
 def _wall_shell(event):
     row, k = SHELLS.index(event.name), "xy".index(event.axis)
     if event.side > 0:
-        return lambda squares, square, place, ends: place[k] >= ends[row]
-    return lambda squares, square, place, ends: place[k] <= ends[row]
+        return lambda squares, square, centre, ends: centre[k] >= ends[row]
+    return lambda squares, square, centre, ends: centre[k] <= ends[row]
 
 
 IN_SHELL = by_kind(
@@ -98,23 +98,23 @@ def _and(add, unit, seen):
     """Return ``add`` extended by one shell: it adds a ``unit`` to the count of what is ``seen``."""
 
     @inlined
-    def add_all(count, squares, square, place, ends):
-        count = add(count, squares, square, place, ends)
-        return count + (unit if seen(squares, square, place, ends) else 0)
+    def add_all(count, squares, square, centre, ends):
+        count = add(count, squares, square, centre, ends)
+        return count + (unit if seen(squares, square, centre, ends) else 0)
 
     return add_all
 
 
-in_shells = inlined(lambda count, squares, square, place, ends: count)
+in_shells = inlined(lambda count, squares, square, centre, ends: count)
 for field, event in enumerate(SHELLS, 1):
     in_shells = _and(in_shells, 256**field, inlined(IN_SHELL[event]))
 BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 
 @inlined
-def sets_of(squares, square, place, ends):
+def sets_of(squares, square, centre, ends):
     """Return the sets that a sample is in, an integer with a field of eight bits for each."""
-    sets = in_shells(1, squares, square, place, ends)
+    sets = in_shells(1, squares, square, centre, ends)
     return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
 
 
@@ -311,19 +311,19 @@ def _shells(scene, quantities, shell):
 
 def _point(scene, method, wanted, epsilon, samples, measure, counts):
     """Return the dict for a JSON file; ``measure`` is the volume that the samples fill."""
-    found = {}
+    sampled = {}
     if "volume" in wanted:
-        found["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
+        sampled["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
     # A sample looks at both sides of a hop, and at one disc and one of its walls.
-    share = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
+    multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
     for event, thickness, hits in zip(EVENTS, epsilon, counts[1:], strict=False):
         if event in wanted:
-            found[f"{event}_area"] = {
+            sampled[f"{event}_area"] = {
                 "hits": int(hits),
-                "measure": share.get(DECLARED[event].kind, 1) * measure / thickness,
+                "measure": multiplicity.get(DECLARED[event].kind, 1) * measure / thickness,
                 "epsilon": thickness,
             }
-    point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": found}
+    point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": sampled}
     if {"right_wall", "top_wall"} <= wanted and not scene.has_effects:
         point["right_and_top"] = int(counts[SETS - 1])
     return point
@@ -333,10 +333,10 @@ def _point(scene, method, wanted, epsilon, samples, measure, counts):
 def propose_blocks(seed, first, stop, draw, ends):
     """Count the proposals of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
-    The counts are those of ``sample_blocks``; ``draw`` is the ``Draw`` of the scene. Distances are
-    taken from the walls and from contact, as the proposals give them, so that shells keep their
-    thickness where the discs hardly fit: ``ends`` are those of |Δx|² − σ² for collisions and of −1
-    times the distance from the far wall.
+    The counts are those of ``sample_blocks``; ``draw`` is the ``SeparationSampler`` of the scene.
+    Distances are taken from the walls and from contact, as the proposals give them, so that shells
+    keep their thickness where the discs hardly fit: ``ends`` are those of |Δx|² − σ² for collisions
+    and of −1 times the distance from the far wall.
     """
     totals = np.zeros(SETS, np.int64)
     for block in range(first, stop):
@@ -363,10 +363,11 @@ def conditioned_point(scene, quantities, samples, shell, seed):
 
     For radii where the prism is almost all overlap, up to the largest one: at least a quarter of
     the proposals is accepted at any radius. A proposal is a sample of a set whose volume, twice
-    ``Draw.mass``, is known; so its point has the form of that of ``sample_point``, for the same
-    arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded up to
-    whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the better
-    choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point`` does.
+    ``SeparationSampler.mass``, is known; so its point has the form of that of ``sample_point``, for
+    the same arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded
+    up to whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the
+    better choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point``
+    does.
     """
     if a_scene(scene).has_effects:
         raise InputError(f"scene must have no effects for conditioned draws, not {scene.effects}")
@@ -401,11 +402,11 @@ def conditioned(scene, quantities, shell, seed):
 
 def _weighted_hop(event):
     k = "xy".index(event.axis)
-    return lambda state, prism, place, apart, end: abs(apart[k]) <= end
+    return lambda state, prism, centre, apart, end: abs(apart[k]) <= end
 
 
 def _weighted_collision(event):
-    return lambda state, prism, place, apart, end: (
+    return lambda state, prism, centre, apart, end: (
         apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2] <= end
     )
 
@@ -413,16 +414,16 @@ def _weighted_collision(event):
 def _weighted_wall(event):
     k = "xy".index(event.axis)
     if event.side > 0:
-        return lambda state, prism, place, apart, end: prism.half_1[k] - place[k] <= end
-    return lambda state, prism, place, apart, end: prism.half_1[k] + place[k] <= end
+        return lambda state, prism, centre, apart, end: prism.half_1[k] - centre[k] <= end
+    return lambda state, prism, centre, apart, end: prism.half_1[k] + centre[k] <= end
 
 
-def _at_random_wall(state, prism, place, separation, end):
+def _at_random_wall(state, prism, centre, separation, end):
     """Say whether a disc is in the shell of a wall, both of them picked at random."""
     thickness, walled = end
     pick = int(4 * len(walled) * uniform(state))
     axis, first = walled[pick // 4], pick & 2 == 0
-    q = place[axis] if first else place[axis] - separation[axis]
+    q = centre[axis] if first else centre[axis] - separation[axis]
     half = prism.half_1[axis] if first else prism.half_2[axis]
     distance = half - q if pick & 1 == 0 else half + q
     return distance <= (thickness[0] if first else thickness[1])
@@ -464,47 +465,47 @@ def weighted_ends(scene, epsilon):
     )
 
 
-@optional(lambda state, share, power, weights: True)
-def counted(state, share, power, weights):
-    """Say whether a sample counts, with the probability ``share`` to the ``power``/2."""
-    return power_chance(state, share, power)
+@optional(lambda state, fraction, power, weights: True)
+def counted(state, fraction, power, weights):
+    """Say whether a sample counts, with the probability ``fraction`` to the ``power``/2."""
+    return power_chance(state, fraction, power)
 
 
 def _and_weighted(count_some, k, seen):
     """Return ``count_some`` extended by shell ``k``, whose count is next in totals."""
 
-    @optional(lambda totals, state, prism, place, separation, end: None)
-    def count_one(totals, state, prism, place, separation, end):
-        totals[k + 1] += seen(state, prism, place, separation, end)
+    @optional(lambda totals, state, prism, centre, separation, end: None)
+    def count_one(totals, state, prism, centre, separation, end):
+        totals[k + 1] += seen(state, prism, centre, separation, end)
 
     @inlined
-    def count_all(totals, state, prism, place, separation, ends):
-        count_some(totals, state, prism, place, separation, ends)
-        count_one(totals, state, prism, place, separation, ends[k])
+    def count_all(totals, state, prism, centre, separation, ends):
+        count_some(totals, state, prism, centre, separation, ends)
+        count_one(totals, state, prism, centre, separation, ends[k])
 
     return count_all
 
 
-_count_each = inlined(lambda totals, state, prism, place, separation, ends: None)
+_count_each = inlined(lambda totals, state, prism, centre, separation, ends: None)
 for k, event in enumerate(EVENTS):
     _count_each = _and_weighted(_count_each, k, inlined(IN_WEIGHTED_SHELL[event]))
 
 
-@optional(lambda totals, state, prism, place, separation, share, ends: None)
-def count_shells(totals, state, prism, place, separation, share, ends):
+@optional(lambda totals, state, prism, centre, separation, fraction, ends: None)
+def count_shells(totals, state, prism, centre, separation, fraction, ends):
     """Count a sample that counts for the volume in the shells, ``totals`` from 1 on.
 
     Volume and area are weighted with powers of the kinetic share that differ by 1/2.
     """
-    if counted(state, share, 1, prism.weights):
-        _count_each(totals, state, prism, place, separation, ends)
+    if counted(state, fraction, 1, prism.weights):
+        _count_each(totals, state, prism, centre, separation, ends)
 
 
 @compiled
 def weighted_blocks(seed, first, stop, prism, ends):
     """Count the samples of blocks ``first`` … ``stop`` − 1 that count for each set.
 
-    ``prism`` is the ``Prism`` of a scene with effects, ``ends`` are its ``weighted_ends``.
+    ``prism`` is the ``PrismSampler`` of a scene with effects, ``ends`` are its ``weighted_ends``.
     Returns int64 counts: volume, then ``EVENTS``.
     """
     totals = np.zeros(1 + len(EVENTS), np.int64)
@@ -514,10 +515,12 @@ def weighted_blocks(seed, first, stop, prism, ends):
             x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
             if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
                 continue
-            share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-            if counted(state, share, prism.components - 2, prism.weights):
+            fraction = kinetic_fraction(
+                y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights
+            )
+            if counted(state, fraction, prism.components - 2, prism.weights):
                 totals[0] += 1
-                count_shells(totals, state, prism, (x1, y1, z1), (dx, dy, dz), share, ends)
+                count_shells(totals, state, prism, (x1, y1, z1), (dx, dy, dz), fraction, ends)
     return totals
 
 
@@ -531,7 +534,7 @@ def weighted(scene, quantities, shell, seed):
     return Sampler(
         BLOCK,
         lambda first, stop: weighted_blocks(np.uint64(seed), first, stop, prism, ends),
-        lambda n, found: _point(scene, "monte_carlo", wanted, epsilon, n, measure, found),
+        lambda n, counts: _point(scene, "monte_carlo", wanted, epsilon, n, measure, counts),
         WEIGHTED_COST_RATIO,
     )
 
@@ -587,13 +590,13 @@ class SamplingRun:
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all samples, {"all": run}."""
-        one, samples = self._sampler, plan(self.scene, self.samples)[1]
-        return {
-            "all": fixed(
-                lambda first, stop: (one.count(first, stop),), samples // one.block, one.block,
-                one.cost_ratio,
-            )
-        }  # fmt: skip
+        sampler, samples = self._sampler, plan(self.scene, self.samples)[1]
+        blocks = samples // sampler.block
+
+        def work(first, stop):
+            return (sampler.count(first, stop),)
+
+        return {"all": fixed(work, blocks, sampler.block, sampler.cost_ratio)}
 
     def point(self, progress):
         """Return the dict for a JSON file, given {"all": its ``Progress``}."""

@@ -17,7 +17,7 @@ from twodiscs.sampling.separations import draw_in_disc
 from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uniform
 
 
-class Strip(NamedTuple):
+class Neck(NamedTuple):
     """Where |Δ| along one axis is small: there the separation along the others has a least size.
 
     It is 0 where there is none. Between walls either disc keeps within ``span`` of its own one.
@@ -30,7 +30,7 @@ class Strip(NamedTuple):
     most: float  # the largest share of the energy that is kinetic
 
 
-class Prism(NamedTuple):
+class PrismSampler(NamedTuple):
     """What a draw by rejection needs to know of a scene; None for what is absent.
 
     The centre of disc i lies within ±half_xi, half the side where the axis is periodic; ``period``
@@ -43,16 +43,16 @@ class Prism(NamedTuple):
     conserved: tuple  # whether the total momentum along x, y, z is 0
     sigma: float
     inverse_roots: tuple  # 1/√m of disc 1 and 2, and of the reduced mass
-    shares: tuple  # m2/M, m1/M
+    fractions: tuple  # m2/M, m1/M
     components: int  # D
     weights: tuple | None  # of the potential: 2 g m1, 2 g m2
     depth: bool | None
     inertia: tuple | None  # 1/√(κ m) of disc 1 and 2
-    strip: Strip | None = None  # where all places are to be
+    neck: Neck | None = None  # where all places are to be
 
 
-def strip_of(scene, hop, within):
-    """Return the ``Strip`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
+def neck_of(scene, hop, within):
+    """Return the ``Neck`` of an open ``hop`` of a ``Scene``, ``within`` a distance < σ."""
     axis, within = AXIS[hop], Fraction(within)
     squares = {a: scene.reach(a) ** 2 for a in scene.axes if a != axis}
     missing = scene.exact_contact**2 - within**2 - sum(squares.values())
@@ -63,11 +63,11 @@ def strip_of(scene, hop, within):
     # In a field the upper disc is that high at least.
     rise = least["y"] - abs(scene.radii[0] - scene.radii[1])
     most = 1 - 2 * scene.field * min(scene.masses) * max(rise, 0.0)
-    return Strip("xy".index(axis), float(within), tuple(least.values()), tuple(span.values()), most)
+    return Neck("xy".index(axis), float(within), tuple(least.values()), tuple(span.values()), most)
 
 
 def prism_of(scene, hop=None, within=None):
-    """Return the ``Prism`` of a ``Scene``, with the strip ``within`` a distance of a ``hop``."""
+    """Return the ``PrismSampler`` of a ``Scene``, in the neck ``within`` that of a ``hop``."""
 
     def half(axis, radius):
         if axis not in scene.axes:
@@ -75,22 +75,42 @@ def prism_of(scene, hop=None, within=None):
         return (scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)) / 2
 
     (m1, m2), inertia = scene.masses, scene.moment_of_inertia
-    return Prism(
+    return PrismSampler(
         half_1=tuple(half(axis, scene.radii[0]) for axis in "xyz"),
         half_2=tuple(half(axis, scene.radii[1]) for axis in "xyz"),
         period=tuple(scene.side(axis) if axis in scene.periodic else 0.0 for axis in "xyz"),
         conserved=tuple(axis in scene.conserved for axis in "xyz"),
         sigma=scene.contact_distance,
         inverse_roots=(1.0, 1 / math.sqrt(m2), math.sqrt(1 / m1 + 1 / m2)),
-        shares=(m2 / (m1 + m2), m1 / (m1 + m2)),
+        fractions=(m2 / (m1 + m2), m1 / (m1 + m2)),
         components=scene.velocity_components,
         weights=(2 * scene.field * m1, 2 * scene.field * m2) if scene.field else None,
         depth=None if scene.depth is None else True,
         inertia=None
         if inertia is None
         else (1 / math.sqrt(inertia * m1), 1 / math.sqrt(inertia * m2)),
-        strip=None if hop is None else strip_of(scene, hop, within),
+        neck=None if hop is None else neck_of(scene, hop, within),
     )
+
+
+def proposed_measure(prism):
+    """Return the volume that ``propose_anywhere`` fills, times the largest weight of a place.
+
+    The weighted volume of the places that are accepted, over this, is the chance of a proposal.
+    """
+    neck, measure = prism.neck, 1.0
+    for axis, (half_1, half_2) in enumerate(zip(prism.half_1, prism.half_2, strict=True)):
+        if not half_1 and not half_2:
+            continue  # z in the plane
+        if neck is None or (axis != neck.axis and neck.least[axis] == 0.0):
+            measure *= 4 * half_1 * half_2
+        elif axis == neck.axis:
+            measure *= 4 * half_1 * neck.within
+        elif prism.period[axis]:
+            measure *= 4 * half_1 * neck.span[axis]
+        else:
+            measure *= 2 * math.prod(min(neck.span[axis], 2 * half) for half in (half_1, half_2))
+    return measure if neck is None else measure * neck.most ** (prism.components / 2 - 1)
 
 
 @compiled
@@ -106,19 +126,19 @@ def nearest(separation, period):
 
 
 @optional(lambda y1, y2, half1, half2, weights: 1.0)
-def kinetic_share(y1, y2, half1, half2, weights):
+def kinetic_fraction(y1, y2, half1, half2, weights):
     """Return 1 − U/E, the share of the energy that is kinetic; negative where U exceeds E = 1/2."""
     return 1.0 - weights[0] * (y1 + half1) - weights[1] * (y2 + half2)
 
 
 @compiled
-def power_chance(state, share, power):
-    """Say yes with the probability ``share`` to the ``power``/2, for 0 ≤ ``power``."""
-    if share <= 0.0:
+def power_chance(state, fraction, power):
+    """Say yes with the probability ``fraction`` to the ``power``/2, for 0 ≤ ``power``."""
+    if fraction <= 0.0:
         return False
     chance = 1.0
     for _ in range(power):
-        chance *= share
+        chance *= fraction
     draw = uniform(state)
     return draw * draw < chance
 
@@ -144,50 +164,50 @@ def propose_in_prism(state, prism):
 
 
 @compiled
-def propose_apart(state, prism, axis, strip):
-    """Return (q1, Δ) along an axis other than that of the ``strip``."""
-    half_1, half_2, span = prism.half_1[axis], prism.half_2[axis], strip.span[axis]
-    if strip.least[axis] == 0.0:
+def propose_apart(state, prism, axis, neck):
+    """Return (q1, Δ) along an axis other than that of the ``neck``."""
+    half_1, half_2, span = prism.half_1[axis], prism.half_2[axis], neck.span[axis]
+    if neck.least[axis] == 0.0:
         q1 = half_1 * signed_uniform(state)
         return q1, nearest(q1 - half_2 * signed_uniform(state), prism.period[axis])
     sign = 1.0 if next_bits(state) & np.uint64(1 << 61) else -1.0
     if prism.period[axis] > 0.0:
         q1 = half_1 * signed_uniform(state)
-        return q1, sign * (strip.least[axis] + span * uniform(state))
+        return q1, sign * (neck.least[axis] + span * uniform(state))
     q1 = sign * (half_1 - min(span, 2.0 * half_1) * uniform(state))
     q2 = sign * (min(span, 2.0 * half_2) * uniform(state) - half_2)
     return q1, q1 - q2
 
 
-@optional(lambda state, prism, strip, depth: (0.0, 0.0))
-def propose_deep_apart(state, prism, strip, depth):
+@optional(lambda state, prism, neck, depth: (0.0, 0.0))
+def propose_deep_apart(state, prism, neck, depth):
     """Return (z1, dz), in the plane twice 0."""
-    return propose_apart(state, prism, 2, strip)
+    return propose_apart(state, prism, 2, neck)
 
 
-@optional(lambda state, prism, strip: propose_in_prism(state, prism))
-def propose_anywhere(state, prism, strip):
-    """Return what ``propose_in_prism`` does, within a ``strip`` if there is one."""
-    half_1, half_2 = prism.half_1[strip.axis], prism.half_2[strip.axis]
-    q1, apart = half_1 * signed_uniform(state), strip.within * signed_uniform(state)
-    other, separation = propose_apart(state, prism, 1 - strip.axis, strip)
-    z1, dz = propose_deep_apart(state, prism, strip, prism.depth)
+@optional(lambda state, prism, neck: propose_in_prism(state, prism))
+def propose_anywhere(state, prism, neck):
+    """Return what ``propose_in_prism`` does, within a ``neck`` if there is one."""
+    half_1, half_2 = prism.half_1[neck.axis], prism.half_2[neck.axis]
+    q1, apart = half_1 * signed_uniform(state), neck.within * signed_uniform(state)
+    other, separation = propose_apart(state, prism, 1 - neck.axis, neck)
+    z1, dz = propose_deep_apart(state, prism, neck, prism.depth)
     if abs(q1 - apart) > half_2:
         # An overlap: this is never accepted.
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if strip.axis == 0:
+    if neck.axis == 0:
         return q1, other, z1, apart, separation, dz
     return other, q1, z1, separation, apart, dz
 
 
-@optional(lambda share, strip: share)
-def of_most(share, strip):
-    """Return the kinetic ``share`` over the largest one."""
-    return share / strip.most
+@optional(lambda fraction, neck: fraction)
+def of_most(fraction, neck):
+    """Return the kinetic ``fraction`` over the largest one."""
+    return fraction / neck.most
 
 
 @compiled
-def share_if_accepted(state, prism, y1, dx, dy, dz, power):
+def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
     """Return the kinetic share of the energy if a proposal is accepted, and −1 if it is not.
 
     Discs that do not overlap are accepted with the probability share^(``power``/2), in a strip over
@@ -195,9 +215,9 @@ def share_if_accepted(state, prism, y1, dx, dy, dz, power):
     """
     if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
         return -1.0
-    share = kinetic_share(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
-    if prism.weights is None or power_chance(state, of_most(share, prism.strip), power):
-        return share
+    fraction = kinetic_fraction(y1, y1 - dy, prism.half_1[1], prism.half_2[1], prism.weights)
+    if prism.weights is None or power_chance(state, of_most(fraction, prism.neck), power):
+        return fraction
     return -1.0
 
 
@@ -205,10 +225,10 @@ def share_if_accepted(state, prism, y1, dx, dy, dz, power):
 def draw_in_prism(state, prism):
     """Return (x1, y1, z1, dx, dy, dz, kinetic share) from the invariant measure."""
     while True:
-        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.strip)
-        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
-        if share >= 0.0:
-            return x1, y1, z1, dx, dy, dz, share
+        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
+        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
+        if fraction >= 0.0:
+            return x1, y1, z1, dx, dy, dz, fraction
 
 
 @compiled
@@ -224,9 +244,9 @@ def draw_on_surface(state, prism, axis):
             x1, dx = low * signed_uniform(state), 0.0
         else:
             y1, dy = low * signed_uniform(state), 0.0
-        share = share_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 1)
-        if share >= 0.0:
-            return x1, y1, z1, dx, dy, dz, share
+        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 1)
+        if fraction >= 0.0:
+            return x1, y1, z1, dx, dy, dz, fraction
 
 
 @compiled
@@ -281,12 +301,12 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
             velocity[2], velocity[6] = 0.0, 0.0
         elif prism.conserved[axis]:
             relative = speed * rest * direction[used] * root
-            velocity[axis] = relative * prism.shares[0]
-            velocity[axis + 4] = -relative * prism.shares[1]
+            velocity[axis] = relative * prism.fractions[0]
+            velocity[axis + 4] = -relative * prism.fractions[1]
             used += 1
         elif axis == normal_axis:
             # Unit vectors of the relative motion and of the centre of mass, in scaled velocities.
-            along_1, along_2 = math.sqrt(prism.shares[0]), math.sqrt(prism.shares[1])
+            along_1, along_2 = math.sqrt(prism.fractions[0]), math.sqrt(prism.fractions[1])
             common = rest * direction[used]
             velocity[axis] = speed * root_1 * (normal * along_1 + common * along_2)
             velocity[axis + 4] = speed * root_2 * (common * along_1 - normal * along_2)

@@ -29,7 +29,7 @@ from twodiscs.sampling.streams import (
 )
 
 
-class Draw(NamedTuple):
+class SeparationSampler(NamedTuple):
     """What a draw of separations needs to know of the scene; all lengths, weights without unit."""
 
     half_x: float  # a
@@ -48,7 +48,7 @@ class Draw(NamedTuple):
 
 
 def draw_constants(scene, within=None):
-    """Return the ``Draw`` of a ``Scene``; ``within`` a distance, if given, u < σ is to stay.
+    """Return the ``SeparationSampler`` of a ``Scene``; with u < ``within`` < σ, if that is given.
 
     Such a strip needs an open horizontal hop: σ < B.
     The differences of lengths that cancel near a threshold or near the largest radius are rounded
@@ -85,7 +85,7 @@ def draw_constants(scene, within=None):
         parts.append(c * math.prod([span] * (j + 2)) / ((j + 1) * (j + 2)))
     total = math.fsum(parts)
     cumulative = tuple(math.fsum(parts[: i + 1]) / total for i in range(len(parts)))
-    return Draw(
+    return SeparationSampler(
         range_x / 2, range_y / 2, range_y, sigma, arch, start, stop, span, beyond_x, beyond_y,
         least_k, cumulative, total,
     )  # fmt: skip
@@ -142,14 +142,14 @@ def draw_separation(state, draw):
 
 
 @compiled
-def place(state, half, slack, order):
+def pair_at_distance(state, half, slack, order):
     """Return coordinates (q1, q2) on [−half, half] whose distance is 2 half − ``slack``.
 
     ``order`` ≥ 0 puts disc 1 above disc 2, otherwise below.
     """
-    share = uniform(state)
-    low = slack * share - half
-    high = half - slack * (1.0 - share)
+    fraction = uniform(state)
+    low = slack * fraction - half
+    high = half - slack * (1.0 - fraction)
     if order >= 0:
         return high, low
     return low, high
@@ -166,8 +166,8 @@ def draw_configuration(state, draw, side_x, side_y):
     bits = next_bits(state)
     order_x = side_x if side_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
     order_y = side_y if side_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
-    x1, x2 = place(state, draw.half_x, slack_x, order_x)
-    y1, y2 = place(state, draw.half_y, slack_y, order_y)
+    x1, x2 = pair_at_distance(state, draw.half_x, slack_x, order_x)
+    y1, y2 = pair_at_distance(state, draw.half_y, slack_y, order_y)
     return x1, y1, x2, y2
 
 
@@ -203,7 +203,7 @@ def draw_crossing(state, half_x, half_y, beyond_x):
     """
     slack = beyond_x * math.sqrt(uniform(state))
     bits = next_bits(state)
-    x1, x2 = place(state, half_x, slack, 1 if bits & np.uint64(1 << 62) else -1)
+    x1, x2 = pair_at_distance(state, half_x, slack, 1 if bits & np.uint64(1 << 62) else -1)
     y = half_y * signed_uniform(state)
     rest = largest_of(state, 3)
     normal = math.sqrt((1.0 - rest) * (1.0 + rest))

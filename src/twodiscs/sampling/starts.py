@@ -15,7 +15,7 @@ from twodiscs.sampling.prism import (
     draw_in_prism,
     draw_on_surface,
     draw_velocities,
-    kinetic_share,
+    kinetic_fraction,
     prism_of,
 )
 from twodiscs.sampling.separations import (
@@ -41,15 +41,15 @@ PLANE, BALLS, ROUGH = (
 def require_room(scene):
     """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
     scene.require_followable()
-    require_share(scene)
+    require_free_fraction(scene)
 
 
-def require_share(scene):
+def require_free_fraction(scene):
     """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place."""
-    if scene.has_effects and (share := exact.free_share(scene)) < exact.LEAST_SHARE:
+    if scene.has_effects and (fraction := exact.free_share(scene)) < exact.LEAST_SHARE:
         raise InputError(
-            f"radius {scene.radius!r} leaves the discs {share:.1g} of the prism of all places, and "
-            f"a scene with effects needs more room, {exact.LEAST_SHARE:g} of it"
+            f"radius {scene.radius!r} leaves the discs {fraction:.1g} of the prism of all places, "
+            f"and a scene with effects needs more room, {exact.LEAST_SHARE:g} of it"
         )
 
 
@@ -60,7 +60,7 @@ def components(scene):
 
 
 def origins(scene, hop=None, within=None):
-    """Return (``Draw``, ``Prism``) of a ``Scene``: starts come from one, the other one is None.
+    """Return (``SeparationSampler``, ``PrismSampler``) of a ``Scene``, one of which is None.
 
     With a ``hop`` they keep ``within`` a distance of its surface, one that is no more than √2 times
     the smaller radius. In a plain scene that is for the horizontal hop. A scene with effects needs
@@ -72,77 +72,94 @@ def origins(scene, hop=None, within=None):
 
 
 @inlined
-def state_in(starts, i):
-    """Return the plain state in column ``i`` of ``starts``."""
+def state_in(initial_states, i):
+    """Return the plain state in column ``i`` of ``initial_states``."""
     return (
-        starts[0, i], starts[1, i], starts[2, i], starts[3, i],
-        starts[4, i], starts[5, i], starts[6, i], starts[7, i],
+        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i],
+        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i],
     )  # fmt: skip
 
 
 @compiled
-def draw_starts(state, draw, side_x, side_y, starts):
-    """Fill the first 8 rows of ``starts`` with states of the invariant measure."""
-    for i in range(starts.shape[1]):
+def draw_starts(state, draw, side_x, side_y, initial_states):
+    """Fill the first 8 rows of ``initial_states`` with states of the invariant measure."""
+    for i in range(initial_states.shape[1]):
         x1, y1, x2, y2 = draw_configuration(state, draw, side_x, side_y)
         u1, v1, u2, v2 = draw_velocity(state)
-        starts[0, i], starts[1, i], starts[2, i], starts[3, i] = x1, y1, x2, y2
-        starts[4, i], starts[5, i], starts[6, i], starts[7, i] = u1, v1, u2, v2
+        initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
+            x1,
+            y1,
+            x2,
+            y2,
+        )
+        initial_states[4, i], initial_states[5, i], initial_states[6, i], initial_states[7, i] = (
+            u1,
+            v1,
+            u2,
+            v2,
+        )
 
 
 def _anywhere(state, prism, direction, velocity, surface):
-    place = draw_in_prism(state, prism)
-    draw_velocities(state, prism, math.sqrt(place[6]), -1, direction, velocity)
-    return place
+    drawn = draw_in_prism(state, prism)
+    draw_velocities(state, prism, math.sqrt(drawn[6]), -1, direction, velocity)
+    return drawn
 
 
 @optional(_anywhere)
 def draw_state(state, prism, direction, velocity, surface):
     """Return a place as ``draw_in_prism`` does, or one on a ``surface``, and fill ``velocity``."""
-    place = draw_on_surface(state, prism, surface)
-    draw_velocities(state, prism, math.sqrt(place[6]), surface, direction, velocity)
-    return place
+    drawn = draw_on_surface(state, prism, surface)
+    draw_velocities(state, prism, math.sqrt(drawn[6]), surface, direction, velocity)
+    return drawn
 
 
-@optional(lambda starts, i, k, a, b, present: None)
-def set_pair(starts, i, k, a, b, present):
+@optional(lambda initial_states, i, k, a, b, present: None)
+def set_pair(initial_states, i, k, a, b, present):
     """Set the entries ``k`` and ``k`` + 1 of column ``i``, unless they are absent."""
-    starts[k, i], starts[k + 1, i] = a, b
+    initial_states[k, i], initial_states[k + 1, i] = a, b
 
 
 @compiled
-def fill_start(state, prism, surface, starts, i):
-    """Write a state of the invariant measure to column ``i`` of ``starts``.
+def fill_start(state, prism, surface, initial_states, i):
+    """Write a state of the invariant measure to column ``i`` of ``initial_states``.
 
     With a ``surface`` (0 for x1 = x2, 1 for y1 = y2; None for anywhere) it is one of the measure on
     that surface, weighted by the flux through it.
     """
     direction, velocity = np.empty(6), np.empty(8)
     x1, y1, z1, dx, dy, dz, _ = draw_state(state, prism, direction, velocity, surface)
-    starts[0, i], starts[1, i], starts[2, i], starts[3, i] = x1, y1, x1 - dx, y1 - dy
-    starts[4, i], starts[5, i] = velocity[0], velocity[1]
-    starts[6, i], starts[7, i] = velocity[4], velocity[5]
-    set_pair(starts, i, 8, z1, z1 - dz, prism.depth)
-    set_pair(starts, i, 10, velocity[2], velocity[6], prism.depth)
-    set_pair(starts, i, 8, velocity[3], velocity[7], prism.inertia)
+    initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
+        x1,
+        y1,
+        x1 - dx,
+        y1 - dy,
+    )
+    initial_states[4, i], initial_states[5, i] = velocity[0], velocity[1]
+    initial_states[6, i], initial_states[7, i] = velocity[4], velocity[5]
+    set_pair(initial_states, i, 8, z1, z1 - dz, prism.depth)
+    set_pair(initial_states, i, 10, velocity[2], velocity[6], prism.depth)
+    set_pair(initial_states, i, 8, velocity[3], velocity[7], prism.inertia)
 
 
-def _plain_starts(state, draw, sides, starts, prism):
-    draw_starts(state, draw, sides[0], sides[1], starts)
+def _plain_starts(state, draw, sides, initial_states, prism):
+    draw_starts(state, draw, sides[0], sides[1], initial_states)
 
 
 @optional(_plain_starts)
-def draw_any_starts(state, draw, sides, starts, prism):
-    """Fill ``starts`` with states of the invariant measure, from ``prism`` unless it is None."""
-    for i in range(starts.shape[1]):
-        fill_start(state, prism, None, starts, i)
+def draw_any_starts(state, draw, sides, initial_states, prism):
+    """Fill ``initial_states`` from the invariant measure, by ``prism`` unless it is None."""
+    for i in range(initial_states.shape[1]):
+        fill_start(state, prism, None, initial_states, i)
 
 
-@optional(lambda starts, i, prism: 1.0)
-def kinetic_share_at(starts, i, prism):
-    """Return the share of the energy that is kinetic in the state in column ``i`` of ``starts``."""
+@optional(lambda initial_states, i, prism: 1.0)
+def kinetic_fraction_at(initial_states, i, prism):
+    """Return the kinetic fraction of the energy in column ``i`` of ``initial_states``."""
     half_1, half_2 = prism.half_1[1], prism.half_2[1]
-    return kinetic_share(starts[1, i], starts[3, i], half_1, half_2, prism.weights)
+    return kinetic_fraction(
+        initial_states[1, i], initial_states[3, i], half_1, half_2, prism.weights
+    )
 
 
 def _plain_start(state, draw, surface, start, prism):
@@ -166,16 +183,16 @@ def states(scene, number, seed, block=0, sides=(0, 0)):
     ``draw_configuration``).
     """
     require_room(scene)
-    found = np.zeros((COMPONENTS, number))
+    filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
-    draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, found, prism)
-    return found
+    draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, filled, prism)
+    return filled
 
 
 def records(scene, number, seed):
     """Return ``states`` as an array of ``number`` records, with a field for each component."""
-    names, found = components(scene), states(scene, number, seed)
+    names, filled = components(scene), states(scene, number, seed)
     columns = np.empty(number, [(name, float) for name in names])
-    for name, row in zip(names, found, strict=False):
+    for name, row in zip(names, filled, strict=False):
         columns[name] = row
     return columns

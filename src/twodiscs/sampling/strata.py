@@ -18,13 +18,13 @@ from twodiscs.theory.plain import RULE
 PARTS = 8
 
 #: The fastest starts are one stratum, of at least such a share.
-LEAST_SHARE = 1 / 64
+LEAST_FRACTION = 1 / 64
 
 #: Where the smallest stratum expects fewer starts than so many, neighbours are taken together.
 FEWEST = 16
 
 
-def share_below(cosine, components):
+def fraction_below(cosine, components):
     """Return the share of directions with a component between −``cosine`` and ``cosine``.
 
     They are uniform on the unit sphere in so many dimensions, ``components`` ≥ 2; 0 ≤ cosine ≤ 1.
@@ -40,13 +40,13 @@ def share_below(cosine, components):
 
 
 @cache
-def shares_of_speeds(components):
+def fractions_of_speeds(components):
     """Return the shares of directions by the size of one component: up to 1/8, to 2/8 and so on.
 
-    The last ones are taken together: they have a share of ``LEAST_SHARE`` at least.
+    The last ones are taken together: they have a share of ``LEAST_FRACTION`` at least.
     """
-    below = [share_below(part / PARTS, components) for part in range(PARTS)]
-    below = [share for share in below if share <= 1 - LEAST_SHARE]
+    below = [fraction_below(part / PARTS, components) for part in range(PARTS)]
+    below = [share for share in below if share <= 1 - LEAST_FRACTION]
     return tuple(np.diff([*below, 1.0]))
 
 
@@ -66,18 +66,18 @@ def mean_of(shares, starts, counts, squares):
     infinite for a single start. Raises ``InputError`` for arrays that are no such numbers.
     """
     try:
-        found = [np.array(part, float) for part in (shares, starts, counts, squares)]
+        strata = [np.array(part, float) for part in (shares, starts, counts, squares)]
     except (TypeError, ValueError):
         raise InputError("strata must be arrays of numbers") from None
-    shapes = {part.shape for part in found}
-    if len(shapes) > 1 or found[0].ndim != 2 or not found[1].sum() >= 1:
+    shapes = {part.shape for part in strata}
+    if len(shapes) > 1 or strata[0].ndim != 2 or not strata[1].sum() >= 1:
         raise InputError(f"strata must be starts in arrays of one shape (n, m), not of {shapes}")
-    if not abs(found[0].sum() - 1) < 1e-9:
-        raise InputError(f"shares of strata must add up to 1, not to {found[0].sum():g}")
-    expected = found[1].sum() * found[0]
-    while found[0].size > 1 and (expected.min() < FEWEST or found[1].min() < 2):
-        *found, expected = [_merged(part) for part in (*found, expected)]
-    shares, starts, counts, squares = found
+    if not abs(strata[0].sum() - 1) < 1e-9:
+        raise InputError(f"shares of strata must add up to 1, not to {strata[0].sum():g}")
+    expected = strata[1].sum() * strata[0]
+    while strata[0].size > 1 and (expected.min() < FEWEST or strata[1].min() < 2):
+        *strata, expected = [_merged(part) for part in (*strata, expected)]
+    shares, starts, counts, squares = strata
     means = counts / starts
     if starts.min() < 2:
         return float(means[0, 0]), math.inf

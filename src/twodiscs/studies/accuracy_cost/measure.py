@@ -495,7 +495,7 @@ def strip_rows(scene, blocks):
         start = time.process_time()
         found, events = strip.run_blocks(scene, hop, near, 1, 0, blocks)
         seconds = time.process_time() - start
-        more = (strip.relative_error(strip.shares_of(scene, hop, near), found) / TARGET) ** 2
+        more = (strip.relative_error(strip.fractions_of(scene, hop, near), found) / TARGET) ** 2
         yield row(
             "radius", f"{hop}_time", scene.radius, "strip",
             setting=near.time, work=round(events * more), seconds=seconds * more, error=TARGET,

@@ -20,6 +20,7 @@ from twodiscs.comparison.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
@@ -32,7 +33,6 @@ from twodiscs.sampling.separations import (
     draw_velocity,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.theory import exact, tails
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.

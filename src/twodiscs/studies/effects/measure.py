@@ -34,25 +34,25 @@ BY_CHANCE = 20
 
 
 @compiled
-def follow_unmet(seed, first, stop, replicas, times, law, draw, prism):
+def follow_survivors(seed, first, stop, replicas, times, law, draw, prism):
     """Return how many starts of blocks ``first`` … ``stop`` − 1 have no collision by each time.
 
     Starts, ``replicas`` a block, come from ``draw``, or from ``prism`` unless it is None. ``times``
     ascend.
     """
     rows, starts = new_rows(1, law), np.zeros((12, replicas))
-    unmet = np.zeros(times.size, np.int64)
+    survivors = np.zeros(times.size, np.int64)
     for block in range(first, stop):
         draw_any_starts(open_stream(seed, block), draw, (0, 0), starts, prism)
         for i in range(replicas):
             put_state(rows, 0, starts[:, i], law)
             elapsed = time_to_next(state_at(rows, 0, law), law, False, times[-1])
             for k in range(times.size):
-                unmet[k] += elapsed > times[k]
-    return unmet
+                survivors[k] += elapsed > times[k]
+    return survivors
 
 
-def unmet(scene, times, blocks, seed):
+def survivors(scene, times, blocks, seed):
     """Return for how many starts of a ``Scene`` the discs have not met by each of ``times``.
 
     Of ``blocks`` × ``REPLICAS`` starts of the invariant measure, a list of integers. Raises
@@ -62,7 +62,7 @@ def unmet(scene, times, blocks, seed):
     law, (draw, prism) = law_of(a_scene(scene)), origins(scene)
     values = ascending("times", times)
     blocks, seed = whole("blocks", blocks), np.uint64(whole("seed", seed, 0))
-    counts = follow_unmet(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
+    counts = follow_survivors(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
     return [int(n) for n in counts]
 
 
@@ -89,11 +89,11 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
             yield start | _mean_time_row(box, row)
         if "moment_of_inertia" in box.effects:
             for radius in dict.fromkeys(row["radius"] for row in times):
-                for row in _unmet_rows(name, box.scene(radius), seed, blocks):
+                for row in _survivors_rows(name, box.scene(radius), seed, blocks):
                     yield start | row
 
 
-def _unmet_rows(name, rough, seed, blocks):
+def _survivors_rows(name, rough, seed, blocks):
     """Yield the rows on starts that have not met, of rough discs and of smooth ones.
 
     There are none at a radius where meeting by chance does not take much less time.
@@ -101,9 +101,9 @@ def _unmet_rows(name, rough, seed, blocks):
     for scene in (rough, replace(rough, moment_of_inertia=None)):
         if BY_CHANCE * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
             stream = stream_seed(seed, name, "unmet", key(scene.radius))
-            counts = unmet(scene, TIMES, blocks, stream)
+            counts = survivors(scene, TIMES, blocks, stream)
             for time, count in zip(TIMES, counts, strict=True):
-                yield _unmet_row(scene, blocks * REPLICAS, time, count)
+                yield _survivors_row(scene, blocks * REPLICAS, time, count)
 
 
 def _plain(box, radius):
@@ -130,7 +130,7 @@ def _law(plain, time):
     return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
-def _unmet_row(scene, starts, time, count):
+def _survivors_row(scene, starts, time, count):
     """Return the row of the fraction of ``starts`` that have not met by a ``time``."""
     plain = _plain(Box.of(scene), scene.radius)
     fraction = estimates.binomial_estimate(count, starts, 1.0)
