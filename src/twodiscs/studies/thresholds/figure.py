@@ -53,7 +53,7 @@ def draw(box, tables):
     ratios.yaxis.set_minor_formatter("")
     hops.set_ylabel("time between hops")
     ratios.set(
-        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(C\delta^\gamma)$"
+        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(\tau_0\delta^\gamma)$"
     )
     hops.legend(loc="upper right")
     ratios.legend(loc="upper left")
