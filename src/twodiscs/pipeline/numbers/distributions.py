@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from scipy.special import gammaincc
 
+from twodiscs.comparison.estimates import density_of_chains_at_zero
 from twodiscs.pipeline.numbers.agreement import scores
 from twodiscs.pipeline.numbers.rounding import (
     Number,
@@ -64,9 +65,11 @@ def densities(rows, histogram):
             "odd_density_radius": Number(row["radius"], repr(row["radius"])),
         }
         if len(bins) == 2:
-            (first, second), errors = (b["density"] for b in bins), [b["stderr"] for b in bins]
-            error = math.hypot(7 * errors[0], errors[1]) / 6
-            numbers["odd_density_chains"] = with_error((7 * first - second) / 6, error)
+            numbers["odd_density_chains"] = with_error(
+                *density_of_chains_at_zero(
+                    [row["density"] for row in bins], [row["stderr"] for row in bins]
+                )
+            )
     return numbers
 
 
