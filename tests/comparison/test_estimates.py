@@ -263,3 +263,17 @@ def test_sums_must_be_possible():
     for squares in (9, 19):
         with pytest.raises(ValueError, match="squares"):
             estimates.mean_time(10, squares, 5, 1.0)
+
+
+def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
+    counts, intervals, width = [5200, 4900], 10**6, 0.125
+    independent = estimates.density_at_zero(counts, intervals, width)
+    densities = [n / intervals / width for n in counts]
+    errors = [3.0, 4.0]
+    value, error = estimates.density_of_chains_at_zero(densities, errors)
+    assert value == pytest.approx(independent.value)
+    assert error == pytest.approx(math.sqrt((7 / 6 * 3) ** 2 + (4 / 6) ** 2))
+    # As many independent intervals have nearly uncorrelated counts.
+    binomial = [math.sqrt(n) / intervals / width for n in counts]
+    _, error = estimates.density_of_chains_at_zero(densities, binomial)
+    assert error == pytest.approx(independent.stderr, rel=0.01)

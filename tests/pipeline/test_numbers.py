@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -153,6 +154,51 @@ def test_agreement_counts_tests_and_their_largest_deviation(tables):
     ]
 
 
+def correlated_rows():
+    """Return tests at four radii, and statements on their mean scores."""
+    z = {
+        "right_wall": (1.0, -1.0, 2.0, 0.0),
+        "top_wall": (-2.0, 2.0, -4.0, 0.0),
+        "vertical_hop": (1.0, 0.0, -1.0, 0.0),
+        "disc_collision": (0.0, 1.0, 0.0, -1.0),
+    }
+    start = {"comparison": "mean_time", "method": "dynamics", "test": "normal"}
+    start |= {"passed": True, "independent": True, "bound": 4.25}
+    return scene_rows(
+        "check",
+        *(
+            start | {"quantity": f"{event}_time", "radius": 0.1 * (i + 1), "z": value}
+            for event, values in z.items()
+            for i, value in enumerate(values)
+        ),
+        start | {"quantity": "any_wall_time", "radius": 0.1, "z": 9.0, "independent": False},
+        start | {"quantity": "top_wall_time", "radius": 0.9, "z": 9.0, "test": "exact-tail"},
+        {"comparison": "z_mean", "quantity": "any_wall_area", "z": -3.01},
+        {"comparison": "z_mean", "quantity": "volume", "z": 1.0},
+    )
+
+
+def test_correlations_are_those_of_tests_at_the_same_radii():
+    assert texts(agreement.correlations(correlated_rows())) == {
+        "dynamics_tests": "16",
+        "dynamics_mean_square": "$2.1$",  # (6 + 24 + 2 + 2)/16
+        "dynamics_spread": "$0.4$",  # √(2/16)
+        "correlation_walls": "$-1$",
+        "correlation_hops": "$0$",
+    }
+    assert agreement.correlations([]) == {}
+
+
+def test_mean_scores_name_the_largest():
+    assert texts(agreement.mean_scores(correlated_rows(), [BOX])) == {
+        "mean_scores": "2",
+        "mean_scores_largest": "$3.1$",
+        "mean_scores_quantity": "any wall area",
+        "mean_scores_box": "$1.5 times 1$",
+    }
+    assert agreement.mean_scores([], [BOX]) == {}
+
+
 def test_effort_is_that_of_all_scenes(tables):
     assert texts(agreement.effort(tables)) == {
         "configurations": "$4 times 10^(6)$",
@@ -181,14 +227,56 @@ def test_errors_of_chains_are_compared_with_those_of_counts():
     assert distributions.chains([])["chain_factor"].text == "$1$"
 
 
+def density_rows():
+    """Return rows of densities at zero, the second one the odd one, and bins of its chains."""
+    case = {"scene": "main", "event": "vertical_hop", "radius": 0.4, "width": 3.0, "height": 1.0}
+    value = case | {"quantity": "density_at_zero", "estimate": 1.34, "stderr": 0.005}
+    value |= {"reference": 1.325825}
+    bins = case | {"bins": "equal", "density": 1.3, "stderr": 0.006, "count": 9}
+    del bins["width"], bins["height"]
+    return (
+        rows(
+            "distributions",
+            *(value | {"radius": x, "z": z} for x, z in ((0.1, 1.0), (0.4, -3.3), (0.2, 2.0))),
+        ),
+        [
+            {**row, "scene": "main"}
+            for row in rows(
+                "hop_histogram",
+                *(
+                    {k: v for k, v in (bins | more).items() if k != "scene"}
+                    for more in (
+                        {"radius": 0.1, "density": 9.0},
+                        {"bins": "wide", "density": 9.0},
+                        {"density": 1.3},
+                        {"density": 1.0},
+                        {"density": 9.0},
+                    )
+                ),
+            )
+        ],
+    )
+
+
 def test_densities_name_the_largest_deviation_and_the_next():
-    found = rows("distributions", *({"quantity": "density_at_zero", "z": z} for z in (1, -3.3, 2)))
-    assert texts(distributions.densities(found)) == {
+    """The parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35."""
+    found, histogram = density_rows()
+    expected = {
         "densities": "3",
         "densities_largest": "$3.3$",
         "densities_others": "$2$",
+        "odd_density": "$1.340 (5)$",
+        "odd_density_exact": "$1.3258$",
+        "odd_density_box": "$3 times 1$",
+        "odd_density_radius": "0.4",
     }
-    assert texts(distributions.densities([])) == {"densities": "0"}
+    assert texts(distributions.densities(found, [])) == expected
+    error = math.hypot(7 * 0.006, 0.006) / 6
+    chains = rounding.with_error(1.35, error).text
+    assert texts(distributions.densities(found, histogram)) == expected | {
+        "odd_density_chains": chains
+    }
+    assert texts(distributions.densities([], histogram)) == {"densities": "0"}
 
 
 def tail_rows():
@@ -211,11 +299,39 @@ def test_tails_are_quoted_where_they_are_last_measured_well():
         "tail_hops_time": "$30$",
         "tail_hops_probability": "$1.1 times 10^(-5)$",
         "tail_hops_radius": "$0.1$",
+        "tail_hops_approach": "$0.55 (16)$",  # 0.10(3) √30
         "decay_rate": "$0.8000 (16)$",
         "decay_radius": "$0.3$",
         "decay_first": "$3$",
         "decay_last": "$9$",
     }
+
+
+def survival(hazards, n):
+    """Return rows of P(T > t) after 0, 1, 2, … of n intervals, with binomial errors."""
+    p = np.exp(-np.cumsum([1.0, *hazards]))
+    return rows(
+        "tails",
+        *(
+            {"time": float(t), "estimate": float(x), "stderr": math.sqrt(x * (1 - x) / n)}
+            for t, x in enumerate(p)
+        ),
+    )
+
+
+def test_one_hazard_at_all_times_is_tested_by_chi_square():
+    """Of two times: the square of the difference over its error, √(k₁/n₁² …) by hand."""
+    n, hazards = 10**6, (0.8, 0.79)
+    found = distributions.constant_hazard(survival(hazards, n))
+    p = np.exp(-np.cumsum([1.0, *hazards]))
+    errors = [math.sqrt((1 / later - 1 / before) / n) for before, later in pairwise(p)]
+    chi2 = (hazards[0] - hazards[1]) ** 2 / (errors[0] ** 2 + errors[1] ** 2)
+    assert found["decay_chi2"].value == pytest.approx(chi2)
+    assert found["decay_chance"].value == pytest.approx(math.erfc(math.sqrt(chi2 / 2)))
+    assert found["decay_degrees"].value == 1
+    constant = distributions.constant_hazard(survival((0.8, 0.8, 0.8), n))
+    assert constant["decay_chi2"].value == pytest.approx(0, abs=1e-12)
+    assert distributions.constant_hazard(survival((0.8,), n)) == {}
 
 
 def hazard_rows(scene, radius, p, trend, counts=(), mean=0.5):
@@ -268,6 +384,7 @@ def test_hazards_are_sorted_by_whether_they_are_constant():
         "plateau_rates": "$0.8$",
         "rates_nearest": "$9.9$",
         "falling_cases": "vertical hops at $r =$ $0.2$, $0.3$",
+        "fallen_cases": "vertical hops at $r =$ $0.2$",
         "over_cubic": rounding.significant(hops / expected, 2).text,
         "first_passage_largest": "$1.2$",
         "elsewhere_box": "$3 times 1$",
@@ -319,12 +436,25 @@ def power_rows():
 
 def test_power_laws_are_those_of_mean_times_of_the_main_scene():
     powers = power_rows()
-    assert texts(laws.powers(powers, "main")) == {
+    expected = {
         "reduced_largest": "$0.5$",
         "vertical_exponent": "$-1.98$",
         "vertical_reach": "$16$",
     }
-    assert texts(laws.powers_table(powers, "main")["vertical_hop"]) == {
+    times = [
+        {"scene": "main", "event": "vertical_hop", "radius": radius, "starts": starts}
+        for radius, starts in ((0.2, "invariant"), (0.21, "strip"), (0.24, "strip"))
+    ]
+    in_strips = {"strip_powers": "vertical hops"}
+    assert texts(laws.powers(powers, "main", times)) == expected | in_strips
+    times.append(times[0] | {"radius": 0.22})
+    assert texts(laws.powers(powers, "main", times)) == expected
+    assert texts(laws.powers(powers, "main", [])) == expected
+    assert texts(laws.powers([], "main", times)) == {}
+    check = [{"scene": "main", "quantity": "vertical_hop_time", "passed": True}]
+    assert laws.powers_table(powers, "main", [check[0] | {"independent": False}]) == {}
+    check[0]["independent"] = True
+    assert texts(laws.powers_table(powers, "main", check)["vertical_hop"]) == {
         "event": "v. hop",
         "points": "9",
         "plain": "$-1.980 (10)$",
@@ -332,7 +462,6 @@ def test_power_laws_are_those_of_mean_times_of_the_main_scene():
         "reduced": "$-1.980 (10)$",
         "coefficient": "$0.99 (2)$",
     }
-    assert texts(laws.powers([], "main")) == {}
 
 
 def effect_rows():
@@ -373,6 +502,17 @@ def errata_rows():
         | {"decided_by": "theory; Monte Carlo 2.0(1); dynamics 2.00(1)"},
         {"verdict": "in range", "severity": "slip", "decided_by": "theory"},
     )
+
+
+def test_effects_whose_count_is_a_sum_of_others_are_no_tests():
+    start = {"scene": "channel", "radius": 0.1, "status": "reached", "starts": "invariant"}
+    found = rows(
+        "effects",
+        start | {"quantity": "top_wall_time", "z": 1.0, "count": 4000},
+        start | {"quantity": "any_wall_time", "z": 1.0, "count": 4000},
+        start | {"radius": 0.2, "quantity": "any_wall_time", "z": 1.0, "count": 4000},
+    )
+    assert laws.effects(found)["effects"].text == "2"
 
 
 def test_errata_are_counted_and_those_that_are_not_right_are_listed():
@@ -506,9 +646,23 @@ def test_numbers_become_rows_of_a_table(tables, tmp_path):
 def test_what_the_manuscript_prints_is_what_is_computed(tables):
     """All of it, and nothing else: "--" stands for a number that there is not."""
     tables |= {
-        "distributions": [*distribution_rows(), {**distribution_rows()[3], "z": 1.5}] * 2,
-        "tails": [*tail_rows(), *({**row, "event": "disc_collision"} for row in tail_rows())],
+        "distributions": [*distribution_rows(), *density_rows()[0]],
+        "hop_histogram": density_rows()[1],
+        "tails": [
+            *({**row, "event": "disc_collision"} for row in tail_rows()),
+            *tail_rows(),
+            *(
+                {**row, "event": "disc_collision", "radius": 0.3, "time": t}
+                | {"method": "counted", "quantity": "survival"}
+                for t, row in zip((2.4, 4.8, 7.2), survival((0.8, 0.8), 1000), strict=True)
+            ),
+        ],
         "thresholds": [{**row, "event": e} for row in power_rows() for e in HOPS],
+        "mean_times": [
+            *tables["mean_times"],
+            {**tables["mean_times"][1], "event": "vertical_hop", "radius": 0.24},
+        ],
+        "check": [*tables["check"], *correlated_rows()],
         "effects": effect_rows(),
         "errata": errata_rows(),
         "accuracy_cost": cost_rows(),

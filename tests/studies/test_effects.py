@@ -132,7 +132,7 @@ def rows(tmp_path_factory):
 
     tables = tables_of(NAMES, np.random.default_rng(1))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(effects, "survivors", unmet)
+        patch.setattr(effects, "survivors", survivors)
         return written(
             tmp_path_factory.mktemp("effects"), Effects, tables=tables, scenes=BOXES, seed=SEED
         )
@@ -154,7 +154,7 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
     ]
     assert {row["replicas"] for row in rows} == {REPLICAS}
     for i, scene in enumerate(pairs[:2]):
-        stream = stream_seed(SEED, "rough", "survivors", key(scene.radius))
+        stream = stream_seed(SEED, "rough", "unmet", key(scene.radius))
         counts = effects.survivors(scene, effects.TIMES, 1, stream)
         assert [row["count"] for row in rows[3 * i : 3 * i + 3]] == counts
 

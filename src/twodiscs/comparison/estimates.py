@@ -290,3 +290,13 @@ def density_at_zero(counts, intervals, width):
     share = weights @ n / intervals
     spread = weights**2 @ n / intervals - share**2
     return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
+
+
+def density_of_chains_at_zero(densities, errors):
+    """Return the density at 0 as ``density_at_zero`` does, and its error.
+
+    ``densities`` of the first two bins have ``errors`` of their own, such as those of the spread
+    between chains of intervals; they are taken as uncorrelated.
+    """
+    (first, second), (error, other) = densities, errors
+    return (7 * first - second) / 6, math.hypot(7 * error, other) / 6

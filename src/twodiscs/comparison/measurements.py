@@ -9,7 +9,11 @@ import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from twodiscs.comparison.estimates import MIN_EVENTS, density_at_zero, normal_quantile
+from twodiscs.comparison.estimates import (
+    MIN_EVENTS,
+    density_of_chains_at_zero,
+    normal_quantile,
+)
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
@@ -156,7 +160,7 @@ class Intervals:
     and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
     ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
     estimate is a parabola through the first two bins, so it has no z. Intervals of one chain are
-    correlated: errors of densities take them as independent, that of the mean does not.
+    correlated, so that all errors are those of the spread between chains.
     """
 
     def __init__(self, scene, point):
@@ -171,13 +175,16 @@ class Intervals:
             f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
             point["intervals"], status, "time",
         )  # fmt: skip
-        at_zero = density_at_zero(self.counts, self.intervals, point["bin_width"])
+        bins = self.rows[:2]
+        at_zero, spread = density_of_chains_at_zero(
+            [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins]
+        )
         few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if scene.has_effects else tails.density_at_zero(scene, self.hop)
-        error, status = (None, "too-few") if few else (at_zero.stderr, "extrapolated")
+        error, status = (None, "too-few") if few else (spread, "extrapolated")
         self.at_zero = Measurement(
             "density_at_zero",
-            at_zero.value, error, exact, None, sum(self.counts[:2]), status, "1/time",
+            at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
         )  # fmt: skip
 
     @property

@@ -89,6 +89,13 @@ ARROWS = Sentence(
     "Arrows start at 95 % lower bounds where no event was seen.",
     mark=lambda row: row.get("bound") is not None,
 )
+STRIPS = Sentence(
+    """
+    Full symbols are from starts in a strip around the hop's surface: there the flux is measured,
+    and no waiting time.
+    """,
+    mark=lambda row: row.get("starts") == "strip",
+)
 LINES = (
     Sentence(
         "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius.", plain
@@ -262,6 +269,7 @@ FIGURES = {
                 plain,
             ),
             Sentence("In a square box both hops have the same mean time.", plain_square),
+            STRIPS,
         ),
         "mean_times",
         {"vertical_hop_time": "vertical hops", "horizontal_hop_time": "horizontal hops"},

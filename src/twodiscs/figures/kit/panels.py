@@ -171,15 +171,24 @@ def _column(rows, *names):
 
 
 def estimates(axes, rows, colour, marker):
-    """Draw the estimates of ``rows`` over their radii."""
+    """Draw the estimates of ``rows`` over their radii; those from a strip have full symbols."""
     known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
     rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
     bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
-    r, y, s = _column(known, "radius", "estimate", "stderr")
-    axes.errorbar(r, y, s, ls="", elinewidth=0.6, **open_symbol(colour, marker), zorder=3)
+    for shown, style in by_start(known, open_symbol(colour, marker)):
+        r, y, s = _column(shown, "radius", "estimate", "stderr")
+        axes.errorbar(r, y, s, ls="", elinewidth=0.6, **style, zorder=3)
     axes.plot(*_column(rough, "radius", "estimate"), "x", color=colour, zorder=3)
     r, y = _column(bound, "radius", "bound")
     axes.errorbar(r, y, [0.4 * b for b in y], lolims=True, ls="", color=colour, elinewidth=0.6)
+
+
+def by_start(rows, style):
+    """Yield (rows, style of symbols): those from a strip, if there are any, have full ones."""
+    strips = [row for row in rows if row.get("starts") == "strip"]
+    yield [row for row in rows if row not in strips], style
+    if strips:
+        yield strips, style | {"markerfacecolor": style["color"]}
 
 
 def open_symbol(colour, marker, scale=1):

@@ -31,8 +31,8 @@ STUDY = Study(
             axis pass clear of each other for a time ∝ 1/(their drift), so that the tail
             falls as C/t³, with the exact C (lines) and not exponentially (dashed). (b)
             Their ratio to C/t³. (c) Beyond h/4 no such motion avoids vertical hops: the
-            tail looks exponential, but not with the rate 1/τ (dashed). Error bars are one
-            standard error.
+            tail looks exponential at first sight, but not with the rate 1/τ (dashed). Error
+            bars are one standard error.
             """,
             "studies.tails.figure",
             tables=("tails",),

@@ -53,7 +53,7 @@ def draw(box, tables):
     ratios.yaxis.set_minor_formatter("")
     hops.set_ylabel("time between hops")
     ratios.set(
-        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(C\delta^\gamma)$"
+        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(\tau_0\delta^\gamma)$"
     )
     hops.legend(loc="upper right")
     ratios.legend(loc="upper left")
@@ -70,14 +70,15 @@ def _mean_times(tables):
 
 
 def _points(axes, law, rows, name, style, unit=np.ones_like):
-    """Draw measured times over ``unit`` of the radius."""
-    columns = [[row[c] for row in rows] for c in ("radius", "estimate", "stderr")]
-    radius, value, error = np.array(columns, float)
-    scale = unit(radius)
-    axes.errorbar(
-        1 - radius / law.limit, value / scale, error / scale, ls="", elinewidth=0.6, label=name,
-        zorder=3, **style,
-    )  # fmt: skip
+    """Draw measured times over ``unit`` of the radius; those from a strip have full symbols."""
+    for shown, look in panels.by_start(rows, style):
+        columns = [[row[c] for row in shown] for c in ("radius", "estimate", "stderr")]
+        radius, value, error = np.array(columns, float)
+        scale = unit(radius)
+        axes.errorbar(
+            1 - radius / law.limit, value / scale, error / scale, ls="", elinewidth=0.6,
+            label=name if look is style else None, zorder=3, **look,
+        )  # fmt: skip
 
 
 def _slopes(axes):

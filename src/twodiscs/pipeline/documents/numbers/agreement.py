@@ -1,6 +1,10 @@
 """How simulations agree with the exact theory, and what they took: numbers of all boxes."""
 
+import math
+import statistics
+
 from twodiscs.pipeline.documents.numbers.rounding import (
+    Number,
     at_most,
     in_words,
     sides,
@@ -49,6 +53,57 @@ def agreement(tables, scenes):
         "sum_rule_largest": at_most(scores(of_name["sum_rule"])),
         "mean_time_largest": at_most(scores(of_name["mean_time"])),
         "monte_carlo_largest": at_most(scores(check, "monte_carlo", "conditioned")),
+    }
+
+
+def correlation(rows, first, second):
+    """Return Pearson's correlation of the scores z of two mean times over the radii of all scenes.
+
+    ``rows`` are tests of mean times by the dynamics; None if fewer than three radii have both.
+    """
+    z = {(row["scene"], row["radius"], row["quantity"]): row["z"] for row in rows}
+    pairs = [
+        (value, z[scene, radius, f"{second}_time"])
+        for (scene, radius, quantity), value in z.items()
+        if quantity == f"{first}_time" and (scene, radius, f"{second}_time") in z
+    ]
+    return statistics.correlation(*zip(*pairs, strict=True)) if len(pairs) > 2 else None
+
+
+def correlations(check):
+    """Return {name: ``Number``} on what tests share: those of the dynamics with a normal law."""
+    rows = [
+        row
+        for row in tests(check)
+        if (row["comparison"], row["method"], row["test"]) == ("mean_time", "dynamics", "normal")
+    ]
+    if not rows:
+        return {}
+    mean_square = statistics.fmean(row["z"] ** 2 for row in rows)
+    walls = correlation(rows, "right_wall", "top_wall")
+    hops = correlation(rows, "vertical_hop", "disc_collision")
+    return {
+        "dynamics_tests": whole(len(rows)),
+        "dynamics_mean_square": significant(mean_square, 2),
+        # Of as many independent squares of standard normal deviates.
+        "dynamics_spread": significant(math.sqrt(2 / len(rows)), 1),
+        "correlation_walls": None if walls is None else significant(walls, 2),
+        "correlation_hops": None if hops is None else significant(hops, 2),
+    }
+
+
+def mean_scores(check, scenes):
+    """Return {name: ``Number``} on the largest mean score of a quantity over the radii of a box."""
+    rows = [row for row in check if row["comparison"] == "z_mean"]
+    if not rows:
+        return {}
+    row = max(rows, key=lambda row: abs(row["z"]))
+    scene = next(scene for scene in scenes if scene["name"] == row["scene"])
+    return {
+        "mean_scores": whole(len(rows)),
+        "mean_scores_largest": at_most([abs(row["z"])]),
+        "mean_scores_quantity": Number(None, row["quantity"].replace("_", " ")),
+        "mean_scores_box": sides(scene["width"], scene["height"]),
     }
 
 

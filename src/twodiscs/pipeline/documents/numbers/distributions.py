@@ -1,12 +1,17 @@
 """How the times are distributed: intervals of chains, tails, and hazards."""
 
 import math
+from itertools import pairwise
 
+from scipy.special import gammaincc
+
+from twodiscs.comparison.estimates import density_of_chains_at_zero
 from twodiscs.pipeline.documents.numbers.agreement import scores
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_least,
     at_most,
+    sides,
     significant,
     span,
     whole,
@@ -15,6 +20,8 @@ from twodiscs.pipeline.documents.numbers.rounding import (
 
 #: A hazard is constant for all that is seen where the chances of its χ² and trend exceed this.
 LEVEL = 1e-3
+#: A hazard whose late value is below this fraction of the fitted rate is compared with 3/t.
+FALLEN = 0.75
 #: Bins of fewer intervals say nothing of how errors of chains differ from those of counts.
 WELL_FILLED = 1000
 
@@ -33,14 +40,37 @@ def chains(histogram):
     return {"chain_factor": at_most(factors)}
 
 
-def densities(rows):
-    """Return how well densities at zero agree; ``rows`` are those of distributions.csv."""
-    found = sorted(scores([row for row in rows if row["quantity"] == "density_at_zero"]))
-    return {
+def densities(rows, histogram):
+    """Return how well densities at zero agree, and what chains say where they agree least.
+
+    ``rows`` are those of distributions.csv, ``histogram`` those of hop_histogram.csv: intervals of
+    their own. Their density at zero is that of a parabola p(0) − at² through the first two bins.
+    """
+    compared = [
+        row for row in rows if row["quantity"] == "density_at_zero" and row["z"] is not None
+    ]
+    found = sorted(scores(compared))
+    numbers = {
         "densities": whole(len(found)),
         "densities_largest": at_most(found),
         "densities_others": at_most(found[:-1]),
     }
+    for row in [row for row in compared if abs(row["z"]) == found[-1]][:1]:
+        same = {name: row[name] for name in ("scene", "event", "radius")} | {"bins": "equal"}
+        bins = [other for other in histogram if same.items() <= other.items()][:2]
+        numbers |= {
+            "odd_density": with_error(row["estimate"], row["stderr"]),
+            "odd_density_exact": significant(row["reference"], 5),
+            "odd_density_box": sides(row["width"], row["height"]),
+            "odd_density_radius": Number(row["radius"], repr(row["radius"])),
+        }
+        if len(bins) == 2:
+            numbers["odd_density_chains"] = with_error(
+                *density_of_chains_at_zero(
+                    [row["density"] for row in bins], [row["stderr"] for row in bins]
+                )
+            )
+    return numbers
 
 
 def tails(rows):
@@ -69,6 +99,10 @@ def tails(rows):
                 f"tail_{name}_probability": significant(row["estimate"], 2),
                 f"tail_{name}_radius": significant(row["radius"], 3),
             }
+            if name == "hops":  # a ratio of 1 + c (t/τ)^(−1/2)
+                root = math.sqrt(row["time"] / row["exact_mean"])
+                excess, error = row["estimate"] / row["law"] - 1, row["stderr"] / row["law"]
+                numbers["tail_hops_approach"] = with_error(excess * root, error * root)
     for row in [row for row in rows if row["quantity"] == "rate"][:1]:
         mean = row["exact_mean"]
         numbers |= {
@@ -77,7 +111,39 @@ def tails(rows):
             "decay_first": significant(row["time"] / mean, 2),
             "decay_last": significant(row["until"] / mean, 2),
         }
+        within = [
+            other
+            for other in rows
+            if (other["event"], other["radius"]) == (row["event"], row["radius"])
+            and (other["quantity"], other["method"]) == ("survival", "counted")
+            and row["time"] * (1 - 1e-9) <= other["time"] <= row["until"] * (1 + 1e-9)
+            and other["stderr"] is not None
+        ]
+        numbers |= constant_hazard(within)
     return numbers
+
+
+def constant_hazard(rows):
+    """Return the χ² of one hazard between the times of ``rows``, which ascend, and its chance.
+
+    Intervals longer than the next time are among those longer than this one, so that what is lost
+    in between has the difference of their relative variances.
+    """
+    hazards, weights = [], []
+    for row, later in pairwise(rows):
+        time = later["time"] - row["time"]
+        hazards.append(math.log(row["estimate"] / later["estimate"]) / time)
+        relative = [(r["stderr"] / r["estimate"]) ** 2 for r in (later, row)]
+        weights.append(time**2 / (relative[0] - relative[1]))
+    if len(hazards) < 2:
+        return {}
+    mean = sum(w * h for w, h in zip(weights, hazards, strict=True)) / sum(weights)
+    chi2 = sum(w * (h - mean) ** 2 for w, h in zip(weights, hazards, strict=True))
+    return {
+        "decay_chi2": significant(chi2, 3),
+        "decay_degrees": whole(len(hazards) - 1),
+        "decay_chance": significant(float(gammaincc((len(hazards) - 1) / 2, chi2 / 2)), 2),
+    }
 
 
 class Hazards:
@@ -119,6 +185,11 @@ class Hazards:
         expected = sum(6 * risk / (first + last) for first, last, _, risk in late)
         return sum(hops for _, _, hops, _ in late) / expected if late else None
 
+    def has_fallen(self, rate):
+        """Say whether the late hazard is less than three quarters of the fitted rate."""
+        late = self.late_hazard(rate)
+        return late is not None and late[0] < FALLEN * rate["estimate"] * rate["exact_mean"]
+
     def late_hazard(self, rate):
         """Return the late hazard in units of 1/τ, with its error, first and last time over τ."""
         late, mean = self.late(rate), rate["exact_mean"]
@@ -146,7 +217,7 @@ def hazards(rows, scene):
     plateaus = [rate for rate in rates if data.is_plateau(rate)]
     falling = [rate for rate in rates if not data.is_plateau(rate)]
     passages = [row for row in rows if row["scene"] == scene and row["quantity"] == "first_passage"]
-    cubic = [data.over_cubic(rate) for rate in falling]
+    fallen = [rate for rate in falling if data.has_fallen(rate)]
     numbers = {
         "hazards": whole(len(rates)),
         "plateaus": whole(len(plateaus)),
@@ -154,7 +225,8 @@ def hazards(rows, scene):
         "plateau_rates": span([rate["estimate"] * rate["exact_mean"] for rate in plateaus]),
         "rates_nearest": at_least(scores(rates)),
         "falling_cases": _cases(falling),
-        "over_cubic": span([ratio for ratio in cubic if ratio is not None]),
+        "fallen_cases": _cases(fallen),
+        "over_cubic": span([data.over_cubic(rate) for rate in fallen]),
         "first_passage_largest": at_most(scores(passages)),
     }
     # Hazards that are not constant although no drift avoids the hop.
@@ -167,7 +239,7 @@ def hazards(rows, scene):
     ]
     for rate in others[-1:]:
         numbers |= {
-            "elsewhere_box": Number(None, f"${rate['width']:g} times {rate['height']:g}$"),
+            "elsewhere_box": sides(rate["width"], rate["height"]),
             "elsewhere_radius": Number(rate["radius"], repr(rate["radius"])),
         }
         if late := data.late_hazard(rate):

@@ -1,8 +1,10 @@
 """Power laws at thresholds, effects, and the corrections to the first solution."""
 
 import re
+from itertools import groupby
 
-from twodiscs.pipeline.documents.numbers.agreement import scores
+from twodiscs.comparison.estimates import sums_of_others
+from twodiscs.pipeline.documents.numbers.agreement import scores, tests
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_most,
@@ -28,11 +30,35 @@ def _mean_times(rows, scene):
     return [row for row in rows if row["scene"] == scene and row["quantity"] == "mean_time"]
 
 
-def powers(rows, scene):
-    """Return {name: ``Number``} on fitted power laws; ``rows`` are those of thresholds.csv."""
+def _is_from_strips(fit, times):
+    """Say whether all mean times that a ``fit`` is of come from starts in strips."""
+    if fit["farthest"] is None or fit["limit_radius"] is None:
+        return False
+    least = fit["limit_radius"] - fit["farthest"] * (1 + 1e-9)
+    fitted = [
+        row["starts"]
+        for row in times
+        if row["event"] == fit["event"] and least <= row["radius"] < fit["limit_radius"]
+    ]
+    return {*fitted} == {"strip"}
+
+
+def powers(rows, scene, times):
+    """Return {name: ``Number``} on fitted power laws of a scene.
+
+    ``rows`` are those of thresholds.csv, and ``times`` those of mean_times.csv.
+    """
     rows = _mean_times(rows, scene)
+    times = [row for row in times if row["scene"] == scene]
     reduced = scores([row for row in rows if row["form"] == "reduced"])
     numbers = {"reduced_largest": at_most(reduced)}
+    in_strips = [
+        f"{row['event'].replace('_', ' ')}s"
+        for row in rows
+        if (row["form"], row["parameter"]) == ("plain", "exponent") and _is_from_strips(row, times)
+    ]
+    if in_strips:
+        numbers["strip_powers"] = Number(None, " and ".join(in_strips))
     for row in rows:
         if (row["form"], row["parameter"]) == ("plain", "exponent"):
             event = row["event"].removesuffix("_hop")
@@ -43,9 +69,18 @@ def powers(rows, scene):
     return numbers
 
 
-def powers_table(rows, scene):
-    """Return the cells of the table of power laws, {column: ``Number``} for each event."""
-    rows = {(row["event"], row["form"], row["parameter"]): row for row in _mean_times(rows, scene)}
+def powers_table(rows, scene, check):
+    """Return the cells of the table of power laws, {column: ``Number``} for each event.
+
+    An event whose mean times are no tests of their own, in the rows ``check`` of check.csv, is left
+    out, for its fit follows from those of others.
+    """
+    tested = {row["quantity"] for row in tests(check) if row["scene"] == scene}
+    rows = {
+        (row["event"], row["form"], row["parameter"]): row
+        for row in _mean_times(rows, scene)
+        if f"{row['event']}_time" in tested
+    }
 
     def cell(event, form, parameter):
         row = rows[event, form, parameter]
@@ -65,13 +100,25 @@ def powers_table(rows, scene):
     }
 
 
+def _not_sums(rows):
+    """Return those rows of mean times whose count is not the sum of others' counts."""
+    found = []
+    for _, some in groupby(rows, key=lambda row: (row["scene"], row["radius"])):
+        of_event = {row["quantity"].removesuffix("_time"): row for row in some}
+        summed = sums_of_others(
+            {e: row["count"] for e, row in of_event.items() if row["starts"] == "invariant"}
+        )
+        found += [row for event, row in of_event.items() if event not in summed]
+    return found
+
+
 def effects(rows):
     """Return {name: ``Number``} on what effects do; ``rows`` are those of effects.csv."""
     shares = [
         row for row in rows if row["quantity"] == "never_met_share" and row["estimate"] is not None
     ]
     times = [row for row in rows if row["quantity"] != "never_met_share"]
-    judged = [row for row in times if row["z"] is not None]
+    judged = _not_sums(row for row in times if row["z"] is not None)
     numbers = {
         "effects": whole(sum(row["status"] != "impossible" for row in judged)),
         "effect_scenes": in_words(len({row["scene"] for row in times})),

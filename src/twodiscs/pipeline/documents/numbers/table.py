@@ -58,12 +58,14 @@ def numbers(tables, scenes):
     main = scenes[0]["name"]
     prose = {
         **agreement.agreement(tables, scenes),
+        **agreement.correlations(tables["check"]),
+        **agreement.mean_scores(tables["check"], scenes),
         **agreement.effort(tables),
         **distributions.chains(tables["hop_histogram"]),
-        **distributions.densities(tables["distributions"]),
+        **distributions.densities(tables["distributions"], tables["hop_histogram"]),
         **distributions.tails(tables["tails"]),
         **distributions.hazards(tables["distributions"], main),
-        **laws.powers(tables["thresholds"], main),
+        **laws.powers(tables["thresholds"], main, tables["mean_times"]),
         **laws.effects(tables["effects"]),
         **laws.errata(tables["errata"]),
         **costs.accuracy_cost(tables["accuracy_cost"]),
@@ -72,7 +74,7 @@ def numbers(tables, scenes):
     cells = {
         "agreement": agreement.agreement_table(tables, scenes),
         "rates": distributions.rates_table(tables["distributions"], main),
-        "powers": laws.powers_table(tables["thresholds"], main),
+        "powers": laws.powers_table(tables["thresholds"], main, tables["check"]),
         "errata": laws.errata_table(tables["errata"]),
     }
     for table, rows in cells.items():
