@@ -204,7 +204,7 @@ rule forecast:
     log:
         f"{RESULTS}/logs/forecast.log",
     localrule: True
-    threads: workflow.cores
+    threads: 64  # all that there are
     params:
         configuration=json.dumps(config, sort_keys=True),
     shell:
@@ -223,7 +223,7 @@ rule benchmark:
     benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
-    threads: workflow.cores  # it must run alone
+    threads: 64  # all that there are: it must run alone
     params:
         code=code("benchmark"),
     shell:
