@@ -13,6 +13,7 @@ from twodiscs.comparison import check
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.schema import document, schema
+from twodiscs.pipeline.documents.numbers.table import PaperNumbers
 from twodiscs.studies.catalogue import STUDIES, TABLES
 
 INTRODUCTION = """\
@@ -35,7 +36,7 @@ def _plain(text):
 def described_tables():
     """Return the description of every table, and how to read check.csv, as Markdown."""
     parts = [f"# Tables\n\n{INTRODUCTION}\n"]
-    for name, table in TABLES.items():
+    for name, table in (TABLES | {"paper_numbers": PaperNumbers}).items():
         meanings = table.meanings()
         lines = [
             f"| `{column}` | {kind.unit or '–'} | {_plain(meanings[column])} |\n"

@@ -12,7 +12,7 @@ from twodiscs.pipeline.digests import digest
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 
 #: The tables of no study that hold seconds, and the documents that show them.
-TIMED = {"cost", "benchmark", "forecast", "paper", "report"}
+TIMED = {"cost", "benchmark", "forecast", "paper", "paper_numbers", "report"}
 TIMED |= {name for study in STUDIES.values() for name in study.timed}
 
 
