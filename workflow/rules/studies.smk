@@ -24,7 +24,7 @@ for name, study in ALLOWED.items():
             runtime=cost.study_minutes(study, CONFIGURATION),
         params:
             table=study.tables[0].name(),
-            parameters=json.dumps(study.parameters(CONFIGURATION), sort_keys=True),
+            parameters=json.dumps(study.parameters(CONFIGURATION)),
             tables=lambda w, input, study=study: assigned(
                 FILES.study_reads(study), input.tables
             ),
