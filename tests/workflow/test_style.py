@@ -4,12 +4,12 @@ import json
 import re
 
 import jsonschema
+import pages
 import pytest
 import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline.documents import pages
 from twodiscs.studies.catalogue import STUDIES
 
 
