@@ -190,7 +190,8 @@ def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
     single = {n: sum(r["independent"] == "true" for r in some) for n, some in compared.items()}
     said = f"All {total} comparisons with the exact theory passed, {sum(single.values())} of them"
     assert said in plain(front["verdict"])
-    assert f"largest deviation is {rounded_up(max(largest.values())):f} standard" in plain(front["verdict"])
+    said = f"largest deviation is {rounded_up(max(largest.values())):f} standard"
+    assert said in plain(front["verdict"])
     six, walls = front["rows"][1:]
     counts = [str(len(compared["six"])), str(single["six"])]
     assert six[:5] == ["six, 1.5 × 1", "6", *counts, f"{rounded_up(largest['six']):f}"]
