@@ -214,6 +214,32 @@ def test_no_event_and_no_spread_divide_by_nothing():
     assert math.isfinite(scores.mean_time_z(10**9, 10**15, 1000, 10.0, 1e9)[0])
 
 
+def in_octaves(counts):
+    """Return the numbers of replicas, Σ N and Σ N² by octave of ``counts``."""
+    octave = np.array([int(n).bit_length() for n in counts])
+    return [np.bincount(octave, counts.astype(float) ** k).astype(int).tolist() for k in range(3)]
+
+
+@pytest.mark.parametrize(("tail", "honest"), [(None, True), (4.5, True), (1.2, False)])
+def test_an_error_that_few_replicas_make_is_none(tail, honest):
+    """Poisson counts, and bursts with P(N > n) ~ n^−tail; the fourth moment by another method."""
+    rng = np.random.default_rng(5)
+    counts = rng.poisson(20, 20_000)
+    if tail:
+        counts = counts + (rng.pareto(tail, counts.size) * 5).astype(int)
+    total, squares = int(counts.sum()), int((counts**2).sum())
+    found = estimates.error_of_error(total, squares, counts.size, in_octaves(counts))
+    deviations = (counts - counts.mean()) ** 2
+    expected = math.sqrt((deviations**2).sum()) / deviations.sum() / 2
+    assert expected / 2 < found < expected * 1.001
+    assert estimates.has_error_bar(total, squares, counts.size, in_octaves(counts)) == honest
+    assert estimates.has_error_bar(total, squares, counts.size)
+
+
+def test_replicas_without_spread_have_an_error_of_no_error():
+    assert estimates.error_of_error(300, 900, 100, [[0, 0, 100], [0, 0, 300], [0, 0, 900]]) == 0
+
+
 def test_bound_from_no_event_holds_for_clusters():
     replicas, duration = 400, 7.0
     bound = estimates.mean_time_bound(replicas, duration)

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.comparison import estimates
+from twodiscs.comparison import estimates, rows
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.studies.stability import measure as stability
 from twodiscs.theory.exact import mean_times, shell_expectation, volume
@@ -86,3 +87,39 @@ def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
     error = math.sqrt(variance / (replicas - 1)) / (count / replicas)
     assert estimate.value == pytest.approx(duration * replicas / count, rel=1e-14)
     assert estimate.relative_stderr == pytest.approx(error, rel=1e-9)
+
+
+BURSTS = Scene(
+    0.013234765602418557, 2.554439270542779, 0.0032671790178727283, periodic="x",
+    field=0.05914673912256739, moment_of_inertia=0.9083554322976234,
+)  # fmt: skip
+
+
+def test_bursts_of_collisions_have_no_error_bar():
+    """Rough discs that hardly pass each other: rare replicas have a thousand times the mean.
+
+    A sample without a large one is wrong by up to 80 of its own errors. The rule sees that in 39 of
+    40 samples; one in which nothing but usual replicas are looks like any other.
+    """
+    time, wrong, bars = mean_times(BURSTS)["disc_collision"], 0, 0
+    for seed in range(40):
+        point = counting.count_events(BURSTS, {"disc_collision": 1e-3}, 10**6, seed)
+        (row,) = rows.mean_time_rows(
+            BURSTS, {(BURSTS.radius, "disc_collision_time"): time}, [point]
+        )
+        bars += row["stderr"] is not None
+        wrong += row["stderr"] is not None and abs(row["z"]) > 5
+    assert wrong <= bars <= 4
+
+
+@pytest.mark.parametrize("radius", [0.24, 0.2475])
+def test_rough_discs_with_an_error_bar_are_covered(radius):
+    """Mean square deviate within five sigma of 1, of those that have an error bar."""
+    scene, z = Scene(1.0, 1.0, radius, moment_of_inertia=0.9), []
+    time = mean_times(scene)["disc_collision"]
+    for seed in range(20):
+        point = counting.count_events(scene, {"disc_collision": 1e-3}, 10**6, seed)
+        (row,) = rows.mean_time_rows(scene, {(radius, "disc_collision_time"): time}, [point])
+        z += [row["z"]] if row["stderr"] else []
+    assert len(z) >= 15
+    assert abs(np.mean(np.square(z)) - 1) < 5 * math.sqrt(2 / len(z))

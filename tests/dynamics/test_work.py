@@ -2,17 +2,21 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals, trajectory
+from twodiscs.dynamics import counting, intervals, strip, trajectory
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import FOLLOWED
 from twodiscs.sampling import rounds
+from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
 from twodiscs.sampling.starts import require_room
+from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
 
@@ -110,3 +114,82 @@ def test_starts_that_are_too_rare_are_refused(effects):
                   lambda: require_room(scene)):  # fmt: skip
         with pytest.raises(InputError, match="needs more room"):
             start()
+
+
+# Draws are work, too -----------------------------------------------------------------------------
+
+ENERGETIC = st.builds(
+    lambda width, share, field, mass, radius: (
+        width, {"field": field, "mass_ratio": mass, "radius_ratio": radius}, share,
+    ),
+    decades(0.2, 10), SHARES, decades(0.1, 30), decades(1e-2, 1e2), decades(0.05, 20),
+)  # fmt: skip
+
+
+@settings(max_examples=60)
+@given(ENERGETIC)
+def test_draws_are_within_the_price_of_a_budget(drawn):
+    """Of any budget: no more than 64 proposals of a start for each of its events, or one block."""
+    width, effects, share = drawn
+    try:
+        scene = scene_of(width, 1.0, effects, share)
+        require_room(scene)
+        parts = counting.CountingRun(scene, dict.fromkeys(scene.events, 1e-3), 10**9, 1).parts
+    except InputError:
+        return
+    events = 10**9 // len(parts)
+    for name, run in parts.items():
+        starts = run.budget / run.block_events * REPLICAS
+        if name == "all":
+            chance = exact.free_share(scene)
+        else:
+            chance = strip.acceptance(scene, name, strip.strip_of(scene, name))
+        assert chance >= exact.LEAST_SHARE
+        assert starts / chance <= 1.01 * strip.PROPOSALS_PER_EVENT * events
+
+
+#: Scenes in which a hop is all but impossible: its strip would take for ever to fill.
+HOPELESS = [
+    (0.9313773251626372, 1.0, 0.09311188377144873, {"field": 2.6849301205525116}),
+    (2.851903922399709, 1.0, 0.045663183366862564, {"field": 5.474870133112426}),
+]
+
+
+@pytest.mark.parametrize(("width", "height", "radius", "effects"), HOPELESS)
+def test_what_is_too_rare_to_be_drawn_is_waited_for_in_vain_and_that_ends(
+    width, height, radius, effects
+):
+    scene = Box(width, height, effects).scene(radius)
+    assert strip.rare_hops(scene) == ()
+    point = counting.count_events(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1)
+    assert point["status"]["horizontal_hop"] == "budget"
+    assert point["counts"]["horizontal_hop"] == 0
+    assert point["events"] <= 10**6
+
+
+def test_a_strip_is_no_longer_than_its_events_allow():
+    """A large disc that just fits between two walls hits them all the time."""
+    scene = Box(
+        0.2015647165811781, 10.778181887736503,
+        {"depth": 0.3495539972883679, "mass_ratio": 109.0, "radius_ratio": 2.417163684327618},
+    ).scene(0.041694469802592275)  # fmt: skip
+    found = strip.strip_of(scene, "vertical_hop")
+    assert 2 * found.time * exact.event_rate(scene) <= strip.MOST_EVENTS
+
+
+@pytest.mark.parametrize("hop", HOPS)
+@pytest.mark.parametrize(
+    "effects", [{"field": 0.5}, {"radius_ratio": 0.6}, {"field": 0.3, "depth": 0.6}]
+)
+def test_the_chance_of_a_proposal_is_exact(hop, effects):
+    """Against proposals, within five sigma."""
+    scene = Box(1.5, 1.0, effects).scene(0.2)
+    found = strip.strip_of(scene, hop)
+    prism, state, n = prism_of(scene, hop, found.within), open_stream(np.uint64(3), 0), 20_000
+    hits = sum(
+        fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2) >= 0
+        for x1, y1, z1, dx, dy, dz in (propose_anywhere(state, prism, prism.neck) for _ in range(n))
+    )
+    chance = strip.acceptance(scene, hop, found)
+    assert 0.001 < chance <= 1
+    assert abs(hits - n * chance) < 5 * math.sqrt(n * chance * (1 - chance)) + 1e-9

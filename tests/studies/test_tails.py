@@ -97,7 +97,9 @@ def test_a_wait_ends_where_the_trajectory_says(event):
     for start in state.T:
         rows = trajectory.follow(scene, start, 30.0)
         expected = next(row[0] for row in rows if row[5] == event)
-        found = tails.wait(tuple(start), law_of(scene), event == "vertical_hop")
+        found = trajectory.time_to_next(
+            tuple(start), law_of(scene), event == "vertical_hop", math.inf
+        )
         assert found == pytest.approx(expected, rel=1e-12)
 
 

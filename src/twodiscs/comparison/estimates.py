@@ -19,6 +19,9 @@ from twodiscs.theory import virial
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
 MIN_EVENTS = 100
 
+#: How well an error must itself be known, relatively, where counts may have a heavy tail.
+KNOWN = 0.1
+
 #: Allowance for clusters where events are rare: a replica that sees any sees at most so many in the
 #: mean. A hop through a narrow gap may be undone soon: just below the thresholds of boxes from
 #: 1 × 1 to 3 × 1, replicas of length 10 and 50 gave Σ N²/Σ N between 1.0 and 1.8.
@@ -198,9 +201,29 @@ def effective_count(total, squares, replicas):
     return total**2 * (replicas - 1) / spread if spread else 0.0
 
 
-def has_error_bar(total, squares, replicas):
-    """Say whether the replicas carry an error bar: 100 of them, and 100 effective events."""
+def has_error_bar(total, squares, replicas, octaves=None):
+    """Say whether the replicas carry an error bar: 100 of them, and 100 effective events.
+
+    With ``octaves``, as in ``error_of_error``, the error must also be known to 10 %. Counts with a
+    heavy tail are not: a few replicas make most of their variance, and larger ones may follow.
+    """
+    if octaves is not None and error_of_error(total, squares, replicas, octaves) > KNOWN:
+        return False
     return effective_count(total, squares, replicas) >= MIN_EVENTS and replicas >= MIN_EVENTS
+
+
+def error_of_error(total, squares, replicas, octaves):
+    """Return the relative standard error of the standard error, √Σ(N − ⟨N⟩)⁴ / 2Σ(N − ⟨N⟩)².
+
+    ``octaves`` are the numbers of replicas, Σ N and Σ N² by the size of N (as
+    ``counting.sort_into_octaves`` counts them); within each of them all deviate alike.
+    """
+    mean, fourth = total / replicas, 0.0
+    for n, counts, products in zip(*octaves, strict=True):
+        if n:
+            fourth += (products - 2 * mean * counts + n * mean * mean) ** 2 / n
+    spread = squares - total * mean
+    return math.sqrt(fourth) / (2 * spread) if spread > 0 else 0.0
 
 
 def mean_time(total, squares, replicas, duration, mean=None):

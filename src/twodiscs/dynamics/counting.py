@@ -155,6 +155,22 @@ def unpack(packed, more, counts, lane):
         counts[e, lane] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
 
 
+#: Counts of a replica are sorted by their octave, 0, 1, 2 to 3, 4 to 7 and so on.
+OCTAVES = 40
+
+
+@optional(lambda counts, octaves: None)
+def sort_into_octaves(counts, octaves):
+    """Add one replica to ``octaves`` (3, n, ``OCTAVES``): how many there are, Σ N and Σ N²."""
+    for e in range(N):
+        octave, rest = 0, counts[e]
+        while rest > 0:
+            octave, rest = octave + 1, rest >> 1
+        octaves[0, e, octave] += 1
+        octaves[1, e, octave] += counts[e]
+        octaves[2, e, octave] += counts[e] * counts[e]
+
+
 @compiled
 def count_blocks(
     seed,
@@ -171,6 +187,7 @@ def count_blocks(
     hops,
     walls,
     rest,
+    octaves,
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
@@ -178,7 +195,7 @@ def count_blocks(
     the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
     from ``prism`` unless it is None. ``identical``, whether the discs are that, ``hops``, ``walls``
     and ``rest``, whether the hits of all walls need a counter, are True or None: what is None is
-    not compiled.
+    not compiled. Nor are ``octaves``, if they are not an array for ``sort_into_octaves``.
     """
     rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -199,6 +216,7 @@ def count_blocks(
                     replica_counts[e] = counts[e, i]
                     counts[e, i] = 0
                 replica_counts[ANY_WALLS] = all_walls(replica_counts, rest)
+                sort_into_octaves(replica_counts, octaves)
                 for e in range(N):
                     sums[e] += replica_counts[e]
                     for f in range(e, N):
@@ -261,14 +279,25 @@ def replica_duration(scene):
 
 
 def run_blocks(
-    scene, events, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES, sides=(0, 0)
+    scene,
+    events,
+    seed,
+    first,
+    stop,
+    duration,
+    *,
+    replicas=REPLICAS,
+    lanes=LANES,
+    sides=(0, 0),
+    octaves=None,
 ):
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
     ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
     detected: without a hop among them no crossing is looked for. Returns (sums, products)
-    as ``count_blocks`` does. They are integers: two shards add up to the whole.
+    as ``count_blocks`` does. They are integers: two shards add up to the whole. ``octaves``, an
+    array, is filled as ``sort_into_octaves`` does.
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
@@ -277,7 +306,7 @@ def run_blocks(
     rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        sides, scene.alike or None, hops, walls, rest,
+        sides, scene.alike or None, hops, walls, rest, octaves,
     )  # fmt: skip
 
 
@@ -295,7 +324,8 @@ def count_events(scene, target, budget, seed, report=None):
     Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
     events simulated, and for each watched event its count ΣN, its target and status (reached,
     budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.summary``
-    returns for each rare hop. Raises ``InputError`` for an unknown event or a number out of range.
+    returns for each rare hop, and octaves of rough discs by event what ``sort_into_octaves`` does.
+    Raises ``InputError`` for an unknown event or a number out of range.
     """
     return CountingRun(scene, target, budget, seed).alone(report)
 
@@ -361,9 +391,18 @@ class CountingRun:
             / self.target[event] ** 2
             for event in self._waited
         )
+
+        def work(first, stop):
+            # Rough discs that hardly pass each other collide in bursts, of a size without bound.
+            octaves = None if scene.moment_of_inertia is None else np.zeros((3, N, OCTAVES), int)
+            sums = run_blocks(
+                scene, self._events, self.seed, first, stop, duration, octaves=octaves
+            )
+            return sums if octaves is None else (*sums, octaves)
+
         return SequentialRun(
-            lambda first, stop: run_blocks(scene, self._events, self.seed, first, stop, duration),
-            lambda sums, blocks: relative_errors(*sums, blocks * REPLICAS)[index] / goals,
+            work,
+            lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS)[index] / goals,
             lambda sums: max(1, simulated_events(sums[0])),
             REPLICAS * exact.event_rate(scene) * duration,
             budget,
@@ -373,12 +412,13 @@ class CountingRun:
 
     def point(self, progress):
         """Return the dict for a JSON file, given {name: ``Progress``} of all parts."""
-        (sums, products), blocks, rounds, excess = progress["all"]
+        (sums, products, *octaves), blocks, rounds, excess = progress["all"]
         strips = {hop: strip.summary(self.scene, hop, progress[hop]) for hop in self._rare}
         watched = [EVENTS.index(event) for event in self._events]
         status = dict.fromkeys(self._events, "impossible")
         for event, value in zip(self._waited, excess, strict=True):
             status[event] = "reached" if value <= 1.0 else "budget"
+        by_octave = {EVENTS[e]: part[:, e].tolist() for part in octaves for e in watched}
         return {
             "radius": self.scene.radius,
             "duration": replica_duration(self.scene),
@@ -395,7 +435,7 @@ class CountingRun:
             "target": {event: self.target[event] for event in self._events},
             "status": status | {hop: strips[hop]["status"] for hop in strips},
             "strips": strips,
-        }
+        } | ({"octaves": by_octave} if by_octave else {})
 
     def alone(self, report=None):
         """Return the dict for a JSON file, all done in this process, in rounds."""

@@ -165,23 +165,27 @@ def propose_in_prism(state, prism):
 
 @compiled
 def propose_apart(state, prism, axis, neck):
-    """Return (q1, Δ) along an axis other than that of the ``neck``."""
+    """Return (q1, Δ, whether it counts) along an axis other than that of the ``neck``.
+
+    Between walls disc 1 is drawn near one of them and disc 2 near the other. Where there is much
+    room they may come in the opposite order, which is drawn by the opposite choice already.
+    """
     half_1, half_2, span = prism.half_1[axis], prism.half_2[axis], neck.span[axis]
     if neck.least[axis] == 0.0:
         q1 = half_1 * signed_uniform(state)
-        return q1, nearest(q1 - half_2 * signed_uniform(state), prism.period[axis])
+        return q1, nearest(q1 - half_2 * signed_uniform(state), prism.period[axis]), True
     sign = 1.0 if next_bits(state) & np.uint64(1 << 61) else -1.0
     if prism.period[axis] > 0.0:
         q1 = half_1 * signed_uniform(state)
-        return q1, sign * (neck.least[axis] + span * uniform(state))
+        return q1, sign * (neck.least[axis] + span * uniform(state)), True
     q1 = sign * (half_1 - min(span, 2.0 * half_1) * uniform(state))
     q2 = sign * (min(span, 2.0 * half_2) * uniform(state) - half_2)
-    return q1, q1 - q2
+    return q1, q1 - q2, sign * (q1 - q2) > 0.0
 
 
-@optional(lambda state, prism, neck, depth: (0.0, 0.0))
+@optional(lambda state, prism, neck, depth: (0.0, 0.0, True))
 def propose_deep_apart(state, prism, neck, depth):
-    """Return (z1, dz), in the plane twice 0."""
+    """Return (z1, dz, whether they count), in the plane twice 0."""
     return propose_apart(state, prism, 2, neck)
 
 
@@ -190,9 +194,9 @@ def propose_anywhere(state, prism, neck):
     """Return what ``propose_in_prism`` does, within a ``neck`` if there is one."""
     half_1, half_2 = prism.half_1[neck.axis], prism.half_2[neck.axis]
     q1, apart = half_1 * signed_uniform(state), neck.within * signed_uniform(state)
-    other, separation = propose_apart(state, prism, 1 - neck.axis, neck)
-    z1, dz = propose_deep_apart(state, prism, neck, prism.depth)
-    if abs(q1 - apart) > half_2:
+    other, separation, counts = propose_apart(state, prism, 1 - neck.axis, neck)
+    z1, dz, deep_counts = propose_deep_apart(state, prism, neck, prism.depth)
+    if abs(q1 - apart) > half_2 or not counts or not deep_counts:
         # An overlap: this is never accepted.
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if neck.axis == 0:
