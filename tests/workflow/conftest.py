@@ -25,9 +25,8 @@ def planned(unbuilt):
 def complete(tmp_path_factory):
     """A checkout in which everything is built, not to be changed."""
     checkout = fresh(tmp_path_factory.mktemp("complete") / "checkout")
-    for path in (checkout.path / "config" / "scenes").glob("*.yaml"):
-        if path.stem not in EFFECTS:
-            path.unlink()
+    scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
+    checkout.replace("src/twodiscs/studies/effects/study.py", scenes, repr(EFFECTS))
     checkout.snakemake("--cores", "2")
     return checkout
 
