@@ -55,13 +55,13 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
 
 CODE = "\n\nREMARK = 1\n"
 DOCUMENTS = [("paper",), ("report",), ("manifest",), ("provenance",)]
-COUNTED = {"monte_carlo", "dynamics", "intervals", "effects_cost"}
+COUNTED = {"monte_carlo", "dynamics", "intervals"}
 
 
 @pytest.mark.parametrize(
     ("module", "drawn"),
     [
-        ("figures/motion/animation.py", ("animate", SIX)),
+        ("figures/motion/animation.py", ("animate", SIX, "figure=animation")),
         ("studies/tails/figure.py", ("shared_figure", "figure=tails")),
     ],
 )

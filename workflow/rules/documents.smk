@@ -90,7 +90,7 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        snakefile=workflow.main_snakefile,
+        snakefile=os.path.relpath(workflow.main_snakefile),
         configuration=json.dumps(config, indent=1, sort_keys=True),
         scenes=json.dumps(FILES.report()),
         code=code("pipeline.documents.report"),
@@ -166,7 +166,7 @@ rule crate:
     params:
         code=code("pipeline.documents.crate"),
     shell:
-        "python -m twodiscs.pipeline.documents.crate {input.files} --provenance {input.provenance}"
+        "python -m twodiscs.pipeline.documents.crate {input.files} {input.provenance} --provenance {input.provenance}"
         " --citation {input.citation} --texts {input.texts} --output {output.json} > {log} 2>&1"
 
 

@@ -15,11 +15,15 @@ from twodiscs.studies.catalogue import STUDY_FIGURES
 ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
 
 
+def module_of(name):
+    """Return the module that draws the figure called ``name``."""
+    return import_module(f"twodiscs.{ENTRIES[name].module}")
+
+
 def drawn(name, tables, box=None, **more):
     """Return the figure called ``name``, of ``tables`` {name: rows}."""
-    entry = ENTRIES[name]
-    draw = import_module(f"twodiscs.{entry.module}").draw
-    return draw(box=box, tables=tables, **entry.options, **more)
+    draw = module_of(name).draw
+    return draw(box=box, tables=tables, **ENTRIES[name].options, **more)
 
 
 def main():
@@ -39,8 +43,7 @@ def main():
     made_of = f", tables {digest(*paths)[:16]}" if paths else ""
     with style.context():
         if options.figure == "animation":
-            from twodiscs.figures.motion.animation import animate
-
+            animate = module_of(options.figure).animate
             animate(rows=tables["trajectory"], paths=options.output, box=box, **more)
             return
         figure = drawn(options.figure, tables, box, **more)

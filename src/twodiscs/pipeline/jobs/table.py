@@ -13,8 +13,8 @@ from twodiscs.comparison.points import checked_point
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.pipeline.arguments import Parser, add_box, box_of, number, run, whole_number
+from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.digests import read_json
-from twodiscs.pipeline.jobs.point import STAGES
 
 
 def read_points(stage, paths):
