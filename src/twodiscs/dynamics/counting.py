@@ -173,22 +173,9 @@ def sort_into_octaves(counts, octaves):
 
 @compiled
 def count_blocks(
-    seed,
-    first,
-    stop,
-    replicas,
-    lanes,
-    duration,
-    law,
-    draw,
-    prism,
-    sides,
-    identical,
-    hops,
-    walls,
-    rest,
-    octaves,
-):
+    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, identical, hops, walls,
+    rest, octaves,
+):  # fmt: skip
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
@@ -279,18 +266,9 @@ def replica_duration(scene):
 
 
 def run_blocks(
-    scene,
-    events,
-    seed,
-    first,
-    stop,
-    duration,
-    *,
-    replicas=REPLICAS,
-    lanes=LANES,
-    sides=(0, 0),
-    octaves=None,
-):
+    scene, events, seed, first, stop, duration, *,
+    replicas=REPLICAS, lanes=LANES, sides=(0, 0), octaves=None,
+):  # fmt: skip
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
