@@ -47,11 +47,20 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
     environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
     command = [sys.executable, "-m", "snakemake", "--cores", "1", JOB]
-    run = subprocess.Popen(command, cwd=checkout.path, env=environment, stderr=subprocess.DEVNULL)
+    run = subprocess.Popen(
+        command,
+        cwd=checkout.path,
+        env=environment,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
     wait_until(lambda: processes(checkout.path))
     # A second run while the first one lives is refused as ever.
     assert "LockException" in checkout.snakemake("--cores", "1", JOB, passes=False).stderr
-    run.send_signal(getattr(signal, name))
+    if name == "SIGKILL":
+        run.kill()
+    else:  # as Ctrl-C in a terminal; alone, Snakemake waits for its jobs
+        os.killpg(run.pid, getattr(signal, name))
     run.wait(60)
     wait_until(lambda: not processes(checkout.path))
 
