@@ -35,10 +35,10 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     jobs = built.jobs()
     assert of_effects(jobs, "dynamics") == ["torus"]
     assert {rule for rule, _ in jobs} == {
-        *("dynamics", "table", "effects_cost", "effects_table"),
+        *("dynamics", "table", "effects_cost", "effects_table", "manifest"),
         *FOLLOWING,
     }
 
 
 #: What is made of the tables of the study.
-FOLLOWING = {"shared_figure", "paper", "report", "manifest", "provenance"}
+FOLLOWING = {"shared_figure", "paper", "report", "provenance"}

@@ -12,16 +12,8 @@ from checkout import REPOSITORY
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.studies.catalogue import STUDIES
 
-
-def test_linter_only_misses_a_container(unbuilt):
-    run = unbuilt.snakemake("--lint", passes=False)
-    titles = set(re.findall(r"^    \* (.+):$", run.stdout + run.stderr, flags=re.MULTILINE))
-    # requirements.lock is the environment.
-    assert titles == {"Specify a conda environment or container for each rule."}
-
-
 #: They build nothing.
-WITHOUT_OUTPUT = ("verify", "forecast", "audit", "soak")
+WITHOUT_OUTPUT = ("verify", "forecast", "audit")
 
 
 def test_every_rule_keeps_a_log_and_a_benchmark():
@@ -69,7 +61,6 @@ def test_readme_lists_every_target():
         "verify",
         "forecast",
         "audit",
-        "soak",
         "crate",
         "provenance",
         *FIGURES,

@@ -1,9 +1,10 @@
 """Verification as a target: one job, always, that builds nothing and says what differs."""
 
-import json
 import os
 import subprocess
 import sys
+
+from twodiscs.pipeline.digests import read_json, write_json
 
 
 def test_verification_is_one_job_whatever_there_is(unbuilt):
@@ -44,9 +45,9 @@ def test_what_differs_is_said_and_nothing_is_built(built):
     assert "no differences" in built.snakemake("--cores", "1", "verify").stdout
 
     path = built.path / "results" / "six" / "points" / "dynamics" / "0.2.json"
-    point = json.loads(path.read_text())
+    point = read_json(path)
     point["counts"]["vertical_hop"] += 1
-    path.write_text(json.dumps(point))
+    write_json(path, point)
     before = built.results()
     run = built.snakemake("--cores", "1", "verify", passes=False)
     assert run.returncode == 1

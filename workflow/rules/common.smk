@@ -47,6 +47,7 @@ if cost.days(CONFIGURATION.scenes) > 1:
 # the folder that they are run in.
 os.environ.update(
     TWODISCS_WORKFLOW=str(os.getpid()),
+    TWODISCS_SNAKEFILE=workflow.main_snakefile,
     PYTHONSAFEPATH="1",
     PATH=os.pathsep.join(
         [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]

@@ -90,13 +90,12 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        snakefile=os.path.relpath(workflow.main_snakefile),
         configuration=json.dumps(config, indent=1, sort_keys=True),
         scenes=json.dumps(FILES.report()),
         code=code("pipeline.documents.report"),
     shell:
         "{{ printf '%s\\n' {params.configuration:q} > {output.configuration};"
-        " again() {{ snakemake --snakefile {params.snakefile:q} --nolock --workflow-profile none"
+        ' again() {{ snakemake --snakefile "$TWODISCS_SNAKEFILE" --nolock --workflow-profile none'
         ' "$@" --configfile {output.configuration} -- {input.results}; }};'
         " again --report {output.workflow} --report-stylesheet {input.style};"
         " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results}"
@@ -182,7 +181,7 @@ rule audit:
     params:
         configuration=json.dumps(config, sort_keys=True),
     shell:
-        "python -m twodiscs.pipeline.results.audit --results $(dirname {log})/.."
+        "python -m twodiscs.pipeline.results.audit --results $(dirname $(dirname {log}))"
         " --configuration {params.configuration:q} 2> {log}"
 
 
@@ -195,7 +194,7 @@ rule verify:
         configuration=json.dumps(config, sort_keys=True),
         expected=os.path.dirname(source("paper/expected/configuration.json")),
     shell:
-        "python -m twodiscs.pipeline.results.verify --results $(dirname {log})/.."
+        "python -m twodiscs.pipeline.results.verify --results $(dirname $(dirname {log}))"
         " --expected {params.expected} --configuration {params.configuration:q} 2> {log}"
 
 
@@ -209,7 +208,7 @@ rule forecast:
         configuration=json.dumps(config, sort_keys=True),
     shell:
         "python -m twodiscs.pipeline.forecast --configuration {params.configuration:q}"
-        " --cores {threads} --output $(dirname {log})/../forecast.csv 2> {log}"
+        " --cores {threads} --output $(dirname $(dirname {log}))/forecast.csv 2> {log}"
 
 
 rule benchmark:

@@ -40,7 +40,7 @@ rule table:
     shell:
         "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --areas {params.areas}"
         " --theory {input.theory} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
-        " --intervals {params.intervals} --results $(dirname {output.table})/.. --output {output.table}"
+        " --intervals {params.intervals} --results $(dirname $(dirname {output.table})) --output {output.table}"
         " > {log} 2>&1"
 
 

@@ -17,6 +17,7 @@ import yaml
 
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.digests import digest
+from twodiscs.pipeline.documents.numbers.table import PaperNumbers
 from twodiscs.pipeline.documents.report import ENTRIES
 from twodiscs.studies.catalogue import TABLES
 
@@ -37,6 +38,7 @@ OTHERS = {
     "configuration.json": "The configuration that all results were built from",
     "manifest.sha256": "Fingerprints of all tables and figures that hold no run times",
     "paper.pdf": "The manuscript",
+    "paper_numbers.csv": PaperNumbers.meaning(),
     "provenance.json": "Commit, versions, machine and times",
     "report.html": "The report: verdict, agreement and key figures",
     "report-workflow.html": "Snakemake's report: every table and figure, and the job that made it",
