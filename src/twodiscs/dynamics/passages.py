@@ -56,8 +56,8 @@ from twodiscs.sampling.streams import open_stream
 PASSES = 2
 
 #: Replicas that share a random stream, and blocks of them whose states are in memory at once.
-REPLICAS = 256
-CHUNK = 256
+REPLICAS = 64
+CHUNK = 1024
 
 #: Clusters of so many hops, or more, are in one class. It counts as even, which makes κ too small
 #: by less than the fraction of hops in it over their number.

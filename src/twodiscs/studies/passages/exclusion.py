@@ -4,7 +4,7 @@ On a ring of sites, half of them occupied, the two sites of every bond are excha
 but where both are occupied only with a probability p. Without swaps (p = 0) a tagged particle has
 the mean square displacement F √t of a single file, F = (1 − ρ)/ρ · 2/√π at the density ρ (Arratia,
 Ann. Probab. 11, 362 (1983)). With p = 1 it is a free random walk, D = 1. A particle swaps at the
-exact rate ν = ρ p with its neighbour in either direction, and a swap moves it by ℓ = 1/ρ on average.
+exact rate ν = ρ p with its neighbour on either side, which moves it by ℓ = 1/ρ on average.
 """
 
 import math

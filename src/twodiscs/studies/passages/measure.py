@@ -6,8 +6,10 @@ the coefficient D of diffusion along a ring, by the correlations of hops and by 
 """
 
 import math
+from itertools import pairwise
 
 from twodiscs.comparison.estimates import Estimate, Line, mean_of
+from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.dynamics.passages import compile_kernels as compile_hops
 from twodiscs.model.box import Box
@@ -16,7 +18,6 @@ from twodiscs.model.events import HOPS
 from twodiscs.studies.passages import exclusion
 from twodiscs.studies.passages.table import Passages
 from twodiscs.studies.passages.transmission import (
-    QUIET,
     TIMES,
     box_time,
     by_clusters,
@@ -39,23 +40,23 @@ MOST_HOPS, FEWEST_HOPS = 2**18, 2**11
 #: Replicas that record κ(t), over those for κ.
 RECORDED = 4
 
-#: Wall and disc events of a hop, about: in a neck of the relative length √distance smooth discs meet
-#: 2/√distance times, rough ones, which diffuse there, 24/distance.
+#: Wall and disc events of a hop, about: in a neck of the relative length √distance smooth discs
+#: meet 2/√distance times, rough ones, which diffuse there, 24/distance.
 MET = {False: (2, 0.5), True: (24, 1.0)}
 
 #: The density at 0 is taken from two times, the first of which sees so many hops per hop.
 FIRST = 0.01
 
-#: A ring: correlations of hops are summed up for so many times of a disc around it; displacements are
-#: those in twice as many mean times between hops, or that time, and no fewer replicas than so many.
-AROUND, MEAN_TIMES, FEWEST = 16, 2, 2**12
+#: A ring: correlations of hops are summed up for so many times that a disc takes around it, and
+#: displacements for twice that time, or two mean times between hops, in so many replicas or more.
+AROUND, FEWEST = 16, 2**11
 
 #: Probabilities of swaps on the lattice; rings of it where it takes long, and where it does not.
-SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 24, 256, 1000
+SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
 
 
 def thresholds(box):
-    """Return {hop: radius} at which the hops of a plain ``Box`` become blocked before it is full."""
+    """Return {hop: radius} at which hops of a plain ``Box`` become blocked before it is full."""
     found = {hop: box.threshold(hop) for hop in HOPS}
     return {hop: radius for hop, radius in found.items() if radius in box.thresholds}
 
@@ -65,17 +66,17 @@ def radius_at(limit, halvings):
     return limit * (1 - 2.0**-halvings)
 
 
-def blocks_for(scene, hop, distance, events):
-    """Return how many blocks of hops take about so many ``events`` in their clusters."""
+def blocks_for(scene, distance, time, events):
+    """Return how many blocks of hops, followed for a ``time``, take about so many ``events``."""
     factor, power = MET[scene.moment_of_inertia is not None]
-    one = 3 * QUIET + factor / distance**power
+    one = time * exact.event_rate(scene) + factor / distance**power
     return int(min(max(events / one, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
 
 
 class _Hop:
     """One kind of hops at one radius: what is measured, and the rows that say so."""
 
-    def __init__(self, name, scene, hop, limit, halvings, seed):
+    def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
         self.row = Passages.empty(
@@ -90,24 +91,27 @@ class _Hop:
         return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
     def said(self, quantity, method, estimate, time=None, reference=None, events=None):
-        """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method."""
+        """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method.
+
+        The error of what comes from ``states`` is that of as many independent blocks.
+        """
         row = self.row | {"quantity": quantity, "method": method, "time": time, "events": events}
         row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
-        if reference is None or not estimate.stderr:
+        if reference is None:
             return row
         if not isinstance(reference, Estimate):
             reference = Estimate(reference, 0.0, 1)
-        error = math.hypot(estimate.stderr, reference.stderr)
+        z = (estimate.value - reference.value) / math.hypot(estimate.stderr, reference.stderr)
         return row | {
             "reference": reference.value,
             "reference_stderr": reference.stderr or None,
-            "z": (estimate.value - reference.value) / error,
+            "z": student_deviate(z, estimate.n - 1) if method == "states" else z,
             "test": "normal",
         }
 
     def clusters(self, blocks):
         """Return (κ or None, the row of it in a list)."""
-        gap = quiet_time(self.scene)
+        gap = quiet_time(self.scene, self.hop)
         sizes, events = cluster_sizes(self.scene, self.hop, gap, blocks, self._seed("clusters"))
         kappa = plateau(by_clusters(sizes), gap, self.mean)
         if kappa is None:
@@ -120,7 +124,7 @@ class _Hop:
 
     def curve(self, blocks, kappa):
         """Yield the rows of κ(t), and of its plateau against ``kappa`` if that is known."""
-        gap = quiet_time(self.scene)
+        gap = quiet_time(self.scene, self.hop)
         box, own = box_time(self.scene, self.hop), []
         times = sorted({gap, *(box * time for time in TIMES)})
         sums, events = hop_sums(self.scene, self.hop, times, blocks, self._seed("times"))
@@ -140,6 +144,8 @@ class _Hop:
         """
         density = tails.density_at_zero(self.scene, self.hop)
         time = FIRST / (2 * density)
+        if time > math.sqrt(self.scene.contact_distance * self.scene.room(self.hop)):
+            return  # discs that turn round so late do not find the neck again
         parts = []
         for n in (1, 2):
             sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
@@ -154,11 +160,11 @@ class _Hop:
         """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
         around = AROUND * box_time(self.scene, self.hop)
         rate = exact.event_rate(self.scene)
-        blocks = int(min(max(events / (rate * around), FEWEST), MOST_HOPS)) // REPLICAS
+        blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
         sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
         (correlated,) = by_time(sums)
         yield self.said("diffusion", "hops", correlated, around, events=simulated)
-        time = max(around, MEAN_TIMES * self.mean)
+        time = max(around, self.mean)
         blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // REPLICAS
         sums, simulated = hop_sums(
             self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
@@ -181,8 +187,8 @@ def near_threshold(name, box, hop, halvings, inertia, events, seed):
     effects = {} if inertia is None else {"moment_of_inertia": inertia}
     for n in halvings:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
-        one, blocks = _Hop(name, scene, hop, limit, n, seed), 0
-        blocks = blocks_for(scene, hop, 2.0**-n, events)
+        one, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
+        blocks = blocks_for(scene, 2.0**-n, both, events)
         kappa, rows = one.clusters(blocks)
         yield from rows
         yield from one.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
@@ -198,7 +204,7 @@ def _exponents(found):
 
     ``found`` are pairs (``_Hop``, κ), the distance halved from one to the next.
     """
-    for (_, before), (one, kappa) in zip(found, found[1:], strict=False):
+    for (_, before), (one, kappa) in pairwise(found):
         rough = one.scene.moment_of_inertia is not None
         values = [(k.value if rough else 1 - k.value) for k in (before, kappa)]
         if min(values) <= 0:
@@ -219,8 +225,7 @@ def on_ring(name, box, inertia, events, seed):
     limit = box.height / 4
     for n in RING:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
-        one = _Hop(name, scene, "horizontal_hop", limit, n, seed)
-        yield from one.diffusion(events)
+        yield from _Hop(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
 def on_lattice(seed):
@@ -231,7 +236,7 @@ def on_lattice(seed):
         row = start | {"quantity": quantity, "swap": swap} | more
         row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
         if reference is not None:
-            z = (estimate.value - reference) / estimate.stderr
+            z = student_deviate((estimate.value - reference) / estimate.stderr, estimate.n - 1)
             row |= {"reference": reference, "z": z, "test": "normal"}
         return row
 

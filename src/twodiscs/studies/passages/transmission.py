@@ -13,25 +13,26 @@ from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.theory import exact
 
-#: Clusters end where no hop comes for so many mean times between wall hits and disc collisions.
-QUIET = 32
+#: A cluster ends where no hop comes for so many times that a disc of speed 1 takes along the box.
+QUIET = 6
 
 #: Passages must be so rare that this share of them, at most, comes within the gap after another.
 #: Then κ(t) has a plateau there, and what they take from κ is known to its square.
 MOST_MERGED = 0.05
 
-#: Where κ(t) is recorded, in times that a disc of speed 1 takes along the box.
+#: Where κ(t) is recorded, in the same times.
 TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
 
 
-def quiet_time(scene):
-    """Return the time without a hop that ends a cluster of hops."""
-    return QUIET / exact.event_rate(scene)
-
-
 def box_time(scene, hop):
-    """Return how long a disc of speed 1 takes along the axis of a ``hop``."""
-    return scene.side(AXIS[hop])
+    """Return how long a disc of speed 1 takes along the axis of a ``hop``, in which it has room."""
+    axis = AXIS[hop]
+    return scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+
+
+def quiet_time(scene, hop):
+    """Return the time without a ``hop`` that ends a cluster of them."""
+    return QUIET * box_time(scene, hop)
 
 
 def by_clusters(sizes):
@@ -64,10 +65,10 @@ def plateau(seen, time, mean):
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops: then κ(t) is
     κ exp(−2 κ t/τ), and to first order the fraction of passages in clusters falls alike with their
-    gap. None where the time has more than ``MOST_MERGED`` passages.
+    gap. None where the time has more than ``MOST_MERGED`` passages or a quarter of a hop.
     """
     value = seen.value
-    if value <= 0 or value * time / mean > MOST_MERGED:
+    if value <= 0 or time > mean / 4 or value * time / mean > MOST_MERGED:
         return None
     for _ in range(50):  # a contraction: 2 κ t/τ is small
         value = seen.value * math.exp(2 * value * time / mean)
@@ -142,7 +143,7 @@ def transmission(scene, hop, hops, seed, name):
         )
     blocks = -(-count("hops", hops, most=10**9) // REPLICAS)
     name = repr(Box.of(scene).parameters()) if name is None else name
-    mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene)
+    mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
     sizes, _ = cluster_sizes(scene, hop, gap, blocks, seed_of(scene, hop, name, seed, "clusters"))
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     sums, _ = hop_sums(scene, hop, times, blocks, seed_of(scene, hop, name, seed, "times"))
