@@ -3,10 +3,10 @@
 import numpy as np
 
 from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.limits import QUARTERS
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
-    COLUMN,
     GREEN,
     GREY,
     ORANGE,
@@ -17,13 +17,13 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs.model.events import HOPS
+from twodiscs.model.events import AXIS, HOPS
 from twodiscs.studies.passages.measure import ONE_INERTIA, thresholds
 from twodiscs.studies.passages.transmission import box_time
 from twodiscs.theory import exact, tails
 
-#: Inches: between columns, heights of the panels and of that of the residuals, gaps, room above.
-GUTTER, HEIGHT, RESIDUALS, GAP, TOP = 0.24, 1.95, 0.8, 0.4, 0.22
+#: Inches: the figure across, heights of the panels and of that of the residuals, gaps, room above.
+WIDTH, HEIGHT, RESIDUALS, GAP, TOP = 7.0, 2.1, 0.8, 0.4, 0.22
 
 #: Halvings of the distance whose κ(t) is shown: of smooth discs, and of rough ones.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
@@ -41,19 +41,16 @@ OTHERS = ((SKY, "P"), (BLACK, "D"))
 def draw(box, tables):
     """Draw the rows of passages.csv; those of κ(t) and diffusion are in the first scene."""
     rows = tables["passages"]
-    width, left = 2 * COLUMN + GUTTER, COLUMN + GUTTER + panels.LEFT
-    bottom = panels.BOTTOM + RESIDUALS + GAP
-    figure = new_figure(bottom + 2 * HEIGHT + GAP + TOP, width)
+    half = WIDTH / 2 - panels.LEFT - panels.RIGHT
+    bottom, right = panels.BOTTOM + RESIDUALS + GAP, WIDTH / 2 + panels.LEFT
     upper = bottom + HEIGHT + GAP
-    curves = panels.add_panel(figure, upper, HEIGHT)
-    powers = panels.add_panel(figure, upper, HEIGHT, left)
-    times = panels.add_panel(figure, bottom, HEIGHT)
-    diffusion = panels.add_panel(figure, bottom, HEIGHT, left)
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=width - left)
-    lower.set_position([*lower.get_position().p0, 0, 0])
-    whole = (width - panels.LEFT - panels.RIGHT) / width
-    place = lower.get_position()
-    lower.set_position([place.x0, place.y0, whole, RESIDUALS / figure.get_figheight()])
+    figure = new_figure(upper + HEIGHT + TOP, WIDTH)
+    curves = panels.add_panel(figure, upper, HEIGHT, width=half)
+    powers = panels.add_panel(figure, upper, HEIGHT, right, half)
+    times = panels.add_panel(figure, bottom, HEIGHT, width=half)
+    diffusion = panels.add_panel(figure, bottom, HEIGHT, right, half)
+    whole = WIDTH - panels.LEFT - panels.RIGHT
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=whole)
     all_axes = (curves, powers, times, diffusion, lower)
     for axes, name in zip(all_axes, "abcde", strict=True):
         panels.letter(axes, name)
@@ -128,10 +125,11 @@ def _curves(axes, box, rows):
         axes.plot([], [], color=colour, marker=marker, markersize=2.5, lw=0.6, label=name)
     axes.plot([], [], color=BLACK, lw=0.7, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters")
     axes.plot([], [], color=BLACK, lw=0.8, ls=(0, (3, 1.5)), label="exact slope at 0")
-    axes.set(xscale="log", xlim=(0.09, 15), ylim=(-0.02, 1.02))
+    axes.set(xscale="log", xlim=(0.09, 15), ylim=(-0.02, 1.32))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set(xlabel="time $t$ over the range along the hop", ylabel=r"transmission $\kappa(t)$")
-    axes.legend(loc="center left", bbox_to_anchor=(0, 0.42), fontsize=6.6)
+    axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1])
+    axes.legend(loc="upper left", ncols=2, fontsize=6.6)
 
 
 def _powers(axes, rows, first):
@@ -139,18 +137,18 @@ def _powers(axes, rows, first):
     seen = [row for row in rows if row["quantity"] == "coefficient"]
     others = iter(OTHERS)
     kinds = dict.fromkeys((r["scene"], r["event"], r["moment_of_inertia"]) for r in seen)
-    for scene, event, inertia in kinds:
+    for scene, event, inertia in sorted(kinds, key=lambda kind: kind[2] or 0):
         own = _of(seen, scene=scene, event=event, moment_of_inertia=inertia)
         if inertia is not None and (scene, event) != (first, HOPS[-1]):
             continue
         distance, value, error = _columns(own, "distance", "estimate", "stderr")
         if inertia is None:
             box = Box(own[0]["width"], own[0]["height"])
-            where = f"${box.width:g}\\times {box.height:g}$, {event.split('_')[0]}"
+            where = f"${box.width:g}\\times {box.height:g}$, ${QUARTERS[AXIS[event]]}$"
             look = LOOKS[None] if (scene, event) == (first, HOPS[-1]) else next(others)
-            _points(axes, distance, 1 - value, error, look, rf"$1-\kappa$, smooth, {where}")
+            _points(axes, distance, 1 - value, error, look, rf"$1-\kappa$, {where}")
         else:
-            name = rf"$\kappa$, rough, $I={inertia:g}$"
+            name = rf"$\kappa$, $I={inertia:g}$"
             _points(axes, distance, value, error, LOOKS[inertia], name)
     for power, name, start, height in (
         (1 / 3, r"$\delta^{1/3}$", 5e-5, 0.05),
@@ -160,10 +158,10 @@ def _powers(axes, rows, first):
         axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
         end = (x[1], height * 30**power)
         drawing.label(axes, name, end, (3, 0), ha="left", color=GREY)
-    axes.set(xscale="log", yscale="log", xlim=(4e-5, 0.4), ylim=(0.002, 2.5))
+    axes.set(xscale="log", yscale="log", xlim=(4e-5, 0.25), ylim=(0.005, 8))
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     axes.set_ylabel(r"$1-\kappa$ (smooth),  $\kappa$ (rough)")
-    axes.legend(loc="upper left", fontsize=6, ncols=2, columnspacing=0.6)
+    axes.legend(loc="upper left", fontsize=6.6, ncols=2, columnspacing=0.6)
 
 
 def _times(axes, box, rows):
@@ -213,7 +211,7 @@ def _diffusion(axes, rows):
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_xlabel(r"distance $\delta$, or probability $p$ of a swap")
     axes.set_ylabel(r"diffusion $D/(\nu\,\ell^2)$")
-    axes.legend(loc="upper right", bbox_to_anchor=(1, 0.85), fontsize=6.6)
+    axes.legend(loc="lower right", fontsize=6.6)
 
 
 def _residuals(axes, rows):
