@@ -253,8 +253,3 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     sizes, none = np.zeros(LARGEST + 1, np.int64), np.zeros((blocks, SUMS, 1), np.int64)
     events = _followed(scene, hop, blocks, seed, first, np.array([gap]), gap, none, sizes)
     return sizes, events
-
-
-def compile_kernels(scene, hop):
-    """Compile the kernel that follows the hops of a ``Scene``."""
-    hop_sums(scene, hop, [2.0**-20], 1, 0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twodiscs.comparison.transmission import box_time
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.limits import QUARTERS
 from twodiscs.figures.kit.style import (
@@ -19,7 +20,6 @@ from twodiscs.figures.kit.style import (
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.studies.passages.measure import ONE_INERTIA, thresholds
-from twodiscs.studies.passages.transmission import box_time
 from twodiscs.theory import exact, tails
 
 #: Inches: the figure across, heights of the panels and of that of the residuals, gaps, room above.

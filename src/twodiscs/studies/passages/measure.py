@@ -8,16 +8,9 @@ the coefficient D of diffusion along a ring, by the correlations of hops and by 
 import math
 from itertools import pairwise
 
-from twodiscs.comparison.estimates import Estimate, Line, mean_of
+from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
-from twodiscs.dynamics.passages import compile_kernels as compile_hops
-from twodiscs.model.box import Box
-from twodiscs.model.checks import whole
-from twodiscs.model.events import HOPS
-from twodiscs.studies.passages import exclusion
-from twodiscs.studies.passages.table import Passages
-from twodiscs.studies.passages.transmission import (
+from twodiscs.comparison.transmission import (
     TIMES,
     box_time,
     by_clusters,
@@ -26,6 +19,12 @@ from twodiscs.studies.passages.transmission import (
     quiet_time,
     seed_of,
 )
+from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
+from twodiscs.model.box import Box
+from twodiscs.model.checks import whole
+from twodiscs.model.events import HOPS
+from twodiscs.studies.passages import exclusion
+from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact, tails
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
@@ -35,7 +34,7 @@ SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
 INERTIAS, ONE_INERTIA = (0.1, 0.25, 0.5, 1.0), 0.5
 
 #: No more hops are followed for one estimate, and no fewer.
-MOST_HOPS, FEWEST_HOPS = 2**18, 2**11
+MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 
 #: Replicas that record κ(t), over those for κ.
 RECORDED = 4
@@ -216,7 +215,7 @@ def _exponents(found):
         x = [-one.halvings * math.log(2) for one, _ in found]
         y = [math.log(one.mean / kappa.value) for one, kappa in found]
         errors = [kappa.stderr / kappa.value for _, kappa in found]
-        yield found[-1][0].said("passage_exponent", "fit", Line(x, y, errors).slope)
+        yield found[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
 def on_ring(name, box, inertia, events, seed):
@@ -269,12 +268,3 @@ def rows(scenes, events, seed):
             for inertia in (None, ONE_INERTIA):
                 yield from on_ring(name, box, inertia, events, seed)
     yield from on_lattice(seed)
-
-
-def compile_kernels():
-    """Compile what follows hops of smooth and of rough discs, in a box and on a ring."""
-    for effects in ({}, {"moment_of_inertia": ONE_INERTIA}):
-        for periodic in ("", "x"):
-            scene = Box(1.5, 1.0, effects | {"periodic": periodic}).scene(0.2)
-            compile_hops(scene, "horizontal_hop")
-    exclusion.displacements(0.0, [1.0], 2, 0)

@@ -1,6 +1,6 @@
 """The table of hops that are passages, and of diffusion by them."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
 
 AS_ESTIMATE = Column(float, "as estimate")
 
@@ -62,3 +62,10 @@ class Passages(Table):
     """independent replicas; of a fit, points"""
     events: COUNT
     """wall hits and disc collisions that were simulated for it"""
+
+    @staticmethod
+    def rows(scenes, events, seed):
+        """Yield the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
+        from twodiscs.studies.passages import measure
+
+        yield from measure.rows(scenes, events, seed)

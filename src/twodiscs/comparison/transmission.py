@@ -8,7 +8,7 @@ import numpy as np
 from twodiscs.comparison.estimates import Estimate
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, count
+from twodiscs.model.checks import InputError, count, shown
 from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.theory import exact
@@ -142,6 +142,8 @@ def transmission(scene, hop, hops, seed, name):
             "periodic"
         )
     blocks = -(-count("hops", hops, most=10**9) // REPLICAS)
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name must be that of a scene, not {shown(name)}")
     name = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
     sizes, _ = cluster_sizes(scene, hop, gap, blocks, seed_of(scene, hop, name, seed, "clusters"))
