@@ -66,14 +66,14 @@ def test_the_past_is_as_the_future():
 def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
     """Where hops are so rare that the gap hardly matters, and with a far smaller error."""
     scene = Scene(1.5, 1.0, 0.249, moment_of_inertia=inertia)
-    sizes, _ = passages.cluster_sizes(scene, HOP, 6.0, 128, 6)
-    (late,) = by_time(passages.hop_sums(scene, HOP, [6.0], 256, 7)[0])
+    sizes, _ = passages.cluster_sizes(scene, HOP, 6.0, 64, 6)
+    (late,) = by_time(passages.hop_sums(scene, HOP, [6.0], 64, 7)[0])
     kappa = by_clusters(sizes)
     five(kappa.value, late.value, math.hypot(kappa.stderr, late.stderr))
     # Passages that follow within the gap are 2 κ gap/τ of them, 2e-3 at most.
     assert 2 * 6.0 * exact.rate(scene, HOP) < 2e-3
     assert sizes[0] == 0
-    assert sizes.sum() == 128 * passages.REPLICAS
+    assert sizes.sum() == 64 * passages.REPLICAS
     assert kappa.stderr * math.sqrt(kappa.n) < math.sqrt(kappa.value)
 
 
