@@ -6,15 +6,19 @@ fewer than 2e-5 of all seeds.
 
 import math
 
+import numba
 import numpy as np
 import pytest
-from fabricated import make_table
+from fabricated import written
 
+from twodiscs.comparison.estimates import mean_of
 from twodiscs.comparison.transmission import by_clusters, plateau
-from twodiscs.dynamics.passages import cluster_sizes
+from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.passages import cluster_sizes, initial_states
+from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
-from twodiscs.studies.distributions import measure as distributions
+from twodiscs.sampling.starts import state_in
 from twodiscs.studies.passages import exclusion, figure, measure
 from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact
@@ -37,18 +41,31 @@ def test_the_slope_at_zero_is_exact(hop, halvings):
     assert row["stderr"] < 0.15 * row["reference"]
 
 
+@numba.njit
+def intervals(states, law):
+    """Return the times to the next vertical hop from states on y1 = y2."""
+    found = np.zeros(states.shape[1])
+    for i in range(found.size):
+        x1, y1, x2, y2, u1, v1, u2, v2 = state_in(states, i)
+        # The disc that gets above the other one is called the first.
+        state = (x1, y1, x2, y2, u1, v1, u2, v2)
+        if v1 < v2:
+            state = (x2, y2, x1, y1, u2, v2, u1, v1)
+        found[i] = time_to_next(state, law, True, np.inf)
+    return found
+
+
 def test_first_passages_take_the_time_between_passages():
-    """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) but for the time to forget, of τ."""
-    scene = BOX.scene(0.242)
-    rows = {row["quantity"]: row for row in distributions.measured(scene, HOP, 2, 2**23)}
-    spread = rows["squared_cv"]
-    due = 2 / (1 + spread["estimate"])
-    error = due * spread["stderr"] / (1 + spread["estimate"])
-    gap, mean = 6 * scene.range_x, exact.mean_times(scene)[HOP]
-    kappa = plateau(by_clusters(cluster_sizes(scene, HOP, gap, 512, 3)[0]), gap, mean)
-    allowed = 5 * math.hypot(error, kappa.stderr) + gap / mean
-    assert abs(kappa.value - due) <= allowed
-    assert allowed < 0.25
+    """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) but for the time to forget, over τ."""
+    scene, hop = Box(1.0, 1.5).scene(0.242), "vertical_hop"
+    times = intervals(initial_states(scene, hop, 256, 2), law_of(scene))
+    mean, gap = exact.mean_times(scene)[hop], 6 * scene.range_y
+    assert abs(times.mean() - mean) <= 5 * times.std() / math.sqrt(times.size)
+    square = mean_of(times**2 / mean**2)
+    due, error = 2 / square.value, 2 * square.stderr / square.value**2
+    kappa = plateau(by_clusters(cluster_sizes(scene, hop, gap, 512, 3)[0]), gap, mean)
+    assert abs(kappa.value - due) <= 5 * math.hypot(error, kappa.stderr) + gap / mean
+    assert 5 * error + gap / mean < 0.25
 
 
 # The lattice ------------------------------------------------------------------------------------
@@ -112,10 +129,8 @@ def small(monkeypatch):
         monkeypatch.setattr(measure, name, value)
 
 
-def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch, small):
-    path = tmp_path / "passages.csv"
-    assert make_table(monkeypatch, "passages", PARAMETERS, path) == 0
-    rows = Passages.read(path)
+def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small):
+    rows = written(tmp_path, Passages, **PARAMETERS)
     z = [row["z"] for row in rows if row["z"] is not None]
     assert max(map(abs, z)) < 5
     by_quantity = {row["quantity"] for row in rows}
@@ -143,10 +158,11 @@ def test_the_job_writes_the_table_and_the_figure_reads_it(tmp_path, monkeypatch,
     assert residuals.get_xscale() == "log"
 
 
-def test_a_box_without_thresholds_has_its_lattice_only(monkeypatch, small):
-    """In a square the discs jam before either hop becomes blocked... at the same radius."""
+def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
+    """Along a ring of its width the discs would be jammed before they cannot pass."""
     rows = list(Passages.rows({"square": {"width": 1.0, "height": 4.0}}, 2**18, 1))
     events = {row["event"] for row in rows}
     assert events == {"vertical_hop", "swap"}
     with style.context():
         assert figure.draw(Box(1.0, 4.0), {"passages": rows})
+        assert figure.draw(Box(1.0, 4.0), {"passages": rows[-3:]})

@@ -5,6 +5,7 @@ import numpy as np
 from twodiscs.comparison.transmission import box_time
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.limits import QUARTERS
+from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
@@ -18,7 +19,7 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.events import AXIS
 from twodiscs.studies.passages.measure import ONE_INERTIA, thresholds
 from twodiscs.theory import exact, tails
 
@@ -62,12 +63,14 @@ def draw(box, tables):
     first = next((row["scene"] for row in rows if row["scene"]), None)
     own = [row for row in rows if row["scene"] == first]
     main = Box(own[0]["width"], own[0]["height"]) if own else box
-    _curves(curves, main, own)
-    _powers(powers, rows, first)
-    _times(times, main, own)
+    hop, limit = [*thresholds(main).items()][-1]
+    ours = _of(own, event=hop, periodic=None)
+    _curves(curves, main, hop, limit, ours)
+    _powers(powers, rows, first, hop)
+    _times(times, main, hop, limit, ours)
     _diffusion(diffusion, rows)
     _residuals(lower, rows)
-    panels.name_box(curves, main, ",  horizontal hops")
+    panels.name_box(curves, main, f",  (a, c) {name_of(hop)}")
     return figure
 
 
@@ -91,9 +94,8 @@ def _points(axes, x, y, error, look, label=None, filled=False):
 # Panels -----------------------------------------------------------------------------------------
 
 
-def _curves(axes, box, rows):
+def _curves(axes, box, hop, limit, rows):
     """Draw κ(t), how it starts by the exact law, and what is left by the passages."""
-    rows = _of(rows, event=HOPS[-1], periodic=None)
     for inertia, halvings in SHOWN.items():
         colour, marker = LOOKS[inertia]
         for n in halvings:
@@ -102,7 +104,7 @@ def _curves(axes, box, rows):
             if not seen:
                 continue
             scene = box.scene(seen[0]["radius"])
-            unit = box_time(scene, HOPS[-1])
+            unit = box_time(scene, hop)
             time, value, error = _columns(seen, "time", "estimate", "stderr")
             axes.errorbar(
                 time / unit, value, error, color=colour, marker=marker, markersize=1.6, lw=0.5,
@@ -117,8 +119,8 @@ def _curves(axes, box, rows):
                 fall = np.exp(-2 * row["estimate"] * late * unit / row["exact_mean"])
                 axes.plot(late, row["estimate"] * fall, color=BLACK, lw=0.7, zorder=5)
     early = np.geomspace(0.1, 0.6, 20)
-    scene = box.scene(thresholds(box)[HOPS[-1]] * (1 - 2.0**-12))
-    slope = tails.density_at_zero(scene, HOPS[-1]) * box_time(scene, HOPS[-1])
+    scene = box.scene(limit * (1 - 2.0**-12))
+    slope = tails.density_at_zero(scene, hop) * box_time(scene, hop)
     axes.plot(early, 1 - 2 * slope * early, color=BLACK, lw=0.8, ls=(0, (3, 1.5)), zorder=6)
     for inertia, name in ((None, "smooth discs"), (ONE_INERTIA, f"rough, $I={ONE_INERTIA:g}$")):
         colour, marker = LOOKS[inertia]
@@ -132,20 +134,20 @@ def _curves(axes, box, rows):
     axes.legend(loc="upper left", ncols=2, fontsize=6.6)
 
 
-def _powers(axes, rows, first):
+def _powers(axes, rows, first, hop):
     """Draw 1 − κ of smooth discs and κ of rough ones."""
     seen = [row for row in rows if row["quantity"] == "coefficient"]
     others = iter(OTHERS)
     kinds = dict.fromkeys((r["scene"], r["event"], r["moment_of_inertia"]) for r in seen)
     for scene, event, inertia in sorted(kinds, key=lambda kind: kind[2] or 0):
         own = _of(seen, scene=scene, event=event, moment_of_inertia=inertia)
-        if inertia is not None and (scene, event) != (first, HOPS[-1]):
+        if inertia is not None and (scene, event) != (first, hop):
             continue
         distance, value, error = _columns(own, "distance", "estimate", "stderr")
         if inertia is None:
             box = Box(own[0]["width"], own[0]["height"])
             where = f"${box.width:g}\\times {box.height:g}$, ${QUARTERS[AXIS[event]]}$"
-            look = LOOKS[None] if (scene, event) == (first, HOPS[-1]) else next(others)
+            look = LOOKS[None] if (scene, event) == (first, hop) else next(others)
             _points(axes, distance, 1 - value, error, look, rf"$1-\kappa$, {where}")
         else:
             name = rf"$\kappa$, $I={inertia:g}$"
@@ -164,15 +166,13 @@ def _powers(axes, rows, first):
     axes.legend(loc="upper left", fontsize=6.6, ncols=2, columnspacing=0.6)
 
 
-def _times(axes, box, rows):
+def _times(axes, box, hop, limit, rows):
     """Draw the exact time between hops and the time between passages, with its fitted power."""
-    rows = _of(rows, event=HOPS[-1], periodic=None)
-    limit = thresholds(box).get(HOPS[-1])
     distances = np.geomspace(4e-5, 0.2, 60)
     for inertia, style in ((None, "-"), (ONE_INERTIA, (0, (4, 2)))):
         effects = {} if inertia is None else {"moment_of_inertia": inertia}
         shaped = Box(box.width, box.height, effects)
-        tau = [1 / exact.rate(shaped.scene(limit * (1 - d)), HOPS[-1]) for d in distances]
+        tau = [1 / exact.rate(shaped.scene(limit * (1 - d)), hop) for d in distances]
         name = "smooth" if inertia is None else "rough"
         axes.plot(distances, tau, color=BLACK, lw=0.8, ls=style, zorder=5,
                   label=rf"$\tau$, exact, {name}")  # fmt: skip

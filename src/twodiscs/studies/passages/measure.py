@@ -260,9 +260,10 @@ def rows(scenes, events, seed):
     whole("seed", seed, 0), whole("events", events)
     for place, (name, parameters) in enumerate(scenes.items()):
         box = Box(**parameters)
-        for hop in thresholds(box):
+        limits = thresholds(box)
+        for hop in limits:
             yield from near_threshold(name, box, hop, SMOOTH, None, events, seed)
-            for inertia in INERTIAS if place == 0 and hop == HOPS[-1] else (ONE_INERTIA,):
+            for inertia in INERTIAS if place == 0 and hop == [*limits][-1] else (ONE_INERTIA,):
                 yield from near_threshold(name, box, hop, ROUGH, inertia, events, seed)
         if place == 0 and box.fits(box.height / 4):
             for inertia in (None, ONE_INERTIA):
