@@ -61,7 +61,7 @@ def draw(box, tables):
             axes.set_axis_off()
         return figure
     first = next((row["scene"] for row in rows if row["scene"]), None)
-    own = [row for row in rows if row["scene"] == first]
+    own = [row for row in rows if first and row["scene"] == first]
     main = Box(own[0]["width"], own[0]["height"]) if own else box
     hop, limit = [*thresholds(main).items()][-1]
     ours = _of(own, event=hop, periodic=None)
