@@ -301,8 +301,8 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
             velocity[2], velocity[6] = 0.0, 0.0
         elif axis == normal_axis and prism.conserved[axis]:
             relative = speed * normal * root
-            velocity[axis] = relative * prism.shares[0]
-            velocity[axis + 4] = -relative * prism.shares[1]
+            velocity[axis] = relative * prism.fractions[0]
+            velocity[axis + 4] = -relative * prism.fractions[1]
         elif prism.conserved[axis]:
             relative = speed * rest * direction[used] * root
             velocity[axis] = relative * prism.fractions[0]
