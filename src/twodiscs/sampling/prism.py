@@ -239,7 +239,7 @@ def draw_on_surface(state, prism, axis):
     """
     low = min(prism.half_1[axis], prism.half_2[axis])
     while True:
-        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.strip)
+        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
         if axis == 0:
             x1, dx = low * signed_uniform(state), 0.0
         else:
