@@ -163,7 +163,8 @@ def _powers(axes, rows, first, hop):
     axes.set(xscale="log", yscale="log", xlim=(4e-5, 0.25), ylim=(0.005, 8))
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     axes.set_ylabel(r"$1-\kappa$ (smooth),  $\kappa$ (rough)")
-    axes.legend(loc="upper left", fontsize=6.6, ncols=2, columnspacing=0.6)
+    if kinds:
+        axes.legend(loc="upper left", fontsize=6.6, ncols=2, columnspacing=0.6)
 
 
 def _times(axes, box, hop, limit, rows):
@@ -238,4 +239,5 @@ def _residuals(axes, rows):
     axes.set_yticks([-5, -2, 0, 2, 5])
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     axes.set_ylabel("residual $z$")
-    axes.legend(loc="upper center", ncols=4, fontsize=6.6)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper center", ncols=4, fontsize=6.6)

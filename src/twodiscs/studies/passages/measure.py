@@ -24,7 +24,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import whole
 from twodiscs.model.events import HOPS
 from twodiscs.studies.passages import exclusion
-from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact, tails
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
@@ -78,7 +77,7 @@ class _Hop:
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
-        self.row = Passages.empty(
+        self.row = dict(
             scene=name, width=scene.width, height=scene.height, periodic=scene.periodic or None,
             event=hop, radius=scene.radius, distance=2.0**-halvings, exact_mean=self.mean,
             moment_of_inertia=scene.moment_of_inertia,
@@ -229,7 +228,7 @@ def on_ring(name, box, inertia, events, seed):
 
 def on_lattice(seed):
     """Yield the rows of the single file on a lattice."""
-    start = Passages.empty(event="swap", method="lattice")
+    start = {"event": "swap", "method": "lattice"}
 
     def said(quantity, swap, estimate, reference=None, **more):
         row = start | {"quantity": quantity, "swap": swap} | more
@@ -251,7 +250,7 @@ def on_lattice(seed):
 
 
 def rows(scenes, events, seed):
-    """Yield the rows of passages.csv.
+    """Yield the rows of passages.csv, without their empty cells.
 
     ``scenes`` is {name: parameters of a plain box}; rough discs with all moments of inertia and the
     ring are in the first of them. ``events`` are about how many wall and disc events an estimate

@@ -68,4 +68,4 @@ class Passages(Table):
         """Yield the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
         from twodiscs.studies.passages import measure
 
-        yield from measure.rows(scenes, events, seed)
+        yield from (Passages.empty(**row) for row in measure.rows(scenes, events, seed))
