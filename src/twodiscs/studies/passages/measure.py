@@ -77,11 +77,17 @@ class _Hop:
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
-        self.row = dict(
-            scene=name, width=scene.width, height=scene.height, periodic=scene.periodic or None,
-            event=hop, radius=scene.radius, distance=2.0**-halvings, exact_mean=self.mean,
-            moment_of_inertia=scene.moment_of_inertia,
-        )  # fmt: skip
+        self.row = {
+            "scene": name,
+            "width": scene.width,
+            "height": scene.height,
+            "periodic": scene.periodic or None,
+            "event": hop,
+            "radius": scene.radius,
+            "distance": 2.0**-halvings,
+            "exact_mean": self.mean,
+            "moment_of_inertia": scene.moment_of_inertia,
+        }
 
     def _seed(self, what):
         inertia = self.scene.moment_of_inertia
