@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from twodiscs.comparison.measurements import Intervals, Measurement, Measurements
+    from twodiscs.comparison.transmission import Transmission
     from twodiscs.model.box import Box
     from twodiscs.model.checks import InputError
     from twodiscs.model.effects import EFFECTS
@@ -46,6 +47,7 @@ _HOMES = {
     "Measurement": "comparison.measurements",
     "Measurements": "comparison.measurements",
     "Scene": "model.scene",
+    "Transmission": "comparison.transmission",
     "areas": "theory.exact",
     "exact": "theory.exact",
     "mean_times": "theory.exact",
@@ -55,8 +57,8 @@ _HOMES = {
 
 __all__ = [
     "EFFECTS", "EVENTS", "Box", "InputError", "Intervals", "Measurement", "Measurements", "Scene",
-    "animate", "areas", "exact", "exact_table", "intervals", "load", "mean_times", "plot", "rate",
-    "sample", "simulate", "starts", "trajectory", "volume",
+    "Transmission", "animate", "areas", "exact", "exact_table", "intervals", "load", "mean_times",
+    "plot", "rate", "sample", "simulate", "starts", "trajectory", "transmission", "volume",
 ]  # fmt: skip
 
 
@@ -133,6 +135,21 @@ def intervals(
     from twodiscs.comparison import measurements
 
     return measurements.intervals(scene, hop, number, seed, name)
+
+
+def transmission(
+    scene: Scene, hop: str, hops: float = 2**17, seed: int = 1, name: str | None = None
+) -> Transmission:
+    """Measure which hops of one kind are passages, that is, not soon undone.
+
+    The ``Transmission`` has the coefficient κ, the fraction of hops that are passages, with its
+    error; the mean time between passages; and the curve κ(t), in ``frame()``. ``hops``, an integer
+    rounded up to whole blocks, are followed both ways in time for the one, and forwards for the
+    other. Raises ``InputError`` for a hop that is blocked or along a periodic axis.
+    """
+    from twodiscs.comparison import transmission
+
+    return transmission.transmission(scene, hop, hops, seed, name)
 
 
 def starts(scene: Scene, number: float, seed: int = 1, name: str | None = None) -> np.ndarray:

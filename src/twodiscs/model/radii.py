@@ -11,7 +11,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, length, one_of, shown, whole
 
 #: The stochastic stages, each with random streams of its own.
-METHODS = ("monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip")
+METHODS = (
+    "monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip", "passages",
+)  # fmt: skip
 
 #: No grid has more points.
 MOST = 1000

@@ -243,7 +243,7 @@ def draw_on_surface(state, prism, axis):
     """
     low = min(prism.half_1[axis], prism.half_2[axis])
     while True:
-        x1, y1, z1, dx, dy, dz = propose_in_prism(state, prism)
+        x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
         if axis == 0:
             x1, dx = low * signed_uniform(state), 0.0
         else:
@@ -303,6 +303,10 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
     for axis in range(3):
         if axis == 2 and prism.depth is None:
             velocity[2], velocity[6] = 0.0, 0.0
+        elif axis == normal_axis and prism.conserved[axis]:
+            relative = speed * normal * root
+            velocity[axis] = relative * prism.fractions[0]
+            velocity[axis + 4] = -relative * prism.fractions[1]
         elif prism.conserved[axis]:
             relative = speed * rest * direction[used] * root
             velocity[axis] = relative * prism.fractions[0]

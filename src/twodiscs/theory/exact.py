@@ -71,6 +71,22 @@ def rate(scene, event):
     return sides * areas[event] / (1.5 * math.pi * volume)
 
 
+def passing_rate(scene, hop):
+    """Return how often the discs pass each other in a ``hop``, in both directions together.
+
+    That is ``rate``, and on a periodic axis, where it is no event of the ``Scene``, how often their
+    separation to the nearest image changes its sign at 0. Raises ``InputError`` for anything that
+    is not a ``Scene`` or a hop.
+    """
+    one_of("hop", hop, HOPS)
+    if DECLARED[hop].axis not in a_scene(scene).periodic:
+        return rate(scene, hop)
+    from twodiscs.theory import weighted
+
+    area = weighted.passing_area(scene, hop)
+    return weighted.constant(scene.velocity_components) * area / volume(scene)
+
+
 def event_rate(scene):
     """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
 

@@ -356,11 +356,14 @@ class _Space:
 
     def passing(self, axis):
         """Return the measure of the configurations that are level along ``axis``, per length."""
-        level = _branch(*self.intervals(axis), self.power)
-        if level is None or level.start > 0:
-            return 0.0
         others = [self.axis(other) for other in self.order if other != axis]
-        density = float(level.density(np.array(float(level.reach))))
+        if axis in self.scene.periodic:
+            density = float(self.scene.side(axis))
+        else:
+            level = _branch(*self.intervals(axis), self.power)
+            if level is None or level.start > 0:
+                return 0.0
+            density = float(level.density(np.array(float(level.reach))))
         return density * _sum_of_orders(others, _beyond_contact, self.sigma)
 
     def wall(self, axis, disc, high, thickness=0):
@@ -417,6 +420,12 @@ def areas(scene):
     """
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     return {event: _area(space, event) for event in EVENTS}
+
+
+def passing_area(scene, hop):
+    """Return A of a ``hop``, whose axis may be periodic: there it is no event of the ``Scene``."""
+    space = _Space(scene, (scene.velocity_components - 1) / 2)
+    return scene.fastest * space.passing(AXIS[hop])
 
 
 def volume_near(scene, hop, distance):

@@ -1,0 +1,154 @@
+"""The transmission coefficient of a hop: how many of the hops are passages, with its error."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from twodiscs.comparison.estimates import Estimate
+from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, count, shown
+from twodiscs.model.events import AXIS
+from twodiscs.model.radii import key, stream_seed
+from twodiscs.theory import exact
+
+#: A cluster ends where no hop comes for so many times that a disc of speed 1 takes along the box.
+QUIET = 6
+
+#: Passages must be so rare that this share of them, at most, comes within the gap after another.
+#: Then κ(t) has a plateau there, and what they take from κ is known to its square.
+MOST_MERGED = 0.05
+
+#: Where κ(t) is recorded, in the same times.
+TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
+
+
+def box_time(scene, hop):
+    """Return how long a disc of speed 1 takes along the axis of a ``hop``, in which it has room."""
+    axis = AXIS[hop]
+    return scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+
+
+def quiet_time(scene, hop):
+    """Return the time without a ``hop`` that ends a cluster of them."""
+    return QUIET * box_time(scene, hop)
+
+
+def by_clusters(sizes):
+    """Return the fraction of hops that are passages as an ``Estimate``, ⟨1[n odd]/n⟩.
+
+    ``sizes`` are those of ``cluster_sizes``.
+    """
+    n = np.arange(sizes.size)
+    odd, hops = (n % 2 == 1) & (n < sizes.size - 1), int(sizes.sum())
+    mean = float((sizes[odd] / n[odd]).sum()) / hops
+    square = float((sizes[odd] / n[odd] ** 2).sum()) / hops
+    return Estimate(mean, math.sqrt((square - mean * mean) / hops), hops)
+
+
+def by_time(sums):
+    """Return an ``Estimate`` of C = 1 + 2 ⟨Σ s_0 s_k⟩ at each time, from ``hop_sums``.
+
+    Between walls C is ±1 in every replica, and the error that of a binomial law.
+    """
+    replicas = sums.shape[0] * REPLICAS
+    net, square = sums[:, :2].sum(axis=0) / replicas
+    errors = 2 * np.sqrt((square - net**2) / replicas)
+    return [
+        Estimate(1 + 2 * float(n), float(e), replicas) for n, e in zip(net, errors, strict=True)
+    ]
+
+
+def plateau(seen, time, mean):
+    """Return the coefficient κ that has fallen to the ``Estimate`` ``seen`` in a ``time``.
+
+    Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops: then κ(t) is
+    κ exp(−2 κ t/τ), and to first order the fraction of passages in clusters falls alike with their
+    gap. None where the time has more than ``MOST_MERGED`` passages or a quarter of a hop.
+    """
+    value = seen.value
+    if value <= 0 or time > mean / 4 or value * time / mean > MOST_MERGED:
+        return None
+    for _ in range(50):  # a contraction: 2 κ t/τ is small
+        value = seen.value * math.exp(2 * value * time / mean)
+    slope = value / seen.value / (1 - 2 * value * time / mean)
+    return Estimate(value, seen.stderr * slope, seen.n)
+
+
+def seed_of(scene, hop, name, seed, what):
+    """Return the seed of the streams of a ``hop``; ``name`` is that of its scene."""
+    return stream_seed(seed, f"{name} {hop} {what}", "passages", key(scene.radius))
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """Which hops of one kind are passages, in one ``scene``.
+
+    ``coefficient`` is κ as an ``Estimate``, None where hops are so frequent that there is no
+    plateau, ``gap`` the time without a hop that ends a cluster, and ``clusters`` {n: how many of
+    the hops are in a cluster of n}. ``exact_mean`` is the mean time τ between hops. ``times`` and
+    ``curve``, a list of ``Estimate``, are κ(t).
+    """
+
+    scene: object
+    hop: str
+    coefficient: Estimate | None
+    gap: float
+    clusters: dict
+    exact_mean: float
+    times: tuple
+    curve: list
+
+    @property
+    def passage_time(self):
+        """The mean time between passages τ/κ as an ``Estimate``, None without a coefficient."""
+        if self.coefficient is None:
+            return None
+        value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
+        return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
+
+    def frame(self):
+        """Return κ(t) as a pandas ``DataFrame`` by time: value and standard error."""
+        import pandas as pd
+
+        rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
+        return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
+
+    def __str__(self):
+        name = self.hop.replace("_", " ")
+        if self.coefficient is None:
+            return (
+                f"{self.scene}\n\n{name}s come too often, once in {self.exact_mean:.4g}, for a "
+                "transmission coefficient; .frame() has κ(t)"
+            )
+        kappa, passage = self.coefficient, self.passage_time
+        return (
+            f"{self.scene}\n\n"
+            f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}\n"
+            f"mean time between hops, exact  {self.exact_mean:.6g}\n"
+            f"mean time between passages  {passage.value:.6g} ± {passage.stderr:.2g}"
+        )
+
+    __repr__ = __str__
+
+
+def transmission(scene, hop, hops, seed, name):
+    """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
+    require_passing(scene, hop)
+    if AXIS[hop] in scene.periodic:
+        raise InputError(
+            f"hop {hop!r} must be between walls for a transmission coefficient, but that axis is "
+            "periodic"
+        )
+    blocks = -(-count("hops", hops, most=10**9) // REPLICAS)
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name must be that of a scene, not {shown(name)}")
+    name = repr(Box.of(scene).parameters()) if name is None else name
+    mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
+    sizes, _ = cluster_sizes(scene, hop, gap, blocks, seed_of(scene, hop, name, seed, "clusters"))
+    times = tuple(box_time(scene, hop) * time for time in TIMES)
+    sums, _ = hop_sums(scene, hop, times, blocks, seed_of(scene, hop, name, seed, "times"))
+    clusters = {n: int(number) for n, number in enumerate(sizes) if number}
+    kappa = plateau(by_clusters(sizes), gap, mean)
+    return Transmission(scene, hop, kappa, gap, clusters, mean, times, by_time(sums))

@@ -1,0 +1,1 @@
+"""Which hops are passages, and what they make of diffusion along a channel."""

@@ -1,0 +1,107 @@
+"""Single file on a lattice: an exclusion process whose neighbours swap now and then.
+
+On a ring of sites, half of them occupied, the two sites of every bond are exchanged at the rate 1,
+but where both are occupied only with a probability p. Without swaps (p = 0) a tagged particle has
+the mean square displacement F √t of a single file, F = (1 − ρ)/ρ · 2/√π at the density ρ (Arratia,
+Ann. Probab. 11, 362 (1983)). With p = 1 it is a free random walk, D = 1. A particle swaps at the
+exact rate ν = ρ p with its neighbour on either side, which moves it by ℓ = 1/ρ on average.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.comparison.estimates import mean_of
+from twodiscs.model.checks import InputError, ascending, whole
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.streams import next_bits, open_stream, uniform
+
+#: Occupied sites, and the exact factor of √t in the mean square displacement of a single file.
+DENSITY = 0.5
+SINGLE_FILE = (1 - DENSITY) / DENSITY * 2 / math.sqrt(math.pi)
+
+#: Sites of a ring, a power of two: much longer than what is diffused in the longest time.
+SITES = 1024
+
+#: The end of a run, in times at which √t and t count the same, at least so much time, and the ends
+#: of runs without swaps.
+CROSSOVERS, SHORTEST, WITHOUT = 16, 64.0, 1024.0
+
+
+@compiled
+def exchange(seed, first, stop, sites, swap, times):
+    """Return the mean square displacement on each of the rings ``first`` … ``stop`` − 1.
+
+    It is that of all particles at the ascending ``times``, (stop − first, times). ``sites`` is a
+    power of two.
+    """
+    found = np.zeros((stop - first, times.size))
+    mask = np.uint64(sites - 1)
+    for ring in range(first, stop):
+        state = open_stream(seed, ring)
+        # The particle on a site, −1 for none: places are drawn by a shuffle.
+        site = np.full(sites, -1)
+        for i in range(sites // 2):
+            site[i] = i
+        for i in range(sites - 1, 0, -1):
+            j = np.int64(uniform(state) * (i + 1))
+            site[i], site[j] = site[j], site[i]
+        moved = np.zeros(sites // 2, np.int64)
+        done = 0
+        for k in range(times.size):
+            # The number of exchanges by then is their mean one: fluctuations are 1/√(sites t).
+            for _ in range(np.int64(times[k] * sites) - done):
+                bits = next_bits(state)
+                i = np.int64(bits & mask)
+                j = np.int64((np.uint64(i) + np.uint64(1)) & mask)
+                a, b = site[i], site[j]
+                if a >= 0 and b >= 0 and uniform(state) >= swap:
+                    continue
+                site[i], site[j] = b, a
+                if a >= 0:
+                    moved[a] += 1
+                if b >= 0:
+                    moved[b] -= 1
+            done = np.int64(times[k] * sites)
+            found[ring - first, k] = np.sum(moved * moved) / moved.size
+    return found
+
+
+def displacements(swap, times, rings, seed):
+    """Return the mean square displacements (rings, times) of tagged particles, in sites².
+
+    ``swap`` is the probability p in [0, 1] that neighbours swap, ``times`` are over the mean time
+    between exchanges of a bond. Raises ``InputError`` for numbers out of range.
+    """
+    if not 0 <= swap <= 1:
+        raise InputError(f"swap must be a probability from 0 to 1, not {swap!r}")
+    times, rings = np.array(ascending("times", times)), whole("rings", rings, 2)
+    return exchange(np.uint64(whole("seed", seed, 0)), 0, rings, SITES, float(swap), times)
+
+
+def run_time(swap):
+    """Return how long a run with ``swap`` > 0 lasts, a power of two.
+
+    It is ``CROSSOVERS`` times t× = (F/2D)², where F √t = 2 D t, with D = ν ℓ².
+    """
+    crossover = (SINGLE_FILE / (2 * swap / DENSITY)) ** 2
+    return 2.0 ** math.ceil(math.log2(max(SHORTEST, CROSSOVERS * crossover)))
+
+
+def diffusion(swap, rings, seed):
+    """Return D/(ν ℓ²) as an ``Estimate``, without what is left of the single file.
+
+    From the mean square displacement F √t + 2 D t at T and T/4, whose √t cancel. Raises
+    ``InputError`` unless 0 < ``swap`` ≤ 1, and for numbers out of range.
+    """
+    if not 0 < swap <= 1:
+        raise InputError(f"swap must be a probability above 0, not {swap!r}")
+    time = run_time(swap)
+    quarter, whole_time = displacements(swap, [time / 4, time], rings, seed).T
+    return mean_of((whole_time - 2 * quarter) / time / (swap / DENSITY))
+
+
+def single_file(rings, seed):
+    """Return F as an ``Estimate``: the mean square displacement without swaps, over √t."""
+    (end,) = displacements(0.0, [WITHOUT], rings, seed).T
+    return mean_of(end / math.sqrt(WITHOUT))

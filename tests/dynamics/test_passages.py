@@ -1,0 +1,168 @@
+"""Hops that follow one another: against a program of its own, exact rates and symmetries.
+
+Statistical comparisons allow five standard errors: with some 40 of them a false alarm comes in
+fewer than 3e-5 of all seeds.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scalar_passages import replicas
+
+from twodiscs.comparison.transmission import by_clusters, by_time
+from twodiscs.dynamics import passages
+from twodiscs.dynamics.ensemble import LANES
+from twodiscs.dynamics.law import law_of
+from twodiscs.model.box import Box
+from twodiscs.model.scene import Scene
+from twodiscs.theory import exact
+from twodiscs.theory.weighted import constant
+
+HOP = "horizontal_hop"
+TIMES = [0.2, 1.0, 5.0, 10.0]
+NARROW = 0.246  # 0.016 of the height is left to discs side by side along y
+
+
+def five(found, due, error):
+    assert abs(found - due) <= 5 * error, (found, due, error)
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("periodic", ["", "x"])
+def test_correlations_are_those_of_another_program(inertia, periodic):
+    for radius in (0.218, NARROW):
+        scene = Scene(1.5, 1.0, radius, periodic=periodic, moment_of_inertia=inertia)
+        sums, events = passages.hop_sums(scene, HOP, TIMES, 512, 3)
+        assert events > 0
+        other = replicas(
+            4, 20_000, 1.5, 1.0, radius, inertia or 0.0, bool(periodic), np.array(TIMES)
+        )
+        means, errors = other.mean(axis=0), other.std(axis=0) / math.sqrt(len(other))
+        for estimate, mean, error in zip(by_time(sums), means, errors, strict=True):
+            five(estimate.value, mean, math.hypot(estimate.stderr, error) + 1e-12)
+        if not periodic:
+            # Hops alternate: C = 1 + 2 n is +1 or −1 in every replica.
+            np.testing.assert_array_equal(sums[:, 1], -sums[:, 0])
+
+
+def test_the_past_is_as_the_future():
+    """κ(t) = κ(−t): from the same states with reversed velocities."""
+    scene = Scene(1.5, 1.0, 0.24)
+    states = passages.initial_states(scene, HOP, 512, 5)
+    found = []
+    for side in (states, np.where(np.arange(12)[:, None] < 4, states, -states)):
+        sums, none = np.zeros((512, passages.SUMS, 4), np.int64), np.zeros(1, np.int64)
+        passages.follow_hops(
+            side, LANES, np.array(TIMES), 0.0, law_of(scene), True, True, sums, none
+        )
+        found.append(by_time(sums))
+    for future, past in zip(*found, strict=True):
+        assert future != past
+        five(future.value, past.value, math.hypot(future.stderr, past.stderr))
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
+    """Where hops are so rare that the gap hardly matters, and with a far smaller error."""
+    scene = Scene(1.5, 1.0, 0.249, moment_of_inertia=inertia)
+    sizes, _ = passages.cluster_sizes(scene, HOP, 6.0, 64, 6)
+    (late,) = by_time(passages.hop_sums(scene, HOP, [6.0], 64, 7)[0])
+    kappa = by_clusters(sizes)
+    five(kappa.value, late.value, math.hypot(kappa.stderr, late.stderr))
+    # Passages that follow within the gap are 2 κ gap/τ of them, 2e-3 at most.
+    assert 2 * 6.0 * exact.rate(scene, HOP) < 2e-3
+    assert sizes[0] == 0
+    assert sizes.sum() == 64 * passages.REPLICAS
+    assert kappa.stderr * math.sqrt(kappa.n) < math.sqrt(kappa.value)
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+def test_hops_on_a_ring_have_their_exact_rate(inertia):
+    scene = Scene(1.5, 1.0, 0.2, periodic="x", moment_of_inertia=inertia)
+    sums, _ = passages.hop_sums(scene, HOP, [20.0], 256, 8, on_surface=False)
+    counts = sums[:, 2, 0] / (20.0 * passages.REPLICAS)
+    five(counts.mean(), exact.passing_rate(scene, HOP), counts.std(ddof=1) / 16)
+
+
+def test_ratios_of_rates_are_those_of_the_constants():
+    """Smooth to rough: c4/c6 in the box; c3/c6 on the ring, whose rough walls take momentum."""
+    for periodic, components in (("", 4), ("x", 3)):
+        smooth, rough = (
+            exact.passing_rate(Scene(1.5, 1.0, 0.2, periodic=periodic, moment_of_inertia=i), HOP)
+            for i in (None, 0.5)
+        )
+        due = constant(components) / constant(6)
+        assert smooth / rough == pytest.approx(due, rel=1e-13)
+    plain = Scene(1.5, 1.0, 0.2)
+    assert exact.passing_rate(plain, HOP) == exact.rate(plain, HOP)
+
+
+def test_displacements_grow_as_the_correlations_say():
+    """d⟨n²⟩/dt = Γ C(t), between t = 20 and 40 where C has its limit."""
+    scene = Scene(1.5, 1.0, 0.22, periodic="x")
+    sums, _ = passages.hop_sums(scene, HOP, [20.0, 40.0], 512, 9, on_surface=False)
+    rate = exact.passing_rate(scene, HOP)
+    grown = (sums[:, 1, 1] - sums[:, 1, 0]) / (20.0 * passages.REPLICAS * rate)
+    (due,) = by_time(passages.hop_sums(scene, HOP, [30.0], 512, 10)[0])
+    error = grown.std(ddof=1) / math.sqrt(len(grown))
+    five(grown.mean(), due.value, math.hypot(error, due.stderr))
+
+
+def test_initial_states_are_on_the_surface():
+    for radius in (0.2, 0.25 * (1 - 2.0**-30)):
+        for effects in ({}, {"periodic": "x"}, {"moment_of_inertia": 0.5}):
+            scene = Scene(1.5, 1.0, radius, **effects)
+            x1, y1, x2, y2, u1, v1, u2, v2, s1, s2 = passages.initial_states(scene, HOP, 4, 1)[:10]
+            spins = scene.moment_of_inertia or 0.0
+            assert np.array_equal(x1, x2)
+            assert (np.abs(y1 - y2) >= scene.contact_distance).all()
+            assert (np.abs(y1) <= scene.range_y / 2).all()
+            energy = (u1**2 + v1**2 + u2**2 + v2**2 + spins * (s1**2 + s2**2)) / 2
+            assert np.allclose(energy, 0.5, rtol=1e-14)
+            if effects == {"periodic": "x"}:
+                assert np.allclose(u1 + u2, 0, atol=1e-15)
+            # Half of them hop either way; the flux has ⟨n²⟩ = 2/(D + 1) of the normal velocity n.
+            normal, n = (u1 - u2) / math.sqrt(2), u1.size
+            assert abs(np.sum(normal > 0) - n / 2) <= 5 * math.sqrt(n) / 2
+            due = 2 / (scene.velocity_components + 1)
+            assert abs(np.mean(normal**2) - due) <= 5 * np.std(normal**2) / math.sqrt(n)
+
+
+def test_blocks_are_what_results_depend_on():
+    scene = Scene(1.5, 1.0, 0.24)
+    whole, events = passages.hop_sums(scene, HOP, TIMES, 6, 11)
+    parts = [passages.hop_sums(scene, HOP, TIMES, 3, 11, first) for first in (0, 3)]
+    np.testing.assert_array_equal(whole, np.concatenate([sums for sums, _ in parts]))
+    assert events == sum(events for _, events in parts)
+    turned = Box.of(scene).turned().scene(0.24)
+    np.testing.assert_array_equal(whole, passages.hop_sums(turned, "vertical_hop", TIMES, 6, 11)[0])
+
+
+def test_hops_in_a_field_are_those_along_y():
+    """A field so weak that nothing else changes; it has a kernel of its own."""
+    plain, weak = Scene(1.0, 1.5, 0.24), Scene(1.0, 1.5, 0.24, field=1e-9)
+    both = [by_time(passages.hop_sums(s, "vertical_hop", TIMES, 256, 12)[0]) for s in (plain, weak)]
+    for one, other in zip(*both, strict=True):
+        five(one.value, other.value, math.hypot(one.stderr, other.stderr))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"hop": "any_wall"}, "hop must be one of"),
+        (
+            {"scene": Scene(1.5, 1.0, 0.3)},
+            "must be open for passages, but is blocked at radius 0.3",
+        ),
+        ({"scene": Scene(1.5, 1.0, 0.3, periodic="x")}, "must be open for passages"),
+        ({"scene": 0.2}, "scene must be a Scene"),
+        ({"times": [2.0, 1.0]}, "times must ascend"),
+        ({"blocks": 0}, "blocks must be an integer"),
+        ({"seed": -1}, "seed must be an integer"),
+    ],
+)
+def test_bad_requests_are_refused(change, said):
+    good = {"scene": Scene(1.5, 1.0, 0.2), "hop": HOP, "times": [1.0], "blocks": 1, "seed": 1}
+    with pytest.raises(ValueError, match=said):
+        passages.hop_sums(**(good | change))

@@ -1,0 +1,168 @@
+"""Passages near the threshold: against exact laws, between estimators, and on the lattice.
+
+Statistical comparisons allow five standard errors: with some 20 of them a false alarm comes in
+fewer than 2e-5 of all seeds.
+"""
+
+import math
+
+import numba
+import numpy as np
+import pytest
+from fabricated import written
+
+from twodiscs.comparison.estimates import mean_of
+from twodiscs.comparison.transmission import by_clusters, plateau
+from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.passages import cluster_sizes, initial_states
+from twodiscs.dynamics.trajectory import time_to_next
+from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
+from twodiscs.sampling.starts import state_in
+from twodiscs.studies.passages import exclusion, figure, measure
+from twodiscs.studies.passages.table import Passages
+from twodiscs.theory import exact
+
+BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
+
+
+def test_thresholds_are_those_before_the_box_is_full():
+    assert measure.thresholds(BOX) == {"vertical_hop": 0.375, HOP: 0.25}
+    assert measure.thresholds(Box(3.0, 1.0)) == {HOP: 0.25}
+
+
+@pytest.mark.parametrize(("hop", "halvings"), [(HOP, 4), ("vertical_hop", 8)])
+def test_the_slope_at_zero_is_exact(hop, halvings):
+    limit = measure.thresholds(BOX)[hop]
+    scene = BOX.scene(measure.radius_at(limit, halvings))
+    (row,) = measure._Hop("paper", scene, hop, halvings, 1).slope(1024)
+    assert row["reference_stderr"] is None
+    assert abs(row["z"]) <= 5
+    assert row["stderr"] < 0.15 * row["reference"]
+
+
+@numba.njit
+def intervals(states, law):
+    """Return the times to the next vertical hop from states on y1 = y2."""
+    found = np.zeros(states.shape[1])
+    for i in range(found.size):
+        x1, y1, x2, y2, u1, v1, u2, v2 = state_in(states, i)
+        # The disc that gets above the other one is called the first.
+        state = (x1, y1, x2, y2, u1, v1, u2, v2)
+        if v1 < v2:
+            state = (x2, y2, x1, y1, u2, v2, u1, v1)
+        found[i] = time_to_next(state, law, True, np.inf)
+    return found
+
+
+def test_first_passages_take_the_time_between_passages():
+    """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) but for the time to forget, over τ."""
+    scene, hop = Box(1.0, 1.5).scene(0.242), "vertical_hop"
+    times = intervals(initial_states(scene, hop, 256, 2), law_of(scene))
+    mean, gap = exact.mean_times(scene)[hop], 6 * scene.range_y
+    assert abs(times.mean() - mean) <= 5 * times.std() / math.sqrt(times.size)
+    square = mean_of(times**2 / mean**2)
+    due, error = 2 / square.value, 2 * square.stderr / square.value**2
+    kappa = plateau(by_clusters(cluster_sizes(scene, hop, gap, 512, 3)[0]), gap, mean)
+    assert abs(kappa.value - due) <= 5 * math.hypot(error, kappa.stderr) + gap / mean
+    assert 5 * error + gap / mean < 0.25
+
+
+# The lattice ------------------------------------------------------------------------------------
+
+
+def test_free_walks_and_single_files_are_exact():
+    """D = 1 where neighbours always swap, so that D/(ν ℓ²) = 1/2, and F √t where they never do.
+
+    At t = 1024 what is left to go to the law of √t is of the order of 1/√t = 3 %.
+    """
+    free = exclusion.diffusion(1.0, 64, 1)
+    assert abs(free.value - 0.5) <= 5 * free.stderr
+    assert free.stderr < 0.02
+    file = exclusion.single_file(64, 2)
+    assert abs(file.value - exclusion.SINGLE_FILE) <= 5 * file.stderr + 0.03
+
+
+def test_rare_swaps_make_a_random_walk():
+    """The trial had 0.93(2) for p = 0.1; a law D ∝ τ^(−1/2) would have 3 times that of p = 1."""
+    found = exclusion.diffusion(0.1, 64, 3)
+    assert abs(found.value - 0.93) <= 5 * math.hypot(found.stderr, 0.02)
+
+
+def test_particles_move_by_one_site():
+    """At most one site by an exchange; none where none is made, and the same for the same seed."""
+    (first,) = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)[:1]
+    assert first[0] == 0
+    assert 0 < first[1] < 2
+    again = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
+    np.testing.assert_array_equal(again[0], first)
+    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0], first[1:])
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: exclusion.displacements(1.5, [1.0], 2, 1), "swap must be a probability"),
+        (lambda: exclusion.diffusion(0.0, 2, 1), "swap must be a probability above 0"),
+        (lambda: exclusion.displacements(0.5, [1.0], 1, 1), "rings must be an integer"),
+        (lambda: exclusion.displacements(0.5, [], 2, 1), "times must ascend"),
+    ],
+)
+def test_bad_requests_are_refused(call, said):
+    with pytest.raises(ValueError, match=said):
+        call()
+
+
+# The table and the figure -----------------------------------------------------------------------
+
+
+PARAMETERS = {"scenes": {"paper": BOX.parameters()}, "events": 2**18, "seed": 1}
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """Make the study one of few distances and hops."""
+    for name, value in {
+        "SMOOTH": range(5, 8), "ROUGH": range(4, 7), "RING": range(3, 4), "INERTIAS": (0.5, 1.0),
+        "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(measure, name, value)
+
+
+def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small):
+    rows = written(tmp_path, Passages, **PARAMETERS)
+    z = [row["z"] for row in rows if row["z"] is not None]
+    assert max(map(abs, z)) < 5
+    by_quantity = {row["quantity"] for row in rows}
+    assert by_quantity == {
+        "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
+        "passage_exponent", "rate", "diffusion", "single_file",
+    }  # fmt: skip
+    # Nothing but the passages tells time between passages from time between hops.
+    times = [row for row in rows if row["quantity"] == "passage_time"]
+    kappa = [row for row in rows if row["quantity"] == "coefficient"]
+    for time, fraction in zip(times, kappa, strict=True):
+        assert time["estimate"] * fraction["estimate"] == pytest.approx(time["exact_mean"])
+    with style.context():
+        drawn = figure.draw(BOX, {"passages": rows})
+    curves, powers, between, diffusion, residuals = drawn.axes
+    assert len(curves.lines) > 5
+    tau = between.lines[0]
+    limit = measure.thresholds(BOX)[HOP]
+    for distance, value in zip(tau.get_xdata()[::20], tau.get_ydata()[::20], strict=True):
+        due = exact.mean_times(BOX.scene(limit * (1 - distance)))[HOP]
+        assert value == pytest.approx(due, rel=1e-12)
+    names = [text.get_text() for text in powers.get_legend().get_texts()]
+    assert any("1-\\kappa" in name for name in names)
+    assert diffusion.get_ylabel().startswith("diffusion")
+    assert residuals.get_xscale() == "log"
+
+
+def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
+    """Along a ring of its width the discs would be jammed before they cannot pass."""
+    rows = list(Passages.rows({"square": {"width": 1.0, "height": 4.0}}, 2**18, 1))
+    events = {row["event"] for row in rows}
+    assert events == {"vertical_hop", "swap"}
+    with style.context():
+        assert figure.draw(Box(1.0, 4.0), {"passages": rows})
+        assert figure.draw(Box(1.0, 4.0), {"passages": rows[-3:]})
