@@ -82,57 +82,57 @@ def _sums(a, b, sigma):
 
 
 def _kinks(a, sigma, t, c):
-    """Return the larger gaps P (n, t) where the integrand has a kink, sorted, with both ends."""
+    """Return gaps (P, Q), each (n, t), with a kink of the integrand there, and with both ends.
+
+    P ascends. Where the one is known the other is t less it, with a rounding that would count in
+    the root of a Q that should be σ: so both are kept.
+    """
+    level = _root(sigma**2 - a * a)
     with np.errstate(invalid="ignore", divide="ignore"):
-        level = _root(sigma**2 - a * a)
         middle = np.arctan2(t, a)
         apart = np.arccos(np.hypot(t, a) / (2 * sigma))
-        beside = np.sqrt(sigma**2 - (a - c) ** 2)
-        found = [
-            np.full_like(t, sigma),
-            t - sigma,
-            np.where(middle + apart <= math.pi / 2, sigma * np.sin(middle + apart), 0.0),
-            t - level,
-            np.full_like(t, level),
-            np.where(a >= c, beside, 0.0),
-            np.where(a >= c, t - beside, 0.0),
-            np.where(c > 0, sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)), 0.0),
+        beside = np.where(a >= c, np.sqrt(sigma**2 - (a - c) ** 2), np.nan)
+        by_p = [
+            t / 2,
             t,
+            np.full_like(t, sigma),
+            np.full_like(t, level),
+            np.where(middle + apart <= math.pi / 2, sigma * np.sin(middle + apart), np.nan),
+            beside,
+            np.where(c > 0, sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)), np.nan),
         ]
-    found = [np.clip(np.where(np.isnan(p), 0.0, p), t / 2, t) for p in found]
-    return np.sort([t / 2, *found], axis=0)
+        by_q = [np.full_like(t, sigma), np.full_like(t, level), beside]
+    p = np.array(by_p + [t - q for q in by_q])
+    q = np.array([t - p for p in by_p] + by_q)
+    # What is nowhere in the range is an end.
+    p, q = np.clip(np.where(np.isnan(p), t, p), t / 2, t), np.clip(np.nan_to_num(q), 0.0, t / 2)
+    order = np.argsort(p, axis=0)
+    return np.take_along_axis(p, order, 0), np.take_along_axis(q, order, 0)
 
 
 def _gaps(a, sigma, t, c):
-    """Return (p, q, weight) of the nodes of the inner integral, arrays (panels, nodes, t)."""
+    """Return (p, q, weight, P < σ, Q < σ) at the nodes of the inner integral, (panels, nodes, t)."""
     x, w = (part[:, None] for part in _nodes(INNER))
-    ends = _kinks(a, sigma, t, c)
-    low, high = ends[:-1, None, :], ends[1:, None, :]
+    larger, smaller = _kinks(a, sigma, t, c)
+    low, high = larger[:-1, None, :], larger[1:, None, :]
+    most, least = smaller[:-1, None, :], smaller[1:, None, :]
+    near_p, near_q = low + high < 2 * sigma, most + least < 2 * sigma
 
-    def angle(gap):
-        # A difference that should be σ may miss it by a rounding, whose root would count in 1/q.
-        sine = gap / sigma
-        return np.where(sine > 1 - 1e-15, math.pi / 2, np.arcsin(np.clip(sine, 0.0, 1.0)))
+    def sines(start, stop):
+        """Return (gap, d(gap), weight) between two gaps, σ times the sines of their angles."""
+        start, stop = (np.arcsin(np.clip(gap / sigma, 0.0, 1.0)) for gap in (start, stop))
+        angle = start + (stop - start) * x
+        d = sigma * np.cos(angle)
+        return sigma * np.sin(angle), d, (stop - start) * d * w
 
-    # P as a sine; or it is beyond σ, and Q is one, or beyond it too.
-    start, width = angle(low), angle(high) - angle(low)
-    along = start + width * x
-    by_p = (sigma * np.sin(along), sigma * np.cos(along), width * sigma * np.cos(along) * w)
-    start, width = angle(t - high), angle(t - low) - angle(t - high)
-    along = start + width * x
-    by_q = (sigma * np.cos(along), width * sigma * np.cos(along) * w)
-    linear = low + (high - low) * x
-
-    middle = (low + high) / 2
-    near_p, near_q = middle < sigma, t - middle < sigma
-    rest = np.where(near_p, t - by_p[0], 0.0)
-    p = np.where(near_p, by_p[1], 0.0)
+    # The larger gap as a sine; or it is beyond σ, and the smaller one is, or beyond it, too.
+    gap, p, weight_p = sines(low, high)
+    rest = t - gap
     q_of_p = np.sqrt(np.maximum((sigma - rest) * (sigma + rest), 0.0))
-    q = np.where(near_p, q_of_p, np.where(near_q, by_q[0], 0.0))
-    weight = np.where(
-        near_p, by_p[2], np.where(near_q, by_q[1], (high - low) * w * np.ones_like(linear))
-    )
-    return p, q, weight, near_p, near_q
+    _, q, weight_q = sines(least, most)
+    q = np.where(near_p, q_of_p, np.where(near_q, q, 0.0))
+    weight = np.where(near_p, weight_p, np.where(near_q, weight_q, (high - low) * w))
+    return np.where(near_p, p, 0.0), q, weight, near_p, near_q
 
 
 def measures(gas):
