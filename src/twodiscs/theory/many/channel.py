@@ -177,7 +177,7 @@ def _log_partition(channel, p):
     return math.log(2 * float(vectors[0] @ vectors[-1])) + logs[-1]
 
 
-def _saddle(channel):
+def saddle(channel):
     """Return (p, φ(p)) where φ = p room − (N + 1) ln p + ln Z is least on the real axis."""
 
     def phi(log_p):
@@ -249,7 +249,7 @@ def measures(gas, hops=True, tail=TAIL):
     is not ordered or the terms are too many.
     """
     channel = channel_of(gas)
-    p, phi = _saddle(channel)
+    p, phi = saddle(channel)
     step = _step(channel, p, phi)
     terms, first, reach, check, last = [], None, 2 * p, FIRST_TERMS, None
     channel = channel_of(gas, p, reach)
