@@ -1,33 +1,36 @@
 """States of the invariant measure for N discs: velocities on a sphere, centres in one of three ways.
 
-* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. It takes so many
-  draws as V/(AB)^N has; it is used where independent pairs would be accepted at ``LEAST`` or more.
+* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. A draw is accepted
+  with the probability V/(AB)^N, and it is used where that is at least ``LEAST``.
 * ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. They are proposed
   cell by cell as a Markov chain whose weights are above those of exp(−c d), and accepted with what
   is left of the ratio; positions along the channel are then order statistics. Exact at every
   density.
 * ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one disc
   at a time, a new chain for each state. Not exact: how far it is from equilibrium is tested, against
-  exact rates where they are known and against chains of other lengths.
+  exact rates and rejection where there are any and against chains of other lengths. Where discs
+  cannot get from one arrangement to another, it keeps to the known one.
 
 Nothing here needs more than + − × / and √.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many import measures
+from twodiscs.sampling.many.measures import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many import channel
-from twodiscs.theory.many.rates import overlap_of_two
 
-#: The least part of draws that rejection is used for, if pairs were independent.
-LEAST = 0.05
+#: The least part of (AB)^N that must be free for rejection: it takes less time than a chain then.
+LEAST = 1e-3
 
-#: Sweeps of a chain, and the powers of two by which its moves are smaller than the box.
-SWEEPS, SCALES = 1000, 8
+#: Sweeps of a chain, and the least number of sizes of its moves, which are halves of one another.
+SWEEPS, SCALES = 4000, 8
 
 #: Weights of cells are at least those of exp(−z): (1 + z/64)^(−64).
 POWER = 64
@@ -45,6 +48,14 @@ class Cells(NamedTuple):
     turned: bool  # whether the channel is along y
 
 
+class Chain(NamedTuple):
+    """A chain from an arrangement (2, N): its sweeps, and of how many sizes its moves are."""
+
+    centres: np.ndarray
+    sweeps: int
+    scales: int
+
+
 class Initial(NamedTuple):
     """How the states of a gas are drawn; of ``cells`` and ``chain`` one at most is not None."""
 
@@ -54,15 +65,19 @@ class Initial(NamedTuple):
     sigma: float
     ring: float | None
     cells: Cells | None
-    chain: np.ndarray | None  # (2, N), an arrangement
+    chain: Chain | None
 
 
+@lru_cache(maxsize=1024)
 def method(gas):
-    """Return how centres of a ``Gas`` are drawn: "rejection", "channel" or "chain"."""
+    """Return how centres of a ``Gas`` are drawn: "channel", "rejection" or "chain".
+
+    A block of insertions, the same one everywhere, tells how much of (AB)^N is free. Where discs
+    hardly fit it finds too little, if anything.
+    """
     if gas.is_ordered or (not gas.periodic and gas.turned().is_ordered):
         return "channel"
-    pairs = gas.discs * (gas.discs - 1) / 2
-    return "rejection" if (1 - overlap_of_two(gas)) ** pairs >= LEAST else "chain"
+    return "rejection" if measures.free_fraction(gas) >= LEAST else "chain"
 
 
 def initial_of(gas, by=None):
@@ -72,8 +87,15 @@ def initial_of(gas, by=None):
         gas.discs, gas.range_x / 2, gas.range_y / 2, gas.contact_distance,
         gas.width if gas.periodic else None,
         _cells(gas) if by == "channel" else None,
-        np.array(gas.arrangement).T.copy() if by == "chain" else None,
+        _chain(gas) if by == "chain" else None,
     )  # fmt: skip
+
+
+def _chain(gas):
+    # The smallest moves are some fraction of the room that is left to the discs.
+    tightness = max(gas.range_x, gas.range_y) / (gas.largest_radius - gas.radius)
+    scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
+    return Chain(np.array(gas.arrangement).T.copy(), SWEEPS, scales)
 
 
 def _rounded(value):
@@ -196,14 +218,6 @@ def draw_velocities(state, velocities, cuts, ring):
 # Centres -----------------------------------------------------------------------------------------
 
 
-@optional(lambda dx, ring: dx)
-def around(dx, ring):
-    """Return the shorter way around a ring."""
-    dx -= ring if dx > ring / 2 else 0.0
-    dx += ring if dx < -ring / 2 else 0.0
-    return dx
-
-
 @inlined
 def overlaps(centres, i, stop, x, y, initial):
     """Say whether a disc at (x, y) overlaps any of those before ``stop`` but disc ``i``."""
@@ -228,11 +242,11 @@ def _rejected(state, initial, centres, chain):
 @optional(_rejected)
 def by_chain(state, initial, centres, chain):
     """Fill ``centres`` (2, N) by a chain of moves, or by rejection where there is none."""
-    centres[:] = chain
+    centres[:] = chain.centres
     width, height = 2 * initial.half_x, 2 * initial.half_y
-    for _ in range(SWEEPS):
+    for _ in range(chain.sweeps):
         for i in range(initial.discs):
-            scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(SCALES)))
+            scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(chain.scales)))
             x = centres[0, i] + scale * width * signed_uniform(state)
             y = centres[1, i] + scale * height * signed_uniform(state)
             x = around(x, initial.ring)

@@ -21,7 +21,6 @@ import numpy as np
 
 from twodiscs.model.checks import InputError, whole
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.initial import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many.rates import Measures, overlap_of_two
 
@@ -43,6 +42,14 @@ class Box(NamedTuple):
     sigma: float
     ring: float | None
     typical: float
+
+
+@optional(lambda dx, ring: dx)
+def around(dx, ring):
+    """Return the shorter way around a ring."""
+    dx -= ring if dx > ring / 2 else 0.0
+    dx += ring if dx < -ring / 2 else 0.0
+    return dx
 
 
 @optional(
@@ -189,6 +196,12 @@ def run_blocks(gas, seed, first, stop):
     """Return (sums, products) of the samples of a ``Gas``, integers: two shards add up."""
     seed, walls = np.uint64(whole("seed", seed, 0)), None if gas.periodic else True
     return sample_blocks(seed, first, stop, gas.discs, box_of(gas), walls)
+
+
+def free_fraction(gas):
+    """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it; 0 if it has no room."""
+    sums, _ = run_blocks(gas, 0, 0, 1)
+    return float(sums[0]) / UNITS / BLOCK * box_of(gas).typical
 
 
 def estimate(gas, sums, products, samples):
