@@ -11,12 +11,12 @@ from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.events import EVENTS
 from twodiscs.model.many import CLASSES, Gas
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import measures
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
 
-def counted(gas, blocks, seed=1, events=256):
+def counted(gas, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
     duration = many.duration_of(gas, events)
     sums, products = many.run_blocks(gas, seed, 0, blocks, duration)

@@ -101,8 +101,9 @@ def test_chains_that_are_too_short_are_seen(monkeypatch):
 
 @pytest.mark.parametrize(
     ("gas", "least"),
-    [(Gas(4, 1.18, 0.6, 0.18), 0.1), (Gas(8, 2.25, 0.6, 0.18), 0.05), (Gas(64, 18.0, 0.6, 0.18), 0.03),
-     (Gas(64, 17.3, 0.6, 0.18), 0.01), (Gas(16, 6.0, 0.3600001, 0.18), 0.5)],
+    [(Gas(4, 1.18, 0.6, 0.18), 0.1), (Gas(8, 2.25, 0.6, 0.18), 0.05),
+     (Gas(64, 18.0, 0.6, 0.18), 0.03), (Gas(64, 17.3, 0.6, 0.18), 0.01),
+     (Gas(16, 6.0, 0.3600001, 0.18), 0.5)],
 )  # fmt: skip
 def test_heights_in_a_channel_are_accepted_at_every_density(gas, least):
     state, cells = open_stream(np.uint64(1), 0), initial.initial_of(gas, "channel").cells

@@ -31,7 +31,9 @@ def test_volume_and_areas_are_exact(gas):
 
 
 @pytest.mark.parametrize(
-    "gas", [Gas(4, 1.5, 1.0, 0.12), Gas(4, 1.5, 1.0, 0.12, "x"), Gas(3, 1.2, 1.0, 0.25, "x")], ids=repr
+    "gas",
+    [Gas(4, 1.5, 1.0, 0.12), Gas(4, 1.5, 1.0, 0.12, "x"), Gas(3, 1.2, 1.0, 0.25, "x")],
+    ids=repr,
 )
 def test_the_volume_is_that_of_rejection(gas):
     """Five sigma of both, where there is no exact value; with the images of a ring."""

@@ -27,8 +27,11 @@ from twodiscs.dynamics.law import (
 )
 from twodiscs.model.many import CLASSES
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many.initial import draw_states, initial_of
+from twodiscs.sampling.many.initial import draw_states, initial_of, method
 from twodiscs.sampling.streams import open_stream
+
+#: Events of a replica, and where its initial state takes as long as some ten thousand events.
+EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -264,7 +267,11 @@ def simulated_events(sums):
     return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
 
 
-def duration_of(gas, events=256):
-    """Return a power of two in which about so many ``events`` happen: by those of an ideal gas."""
+def duration_of(gas, events=None):
+    """Return a power of two in which about so many ``events`` happen: by those of an ideal gas.
+
+    Unless told, 256, or ``EVENTS_OF_CHAIN`` where an initial state takes a chain of moves.
+    """
+    events = events or (EVENTS_OF_CHAIN if method(gas) == "chain" else EVENTS)
     rate = 0.5 * math.sqrt(gas.discs) * (1 / gas.range_x + 1 / gas.range_y)
     return nearest_power_of_two(events / rate)

@@ -1,15 +1,15 @@
-"""States of the invariant measure for N discs: velocities on a sphere, centres in one of three ways.
+"""States of the invariant measure for N discs: velocities on a sphere, centres in three ways.
 
-* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. A draw is accepted
-  with the probability V/(AB)^N, and it is used where that is at least ``LEAST``.
+* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. A draw is
+  accepted with the probability V/(AB)^N, and it is used where that is at least ``LEAST``.
 * ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. They are proposed
   cell by cell as a Markov chain whose weights are above those of exp(−c d), and accepted with what
   is left of the ratio; positions along the channel are then order statistics. Exact at every
   density.
-* ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one disc
-  at a time, a new chain for each state. Not exact: how far it is from equilibrium is tested, against
-  exact rates and rejection where there are any and against chains of other lengths. Where discs
-  cannot get from one arrangement to another, it keeps to the known one.
+* ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one
+  disc at a time, a new chain for each state. Not exact: how far it is from equilibrium is tested,
+  against rejection and channels where they can be used, and against chains of other lengths. Where
+  discs cannot get from one arrangement to another, it keeps to the known one.
 
 Nothing here needs more than + − × / and √.
 """
@@ -110,8 +110,8 @@ def _cells(gas):
     known = channel.channel_of(gas)
     n, b, room = gas.discs, gas.range_y, known.room
     tilt = _rounded(channel.saddle(known)[0])
-    # d − d₀ grows by B/d₀ for a length off a corner at most. Over all discs the weights of cells are
-    # then some e² above those of heights; far off, cells may be wider.
+    # d − d₀ grows by B/d₀ for a length off a corner at most. Over all discs the weights of cells
+    # are then some e² above those of heights; far off, cells may be wider.
     steepest = b / known.least
     fine = 2 / (n * tilt * steepest)
     ends, width = [0.0], fine

@@ -10,8 +10,8 @@ disc is then tried on each surface, where it stands for all N of them:
     Σ ∫δ(x_i − x_j)  N(N − 1)/2 (AB)^(N−1) B ⟨W_(N−1) [free where it is level with a disc]⟩
 
 with heights, directions and discs at random; ∂V/∂B and hops in y likewise. A sample adds an integer
-for each of them, its weight in units of 2^(−20) of a typical one and rounded at random, so that sums
-are unbiased integers, the same on every machine.
+for each of them, its weight in units of 2^(−20) of a typical one and rounded at random, so that
+sums are unbiased integers, the same on every machine.
 """
 
 import math
@@ -35,7 +35,7 @@ QUANTITIES = ("volume", "per_width", "per_height", "per_contact", "hops_x", "hop
 
 
 class Box(NamedTuple):
-    """What a sample needs: half-ranges, σ, the circumference of a ring or None, a typical weight."""
+    """What a sample needs: half-ranges, σ, circumference of a ring or None, a typical weight."""
 
     half_x: float
     half_y: float
@@ -131,8 +131,8 @@ def free_at_sides(centres, k, y, box, walls):
 def sample_blocks(seed, first, stop, discs, box, walls):
     """Return (sums, products) of the samples of blocks ``first`` … ``stop`` − 1, int64.
 
-    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``; products (6, 6), for
-    errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
+    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``; products (6, 6),
+    for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
     """
     n = len(QUANTITIES)
     centres = np.empty((2, discs))
@@ -199,7 +199,7 @@ def run_blocks(gas, seed, first, stop):
 
 
 def free_fraction(gas):
-    """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it; 0 if it has no room."""
+    """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it, maybe 0."""
     sums, _ = run_blocks(gas, 0, 0, 1)
     return float(sums[0]) / UNITS / BLOCK * box_of(gas).typical
 
@@ -207,8 +207,8 @@ def free_fraction(gas):
 def estimate(gas, sums, products, samples):
     """Return (``Measures``, their standard errors as ``Measures``) of so many ``samples``.
 
-    Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a ring
-    hops in x and the walls of x are 0. Raises ``InputError`` where not a sample had room.
+    Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a
+    ring hops in x and the walls of x are 0. Raises ``InputError`` where not a sample had room.
     """
     n, a, b = gas.discs, gas.range_x, gas.range_y
     if sums[0] == 0:
@@ -235,6 +235,6 @@ def estimate(gas, sums, products, samples):
 
 
 def sample(gas, samples, seed):
-    """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, rounded up to blocks."""
+    """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
     blocks = -(-whole("samples", samples) // BLOCK)
     return estimate(gas, *run_blocks(gas, seed, 0, blocks), blocks * BLOCK)

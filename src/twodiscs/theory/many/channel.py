@@ -5,20 +5,20 @@ For h ≤ (2 + √3) r only neighbours touch. They keep d(y, y') = √(σ² − 
     V = ∫_[0,B]^N dy (A − S)₊^N,  S = Σ d(y_i, y_{i+1})
 
 The Laplace transform of that by A is N! p^(−N−1) Z(p), with Z(p) = ⟨1|T^(N−1)|1⟩ of the transfer
-operator T(y, y') = exp(−p d(y, y')). Derivatives of V are such integrals, with one of the T replaced
-by T σ/d (by σ) or by T (y − y')²/(B d) (by B): all their terms are positive. In a hop in y a T gets
-δ(y − y').
+operator T(y, y') = exp(−p d(y, y')). Derivatives of V are such integrals, with one of the T
+replaced by T σ/d (by σ) or by T (y − y')²/(B d) (by B): all their terms are positive. In a hop in y
+of neighbours it is T δ(y − y'), in others the diagonal of a power of T.
 
-Conditioning. The least d is d₀ = √(σ² − B²) = √(h(4r − h)) ≥ r, between discs on opposite walls: d is
-smooth everywhere (B < σ), and only the room A − (N − 1) d₀ and d − d₀ = (B² − (y − y')²)/(d + d₀)
-count. Both are formed without cancellation, with y measured from the nearer wall. Nodes are those
-of Gauss on panels that crowd at both walls, where discs that hardly fit are.
+Conditioning. The least d is d₀ = √(σ² − B²) ≥ r, between discs on opposite walls: d is smooth
+everywhere (B < σ), and only the room A − (N − 1) d₀ and d − d₀ = (B² − (y − y')²)/(d + d₀) count.
+Both are formed without cancellation, with y measured from the nearer wall. Nodes are those of Gauss
+on panels that crowd at both walls, where discs that hardly fit are.
 
-The inverse is taken along the vertical line through the saddle of e^{pA} p^(−N−1) Z(p), where terms do
-not cancel, by the trapezoidal rule. A contour that bends to the left, such as Talbot's, would be
+The inverse is taken along the vertical line through the saddle of e^{pA} p^(−N−1) Z(p), where terms
+do not cancel, by the trapezoidal rule. A contour that bends to the left, such as Talbot's, would be
 wrong: Z grows there like exp(|p| (N − 1) σ), which is more than e^{pA} takes back unless the
 channel is longer than the discs in a row. Along the line terms fall like a power of p at least, the
-higher the more discs.
+higher the more discs. They are most where A is near a length at which S is stationary, as (N − 1) σ.
 
 As N → ∞ at a given p, which is the force along the channel over kT, V grows by the factor λ/p for
 each disc, λ the largest eigenvalue of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
@@ -243,10 +243,10 @@ def measures(gas, hops=True, tail=TAIL):
     """Return the ``Measures`` of a ``Gas`` in an ordered channel.
 
     Hops in x are impossible. Hops in y, of any pair, take the time of N matrix products for each
-    term; with ``hops`` False they are None. Relative errors are some 1e-11 (``tail``), and roundings
-    over the room that is left where the discs hardly fit. Of two or three discs there are many
-    terms in a short channel: they have methods of their own. Raises ``InputError`` where the channel
-    is not ordered or the terms are too many.
+    term; with ``hops`` False they are None. Relative errors are some 1e-11 (``tail``), and
+    roundings over the room that is left where the discs hardly fit. Of two or three discs there are
+    many terms in a short channel: they have methods of their own. Raises ``InputError`` where the
+    channel is not ordered or the terms are too many.
     """
     channel = channel_of(gas)
     p, phi = saddle(channel)
@@ -296,8 +296,8 @@ def _windowed(terms):
 def _step(channel, p, phi):
     """Return the step along the line at which copies of V let in by the rule are below ``ALIAS``.
 
-    They are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each; and V there is
-    at most what its transform at any q < p says, e^{q (room + 2π/step)} q^(−N−1) Z(q).
+    They are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each; and V there
+    is at most what its transform at any q < p says, e^{q (room + 2π/step)} q^(−N−1) Z(q).
     """
     best = math.inf
     for share in (0.2, 0.35, 0.5, 0.65, 0.8):
@@ -326,7 +326,7 @@ class Limit(NamedTuple):
 
 
 def limit(height, radius, force):
-    """Return the ``Limit`` of discs of ``radius`` in a channel of ``height`` at a ``force`` over kT.
+    """Return the ``Limit`` of discs of ``radius`` in a channel, at a ``force`` over kT.
 
     The force is along the channel, in 1/length. In the units of the other rates, kT is 1/D of the
     total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and

@@ -3,8 +3,9 @@
 With D components of velocity (2N, less a momentum that is conserved) uniform on a sphere at total
 energy 1/2, and c_D of ``weighted.constant``, all events of a class together happen at the rates
 
-    collisions    −(c_D/√2) ∂lnV/∂σ        walls of x    c_D ∂lnV/∂A        walls of y    c_D ∂lnV/∂B
-    hops in x     √2 c_D Σ_pairs ∫ δ(x_i − x_j) / V,        hops in y likewise
+    collisions     −(c_D/√2) ∂lnV/∂σ
+    walls of x     c_D ∂lnV/∂A                              walls of y likewise
+    hops in x      √2 c_D Σ_pairs ∫ δ(x_i − x_j) / V        hops in y likewise
 
 V is the volume of configuration space, a function of the ranges A and B of the centres and of the
 contact distance σ. It scales as a length to the power 2N, so that the virial theorem follows for
@@ -19,8 +20,8 @@ import math
 from typing import NamedTuple
 
 from twodiscs.model.checks import InputError
-from twodiscs.theory import plain
 from twodiscs.model.scene import Scene
+from twodiscs.theory import plain
 from twodiscs.theory.weighted import constant
 
 

@@ -13,7 +13,8 @@ smaller one Q and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d
 where h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
 their terms are positive. Of the pairs that are level in x, at least σ apart in y,
 
-    Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
+    Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
+                       [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
 
 The integrands are smooth but where P, Q or t is σ, p + q, p + c, q + c or q is A, and q = p + c,
 which is where the discs form an equilateral triangle. All of these P and the t at which two of them
@@ -23,6 +24,7 @@ r/(r_max − r) where the discs hardly fit.
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -66,7 +68,7 @@ def _sums(a, b, sigma):
     share, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
     t, weight, c = [], [], []
     ends = _ends(a, b, sigma)
-    for low, high in zip(ends, ends[1:], strict=False):
+    for low, high in pairwise(ends):
         if high <= sigma:
             start = math.asin(low / sigma)
             width = math.asin(min(high / sigma, 1.0)) - start
@@ -111,7 +113,7 @@ def _kinks(a, sigma, t, c):
 
 
 def _gaps(a, sigma, t, c):
-    """Return (p, q, weight, P < σ, Q < σ) at the nodes of the inner integral, (panels, nodes, t)."""
+    """Return (p, q, weight, P < σ, Q < σ) at the inner nodes, arrays (panels, nodes, t)."""
     x, w = (part[:, None] for part in _nodes(INNER))
     larger, smaller = _kinks(a, sigma, t, c)
     low, high = larger[:-1, None, :], larger[1:, None, :]
@@ -153,9 +155,9 @@ def measures(gas):
 
 
 def integrals(a, b, sigma):
-    """Return (V, ∂V/∂A, ∂V/∂B, −∂V/∂σ, Σ ∫ δ(x_i − x_j)) for ranges ``a``, ``b``; contact at ``sigma``.
+    """Return (V, ∂V/∂A, ∂V/∂B, −∂V/∂σ, Σ ∫ δ(x_i − x_j)) for ranges ``a`` and ``b`` of the centres.
 
-    V is in length⁶, the others in length⁵.
+    They touch at the distance ``sigma``. V is in length⁶, the others in length⁵.
     """
     t, outer, c = _sums(a, b, sigma)
     p, q, inner, near_p, near_q = _gaps(a, sigma, t, c)
