@@ -18,7 +18,8 @@ The inverse is taken along the vertical line through the saddle of e^{pA} p^(−
 do not cancel, by the trapezoidal rule. A contour that bends to the left, such as Talbot's, would be
 wrong: Z grows there like exp(|p| (N − 1) σ), which is more than e^{pA} takes back unless the
 channel is longer than the discs in a row. Along the line terms fall like a power of p at least, the
-higher the more discs. They are most where A is near a length at which S is stationary, as (N − 1) σ.
+higher the more discs; they are most where A is near a length at which S is stationary, as it is at
+(N − 1) σ.
 
 As N → ∞ at a given p, which is the force along the channel over kT, V grows by the factor λ/p for
 each disc, λ the largest eigenvalue of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
