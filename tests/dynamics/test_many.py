@@ -1,6 +1,9 @@
 """N discs in lock step: exact rates where there are any, another program, the engine of two."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -112,6 +115,35 @@ def test_two_discs_are_those_of_the_engine_of_two(radius):
     # Four pairs of a disc and a wall of an axis are counted by both.
     expected = {event: scale[at[event]] for event in CLASSES}
     check(gas, found, errors, expected, {event: spread[at[event]] for event in CLASSES})
+
+
+BITS = """
+import hashlib
+from twodiscs.dynamics import many
+from twodiscs.model.many import Gas
+from twodiscs.sampling.many import initial, measures
+gases = [Gas(3, 1.5, 1.0, 0.15), Gas(8, 2.3, 0.6, 0.18), Gas(6, 1.5, 1.0, 0.2)]
+found = hashlib.sha256()
+for gas in [*gases, Gas(4, 1.5, 1.0, 0.15, "x")]:
+    counts = many.run_blocks(gas, 5, 0, 1, 16.0, replicas=64)
+    for part in (*counts, *measures.run_blocks(gas, 5, 0, 1), initial.states(gas, 50, 3)):
+        found.update(part.tobytes())
+print(found.hexdigest())
+"""
+
+
+@pytest.mark.slow
+def test_the_bits_do_not_depend_on_the_processor(tmp_path):
+    """A processor without AVX computes the same."""
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+    generic |= {"NUMBA_CACHE_DIR": str(tmp_path)}
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", BITS], env=environment, check=True, capture_output=True
+        ).stdout
+        for environment in (os.environ, os.environ | generic)
+    }
+    assert len(found) == 1
 
 
 def test_lanes_and_shards_do_not_matter():

@@ -28,7 +28,7 @@ def test_dynamics_agrees_with_what_is_known(rows):
 
 
 def test_no_exact_value_is_not_impossible(rows):
-    """Four discs that pass each other have a time and no exact one; in a channel the hop has none."""
+    """Four discs that pass each other have a time, but no exact one; in a channel there is none."""
     at = {(row["discs"], row["radius"], row["event"]): row for row in rows}
     four = at[4, 0.1, "horizontal_hop"]
     assert (four["theory"], four["exact"]) == ("none", None)

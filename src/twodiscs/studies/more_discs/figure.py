@@ -32,10 +32,8 @@ def draw(box, tables):
             numbers = [row["discs"] for row in own]
             expected = [row["exact"] or row["monte_carlo"] for row in own]
             axes.plot(numbers, expected, color=colour, lw=0.7, ls=(0, (1, 1.5)))
-            sure = [
-                (n, e) for n, e, row in zip(numbers, expected, own, strict=True) if row["exact"]
-            ]
-            axes.plot(*zip(*sure, strict=True), color=colour) if len(sure) > 1 else None
+            known = [row for row in own if row["exact"]]
+            axes.plot([r["discs"] for r in known], [r["exact"] for r in known], color=colour)
             axes.errorbar(
                 numbers, [row["dynamics"] for row in own],
                 [row["dynamics_stderr"] for row in own], ls="", elinewidth=0.6,
@@ -51,5 +49,7 @@ def draw(box, tables):
         else:
             axes.set_xlabel("number of discs $N$")
         if place == len(radii) - 1:
+            # Room for the names above all symbols.
+            axes.set_ylim(top=60 * axes.get_ylim()[1])
             axes.legend(loc="upper right", ncols=2)
     return figure
