@@ -117,7 +117,7 @@ def test_four_discs_in_many_digits():
     assert found[1:4] == pytest.approx(derivatives, rel=BOUND)
 
 
-@pytest.mark.parametrize("width", [1.4, 1.3])
+@pytest.mark.parametrize("width", [1.3, 1.25])
 def test_four_discs_in_a_shorter_channel(width):
     """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
     gas, values = Gas(4, width, 0.6, 0.18), []
@@ -185,8 +185,9 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     first = 2 * differences[1:] - differences[:-1]
     second = (4 * first[1] - first[0]) / 3
     assert np.all(np.abs(differences[-1]) > 0.02)
-    assert np.all(np.abs(first[1]) < 2e-3)
-    assert np.all(np.abs(second) < 2e-4)
+    # Each order takes off a power of 1/N, N = 64.
+    assert np.all(np.abs(first[1]) < 5e-3)
+    assert np.all(np.abs(second) < 5e-4)
 
 
 def test_the_limit_is_a_tonks_gas_in_a_narrow_channel():
