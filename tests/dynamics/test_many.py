@@ -59,7 +59,7 @@ def test_rates_are_exact(name):
     weights = np.array([virial_weights(gas).get(event, 0.0) for event in CLASSES])
     error = math.sqrt(weights @ covariance @ weights)
     assert abs(virial_sum(gas, found) - 1) < 5 * error
-    assert error < 0.02
+    assert error < 0.05
 
 
 #: Without an exact value: Monte Carlo, and another program, say what dynamics is to say.
