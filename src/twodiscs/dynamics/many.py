@@ -1,0 +1,280 @@
+"""Counts of events of N equal discs in a fixed time: the law of one event in lock step.
+
+An event is what ``law`` has for two discs: quotients ``gap / speed`` of walls and of contacts,
+compared by cross-multiplication, contact a matter of direction, a disc put on the wall exactly,
+velocities exchanged along the line of centres. The states of all lanes are arrays (N, lanes); discs
+and pairs of discs are the outer loops, lanes the inner ones, which become vector instructions. An
+event costs N(N − 1)/2 contacts.
+
+On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
+ends after half the circumference over the largest relative speed, √2, and then looks again: so no
+third one is reached.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, nearest_power_of_two
+from twodiscs.dynamics.law import (
+    END_OF_TIME,
+    NEVER,
+    VANISHING,
+    contact_quotient,
+    crosses,
+    wall_quotient,
+)
+from twodiscs.model.many import CLASSES
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many.initial import draw_states, initial_of, method
+from twodiscs.sampling.streams import open_stream
+
+#: Events of a replica, and where its initial state takes as long as some ten thousand events.
+EVENTS, EVENTS_OF_CHAIN = 256, 8192
+
+#: A flight on a ring that ends without an event.
+LOOK_AGAIN = -1.0
+
+#: Classes of events, in the order of all counts.
+N = len(CLASSES)
+VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
+
+
+class ManyLaw(NamedTuple):
+    """What the motion depends on: half-ranges of the centres, σ, and the ring or None.
+
+    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then.
+    """
+
+    half_x: float | None
+    half_y: float
+    sigma: float
+    ring: tuple | None = None
+
+
+def law_of(gas):
+    """Return the ``ManyLaw`` of a ``Gas``."""
+    half_y, sigma = gas.range_y / 2, gas.contact_distance
+    if gas.periodic:
+        half = gas.width / 2
+        return ManyLaw(None, half_y, sigma, (gas.width, half, half / math.sqrt(2)))
+    return ManyLaw(gas.range_x / 2, half_y, sigma)
+
+
+@optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
+def first_of(gap, speed, code, other_gap, other_speed, number, half):
+    """Return (gap, speed, code) of what comes first; the other one is absent where ``half`` is."""
+    sooner = other_gap * speed < gap * other_speed
+    return (
+        other_gap if sooner else gap,
+        other_speed if sooner else speed,
+        number if sooner else code,
+    )
+
+
+@optional(lambda position, velocity, half: (NEVER, 1.0))
+def walled_quotient(position, velocity, half):
+    """Return (gap, speed) to the wall ahead, of which there is none where ``half`` is None."""
+    return wall_quotient(position, velocity, half)
+
+
+@optional(lambda separation, ring: separation)
+def nearest(separation, ring):
+    """Return the separation of the nearest image on a ring."""
+    period, half, _ = ring
+    separation -= period if separation > half else 0.0
+    separation += period if separation < -half else 0.0
+    return separation
+
+
+@optional(lambda dx, dy, du, dv, sigma, ring: contact_of(dx, dy, du, dv, sigma))
+def meeting_of(dx, dy, du, dv, sigma, ring):
+    """Return (gap, speed) of two discs, of the first image that is met on a ring."""
+    gap, speed = contact_of(dx, dy, du, dv, sigma)
+    other_gap, other_speed = contact_of(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
+    # A speed that is not a number loses; where the first one is none, the other one stands.
+    other = (other_gap * speed < gap * other_speed) | (speed != speed)
+    return other_gap if other else gap, other_speed if other else speed
+
+
+@inlined
+def contact_of(dx, dy, du, dv, sigma):
+    """Return (gap, speed) of two discs; the gap is infinite where they part."""
+    gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
+    return gap if approach else NEVER, speed
+
+
+@optional(lambda limit, code, ring: (limit, code))
+def soonest(limit, code, ring):
+    """Return (time, code) of what ends a flight before anything happens."""
+    again = ring[2] < limit
+    return ring[2] if again else limit, LOOK_AGAIN if again else code
+
+
+@optional(lambda position, hit, half: position)
+def on_wall(position, hit, half):
+    """Return the position, put on the wall at ±``half`` exactly if it is ``hit``."""
+    return math.copysign(half, position) if hit else position
+
+
+@compiled
+def find_events(x, y, u, v, remaining, times, codes, speeds, law):
+    """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time."""
+    discs, lanes = x.shape
+    for l in range(lanes):
+        times[l], codes[l] = soonest(remaining[l], END_OF_TIME, law.ring)
+        speeds[l] = 1.0
+    number = 1.0
+    for i in range(discs):
+        xi, yi, ui, vi = x[i], y[i], u[i], v[i]
+        for l in range(lanes):
+            gap, speed = walled_quotient(xi[l], ui[l], law.half_x)
+            gap, speed, code = first_of(
+                times[l], speeds[l], codes[l], gap, speed, number, law.half_x
+            )
+            gap_y, speed_y = wall_quotient(yi[l], vi[l], law.half_y)
+            times[l], speeds[l], codes[l] = first_of(
+                gap, speed, code, gap_y, speed_y, number + 1.0, law.half_y
+            )
+        number += 2.0
+    for i in range(discs):
+        xi, yi, ui, vi = x[i], y[i], u[i], v[i]
+        for j in range(i):
+            xj, yj, uj, vj = x[j], y[j], u[j], v[j]
+            for l in range(lanes):
+                gap, speed = meeting_of(
+                    nearest(xi[l] - xj[l], law.ring), yi[l] - yj[l], ui[l] - uj[l], vi[l] - vj[l],
+                    law.sigma, law.ring,
+                )  # fmt: skip
+                times[l], speeds[l], codes[l] = first_of(
+                    times[l], speeds[l], codes[l], gap, speed, number, law.half_y
+                )
+            number += 1.0
+    for l in range(lanes):
+        time = times[l] / speeds[l]
+        # Discs that overlap by a rounding and approach collide now.
+        times[l] = time if time > 0.0 else 0.0
+
+
+@compiled
+def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x):
+    """Advance every lane by its event and count it in ``counts`` (n, lanes), doubles."""
+    discs, lanes = x.shape
+    pairs = 1.0 + 2.0 * discs
+    hops, across, hits, beside, above = counts[0], counts[1], counts[2], counts[3], counts[4]
+    for l in range(lanes):
+        remaining[l] -= times[l]
+        hits[l] += 1.0 if codes[l] >= pairs else 0.0
+    for i in range(discs):
+        xi, yi, ui, vi, oxi, oyi = x[i], y[i], u[i], v[i], old_x[i], old_y[i]
+        number = 1.0 + 2.0 * i
+        for l in range(lanes):
+            on_x, on_y = codes[l] == number, codes[l] == number + 1.0
+            oxi[l], oyi[l] = xi[l], yi[l]
+            xi[l] = nearest(on_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring)
+            yi[l] = on_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
+            ui[l] = -ui[l] if on_x else ui[l]
+            vi[l] = -vi[l] if on_y else vi[l]
+            beside[l] += 1.0 if on_x else 0.0
+            above[l] += 1.0 if on_y else 0.0
+    number = pairs
+    for i in range(discs):
+        xi, yi, ui, vi, oxi, oyi = x[i], y[i], u[i], v[i], old_x[i], old_y[i]
+        for j in range(i):
+            xj, yj, uj, vj, oxj, oyj = x[j], y[j], u[j], v[j], old_x[j], old_y[j]
+            for l in range(lanes):
+                dx, dy = xi[l] - xj[l], yi[l] - yj[l]
+                hops[l] += 1.0 if crosses(oyi[l] - oyj[l], dy) else 0.0
+                if hops_x is not None:
+                    across[l] += 1.0 if crosses(oxi[l] - oxj[l], dx) else 0.0
+                dx = nearest(dx, law.ring)
+                square = dx * dx + dy * dy
+                exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
+                exchange = exchange if (codes[l] == number) & (square > VANISHING) else 0.0
+                ui[l] -= exchange * dx
+                vi[l] -= exchange * dy
+                uj[l] += exchange * dx
+                vj[l] += exchange * dy
+            number += 1.0
+
+
+@compiled
+def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initial, hops_x):
+    """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
+
+    Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
+    the order of ``CLASSES``. ``hops_x`` is None where hops in x are impossible.
+    """
+    x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    states = np.zeros((4 * discs, replicas))
+    remaining, times = np.zeros(lanes), np.zeros(lanes)
+    codes, speeds = np.zeros(lanes), np.zeros(lanes)
+    counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
+    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    one = np.zeros(N, np.int64)
+    block, used, running = first, replicas, 0
+    while True:
+        for l in range(lanes):
+            if remaining[l] > 0.0:
+                continue
+            if busy[l]:
+                for e in range(N):
+                    one[e] = np.int64(counts[e, l])
+                    counts[e, l] = 0.0
+                for e in range(N):
+                    sums[e] += one[e]
+                    for f in range(e, N):
+                        products[e, f] += one[e] * one[f]
+                busy[l] = False
+                running -= 1
+            if used == replicas and block < stop:
+                draw_states(open_stream(seed, block), initial, states)
+                block, used = block + 1, 0
+            if used < replicas:
+                for i in range(discs):
+                    x[i, l], y[i, l] = states[i, used], states[discs + i, used]
+                    u[i, l], v[i, l] = states[2 * discs + i, used], states[3 * discs + i, used]
+                remaining[l] = duration
+                busy[l] = True
+                running += 1
+                used += 1
+        if running == 0:
+            return sums, products
+        for _ in range(PASSES):
+            find_events(x, y, u, v, remaining, times, codes, speeds, law)
+            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x)
+
+
+def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
+    """Count all classes of events of a ``Gas`` in the blocks ``first`` … ``stop`` − 1.
+
+    A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
+    for ``duration``. Returns (sums, products) as ``count_blocks`` does: integers, which depend on
+    neither lanes nor shards.
+    """
+    hops_x = None if gas.periodic or gas.height <= 4 * gas.radius else True
+    return count_blocks(
+        np.uint64(seed), first, stop, replicas, lanes, duration, gas.discs, law_of(gas),
+        initial_of(gas), hops_x,
+    )  # fmt: skip
+
+
+def simulated_events(sums):
+    """Return how many wall hits and collisions there are among the counts of all classes."""
+    return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
+
+
+def duration_of(gas, events=None):
+    """Return a power of two in which about so many ``events`` happen, within a factor of two.
+
+    Those are the wall hits of an ideal gas, and what discs do in the room that is left to them
+    below the largest radius. Unless told, ``events`` are 256, or ``EVENTS_OF_CHAIN`` where an
+    initial state takes a chain of moves.
+    """
+    events = events or (EVENTS_OF_CHAIN if method(gas) == "chain" else EVENTS)
+    room = gas.largest_radius - gas.radius
+    rate = math.sqrt(gas.discs) * (0.5 / gas.range_x + 0.5 / gas.range_y + 0.35 / room)
+    return nearest_power_of_two(events / rate)

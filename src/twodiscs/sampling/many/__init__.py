@@ -1,0 +1,1 @@
+"""More than two discs: states of the invariant measure, and Monte Carlo of volume and areas."""

@@ -1,0 +1,344 @@
+"""States of the invariant measure for N discs: velocities on a sphere, centres in three ways.
+
+* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. A draw is
+  accepted with the probability V/(AB)^N, and it is used where that is at least ``LEAST``.
+* ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. They are proposed
+  cell by cell as a Markov chain whose weights are above those of exp(−c d), and accepted with what
+  is left of the ratio; positions along the channel are then order statistics. Exact at every
+  density.
+* ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one
+  disc at a time, a new chain for each state. Not exact: how far it is from equilibrium is tested,
+  against rejection and channels where they can be used, and against chains of other lengths. Where
+  discs cannot get from one arrangement to another, it keeps to the known one.
+
+Nothing here needs more than + − × / and √.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many import measures
+from twodiscs.sampling.many.measures import around
+from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
+from twodiscs.theory.many import channel
+
+#: The least part of (AB)^N that must be free for rejection: it takes less time than a chain then.
+LEAST = 1e-3
+
+#: Sweeps of a chain, and the least number of sizes of its moves, which are halves of one another.
+SWEEPS, SCALES = 4000, 8
+
+#: Weights of cells are at least those of exp(−z): (1 + z/64)^(−64).
+POWER = 64
+
+
+class Cells(NamedTuple):
+    """Proposals of heights in a channel of m cells across: see ``propose_heights``."""
+
+    ends: np.ndarray  # (m + 1,), from the middle of the channel
+    weights: np.ndarray  # (m, m), of a pair of cells
+    backward: np.ndarray  # (N, m): Σ over the cells of all discs that follow
+    room: float  # A − (N − 1) d₀
+    least: float  # d₀
+    scale: float  # with which a factor of the ratio is at most 1 in the mean
+    turned: bool  # whether the channel is along y
+
+
+class Chain(NamedTuple):
+    """A chain from an arrangement (2, N): its sweeps, and of how many sizes its moves are."""
+
+    centres: np.ndarray
+    sweeps: int
+    scales: int
+
+
+class Initial(NamedTuple):
+    """How the states of a gas are drawn; of ``cells`` and ``chain`` one at most is not None."""
+
+    discs: int
+    half_x: float
+    half_y: float
+    sigma: float
+    ring: float | None
+    cells: Cells | None
+    chain: Chain | None
+
+
+@lru_cache(maxsize=1024)
+def method(gas):
+    """Return how centres of a ``Gas`` are drawn: "channel", "rejection" or "chain".
+
+    A block of insertions, the same one everywhere, tells how much of (AB)^N is free. Where discs
+    hardly fit it finds too little, if anything.
+    """
+    if gas.is_ordered or (not gas.periodic and gas.turned().is_ordered):
+        return "channel"
+    return "rejection" if measures.free_fraction(gas) >= LEAST else "chain"
+
+
+def initial_of(gas, by=None):
+    """Return the ``Initial`` of a ``Gas``, by its ``method`` unless another one is named."""
+    by = by or method(gas)
+    return Initial(
+        gas.discs, gas.range_x / 2, gas.range_y / 2, gas.contact_distance,
+        gas.width if gas.periodic else None,
+        _cells(gas) if by == "channel" else None,
+        _chain(gas) if by == "chain" else None,
+    )  # fmt: skip
+
+
+def _chain(gas):
+    # The smallest moves are some fraction of the room that is left to the discs.
+    tightness = max(gas.range_x, gas.range_y) / (gas.largest_radius - gas.radius)
+    scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
+    return Chain(np.array(gas.arrangement).T.copy(), SWEEPS, scales)
+
+
+def _rounded(value):
+    """Return ``value`` with 30 binary digits: the same on every machine."""
+    mantissa, exponent = math.frexp(value)
+    return math.ldexp(round(math.ldexp(mantissa, 30)), exponent - 30)
+
+
+def _cells(gas):
+    turned = not gas.is_ordered
+    gas = gas.turned() if turned else gas
+    known = channel.channel_of(gas)
+    n, b, room = gas.discs, gas.range_y, known.room
+    tilt = _rounded(channel.saddle(known)[0])
+    # d − d₀ grows by B/d₀ for a length off a corner at most. Over all discs the weights of cells
+    # are then some e² above those of heights; far off, cells may be wider.
+    steepest = b / known.least
+    fine = 2 / (n * tilt * steepest)
+    ends, width = [0.0], fine
+    while ends[-1] < b / 2:
+        width = fine if ends[-1] * tilt * steepest < 4 else 1.15 * width
+        ends.append(ends[-1] + min(width, b / 24))
+    # From the wall to the middle, as parts of that.
+    ends = [end / ends[-1] * b / 2 for end in ends]
+    ends = np.array([end - b / 2 for end in ends] + [b / 2 - end for end in reversed(ends[:-1])])
+    # (room − x)^N ≤ (N/c)^N e^{c (room − x) − N}, c the tilt: with that K there are N factors.
+    bound = _rounded(n / tilt * math.exp(tilt * room / n - 1))
+    cells = len(ends) - 1
+    weights, backward = np.empty((cells, cells)), np.ones((n, cells))
+    fill_cells(ends, tilt, gas.contact_distance, b, known.least, weights, backward)
+    return Cells(ends, weights, backward, room, known.least, (1 - 2.0**-20) / bound, turned)
+
+
+@compiled
+def fill_cells(ends, tilt, sigma, height, least, weights, backward):
+    """Fill ``weights`` (m, m) and ``backward`` (N, m), whose last row is 1."""
+    cells, discs = weights.shape[0], backward.shape[0]
+    for k in range(cells):
+        for l in range(cells):
+            # The least d of two cells is that of their far ends.
+            far = max(ends[k + 1] - ends[l], ends[l + 1] - ends[k])
+            z = tilt * excess(min(far, height), sigma, height, least)
+            weight = 1.0 / (1.0 + z / POWER)
+            for _ in range(6):
+                weight *= weight
+            weights[k, l] = weight
+    for i in range(discs - 2, -1, -1):
+        largest = 0.0
+        for k in range(cells):
+            total = 0.0
+            for l in range(cells):
+                total += weights[k, l] * (ends[l + 1] - ends[l]) * backward[i + 1, l]
+            backward[i, k] = total
+            largest = max(largest, total)
+        for k in range(cells):
+            backward[i, k] /= largest
+
+
+@inlined
+def excess(separation, sigma, height, least):
+    """Return d − d₀ of two discs whose heights differ by ``separation`` ≥ 0."""
+    d = math.sqrt((sigma - separation) * (sigma + separation))
+    return (height - separation) * (height + separation) / (d + least)
+
+
+# Velocities --------------------------------------------------------------------------------------
+
+
+@inlined
+def sort(values):
+    """Sort a short array in place."""
+    for i in range(1, values.size):
+        value, j = values[i], i
+        while j > 0 and values[j - 1] > value:
+            values[j] = values[j - 1]
+            j -= 1
+        values[j] = value
+
+
+@optional(lambda velocities, ring: None)
+def keep_still(velocities, ring):
+    """Take the mean off the first of ``velocities`` (2, N), and scale them to the energy 1/2."""
+    n = velocities.shape[1]
+    mean, total = 0.0, 0.0
+    for i in range(n):
+        mean += velocities[0, i]
+    mean /= n
+    for i in range(n):
+        velocities[0, i] -= mean
+        total += velocities[0, i] * velocities[0, i] + velocities[1, i] * velocities[1, i]
+    scale = 1.0 / math.sqrt(total)
+    for i in range(n):
+        velocities[0, i] *= scale
+        velocities[1, i] *= scale
+
+
+@compiled
+def draw_velocities(state, velocities, cuts, ring):
+    """Fill ``velocities`` (2, N) uniformly on the unit sphere, on a ring with no momentum along x.
+
+    The energies of N discs of the plane are uniform on their simplex, so they are what N − 1 sorted
+    uniform numbers (``cuts``) leave between them; all directions are equal.
+    """
+    n = velocities.shape[1]
+    for i in range(n - 1):
+        cuts[i] = uniform(state)
+    sort(cuts)
+    for i in range(n):
+        low, high = cuts[i - 1] if i > 0 else 0.0, cuts[i] if i < n - 1 else 1.0
+        while True:
+            p, q = signed_uniform(state), signed_uniform(state)
+            square = p * p + q * q
+            if 0.0 < square < 1.0:
+                break
+        scale = math.sqrt((high - low) / square)
+        velocities[0, i], velocities[1, i] = p * scale, q * scale
+    keep_still(velocities, ring)
+
+
+# Centres -----------------------------------------------------------------------------------------
+
+
+@inlined
+def overlaps(centres, i, stop, x, y, initial):
+    """Say whether a disc at (x, y) overlaps any of those before ``stop`` but disc ``i``."""
+    for j in range(stop):
+        dx, dy = around(x - centres[0, j], initial.ring), y - centres[1, j]
+        if j != i and dx * dx + dy * dy < initial.sigma * initial.sigma:
+            return True
+    return False
+
+
+def _rejected(state, initial, centres, chain):
+    i = 0
+    while i < initial.discs:
+        x, y = initial.half_x * signed_uniform(state), initial.half_y * signed_uniform(state)
+        if overlaps(centres, i, i, x, y, initial):
+            i = 0
+            continue
+        centres[0, i], centres[1, i] = x, y
+        i += 1
+
+
+@optional(_rejected)
+def by_chain(state, initial, centres, chain):
+    """Fill ``centres`` (2, N) by a chain of moves, or by rejection where there is none."""
+    centres[:] = chain.centres
+    width, height = 2 * initial.half_x, 2 * initial.half_y
+    for _ in range(chain.sweeps):
+        for i in range(initial.discs):
+            scale = 1.0 / np.float64(1 << (next_bits(state) % np.uint64(chain.scales)))
+            x = centres[0, i] + scale * width * signed_uniform(state)
+            y = centres[1, i] + scale * height * signed_uniform(state)
+            x = around(x, initial.ring)
+            inside = (abs(x) <= initial.half_x) & (abs(y) <= initial.half_y)
+            if inside and not overlaps(centres, i, initial.discs, x, y, initial):
+                centres[0, i], centres[1, i] = x, y
+
+
+def _elsewhere(state, initial, centres, cells):
+    by_chain(state, initial, centres, initial.chain)
+
+
+@inlined
+def chosen(state, weights, ends, backward):
+    """Return a cell with a probability ∝ weight × width × backward."""
+    total = 0.0
+    for k in range(weights.size):
+        total += weights[k] * (ends[k + 1] - ends[k]) * backward[k]
+    left = total * uniform(state)
+    for k in range(weights.size):
+        left -= weights[k] * (ends[k + 1] - ends[k]) * backward[k]
+        if left < 0.0:
+            return k
+    return weights.size - 1
+
+
+@compiled
+def propose_heights(state, cells, sigma, heights):
+    """Fill ``heights`` (N,), from the middle of the channel; say whether they are accepted.
+
+    They are then distributed as (A − S)₊^N.
+    """
+    discs, height = heights.size, cells.ends[-1] - cells.ends[0]
+    ratio, left, k = 1.0, cells.room, 0
+    even = np.ones(cells.weights.shape[0])
+    for i in range(discs):
+        last = k
+        k = chosen(state, even if i == 0 else cells.weights[k], cells.ends, cells.backward[i])
+        low, high = cells.ends[k], cells.ends[k + 1]
+        heights[i] = low + (high - low) * uniform(state)
+        if i > 0:
+            apart = abs(heights[i] - heights[i - 1])
+            left -= excess(min(apart, height), sigma, height, cells.least)
+            ratio /= cells.weights[last, k]
+    if left <= 0.0:
+        return False
+    for _ in range(discs):
+        ratio *= left * cells.scale
+    return uniform(state) < ratio
+
+
+@optional(_elsewhere)
+def draw_centres(state, initial, centres, cells):
+    """Fill ``centres`` (2, N) in a channel, where there is one, or in the other two ways."""
+    along, across = (1, 0) if cells.turned else (0, 1)
+    half = initial.half_y if cells.turned else initial.half_x
+    heights, order = centres[across], centres[along]
+    while not propose_heights(state, cells, initial.sigma, heights):
+        pass
+    taken = 0.0
+    for i in range(1, initial.discs):
+        apart = heights[i] - heights[i - 1]
+        taken += math.sqrt((initial.sigma - apart) * (initial.sigma + apart))
+    for i in range(initial.discs):
+        order[i] = uniform(state)
+    sort(order)
+    free, passed = 2 * half - taken, 0.0
+    for i in range(initial.discs):
+        if i > 0:
+            apart = heights[i] - heights[i - 1]
+            passed += math.sqrt((initial.sigma - apart) * (initial.sigma + apart))
+        order[i] = min(max(passed + free * order[i] - half, -half), half)
+
+
+@compiled
+def draw_states(state, initial, states):
+    """Fill ``states`` (4N, number): x of all discs, then y, u and v."""
+    n = initial.discs
+    centres, velocities, cuts = np.empty((2, n)), np.empty((2, n)), np.empty(n - 1)
+    for k in range(states.shape[1]):
+        draw_centres(state, initial, centres, initial.cells)
+        draw_velocities(state, velocities, cuts, initial.ring)
+        for i in range(n):
+            states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
+            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+
+
+def states(gas, number, seed, block=0, by=None):
+    """Return ``number`` states of the invariant measure of a ``Gas``, one a column of (4N, number).
+
+    They are the first ones of the stream of ``seed`` for ``block``.
+    """
+    found = np.zeros((4 * gas.discs, number))
+    draw_states(open_stream(np.uint64(seed), block), initial_of(gas, by), found)
+    return found

@@ -1,0 +1,240 @@
+"""Monte Carlo of the volume and all areas of N discs, by discs that are inserted one at a time.
+
+Each disc takes a height at random and then a place in the length ℓ that the discs before it leave
+free at that height, uniformly. The weight W_k = Π ℓ_i/A of the first k discs makes up for it
+(Rosenbluth and Rosenbluth, J. Chem. Phys. 23, 356 (1955)): V = (AB)^N ⟨W_N⟩ without bias. The last
+disc is then tried on each surface, where it stands for all N of them:
+
+    ∂V/∂A            (N/2) (AB)^(N−1) B ⟨W_(N−1) [free on the right + free on the left]⟩
+    −∂V/∂σ           N(N − 1)/2 (AB)^(N−1) 2πσ ⟨W_(N−1) [free where it touches a disc]⟩
+    Σ ∫δ(x_i − x_j)  N(N − 1)/2 (AB)^(N−1) B ⟨W_(N−1) [free where it is level with a disc]⟩
+
+with heights, directions and discs at random; ∂V/∂B and hops in y likewise. A sample adds an integer
+for each of them, its weight in units of 2^(−20) of a typical one and rounded at random, so that
+sums are unbiased integers, the same on every machine.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.model.checks import InputError, whole
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
+from twodiscs.theory.many.rates import Measures, overlap_of_two
+
+#: Samples that share a random stream.
+BLOCK = 1 << 12
+
+#: Units of a typical weight.
+UNITS = 2.0**20
+
+#: What is summed: the volume and the numbers of ``Measures`` after the logarithm.
+QUANTITIES = ("volume", "per_width", "per_height", "per_contact", "hops_x", "hops_y")
+
+
+class Box(NamedTuple):
+    """What a sample needs: half-ranges, σ, circumference of a ring or None, a typical weight."""
+
+    half_x: float
+    half_y: float
+    sigma: float
+    ring: float | None
+    typical: float
+
+
+@optional(lambda dx, ring: dx)
+def around(dx, ring):
+    """Return the shorter way around a ring."""
+    dx -= ring if dx > ring / 2 else 0.0
+    dx += ring if dx < -ring / 2 else 0.0
+    return dx
+
+
+@optional(
+    lambda starts, ends, n, low, high, half, ring: put_between(starts, ends, n, low, high, half)
+)
+def put_interval(starts, ends, n, low, high, half, ring):
+    """Add what is closed from ``low`` to ``high``, in two parts where that is across the seam."""
+    starts[n], ends[n] = max(low, -half), min(high, half)
+    n += 1
+    if low < -half:
+        starts[n], ends[n] = low + ring, half
+        n += 1
+    if high > half:
+        starts[n], ends[n] = -half, high - ring
+        n += 1
+    return n
+
+
+@inlined
+def put_between(starts, ends, n, low, high, half):
+    """Add what is closed from ``low`` to ``high`` between walls."""
+    low, high = max(low, -half), min(high, half)
+    starts[n], ends[n] = low, high
+    return n + 1 if high > low else n
+
+
+@compiled
+def free_place(state, centres, k, y, box, starts, ends):
+    """Return (free length at height ``y`` beside the first ``k`` discs, a place in it)."""
+    n = 0
+    for j in range(k):
+        dy = y - centres[1, j]
+        square = (box.sigma - dy) * (box.sigma + dy)
+        if square > 0.0:
+            d, x = math.sqrt(square), centres[0, j]
+            n = put_interval(starts, ends, n, x - d, x + d, box.half_x, box.ring)
+    # By their starts, a short list.
+    for i in range(1, n):
+        low, high, j = starts[i], ends[i], i
+        while j > 0 and starts[j - 1] > low:
+            starts[j], ends[j] = starts[j - 1], ends[j - 1]
+            j -= 1
+        starts[j], ends[j] = low, high
+    free, reached = 0.0, -box.half_x
+    for i in range(n):
+        free += max(starts[i] - reached, 0.0)
+        reached = max(reached, ends[i])
+    free += max(box.half_x - reached, 0.0)
+    left, reached = free * uniform(state), -box.half_x
+    for i in range(n):
+        gap = max(starts[i] - reached, 0.0)
+        if left < gap:
+            return free, reached + left
+        left -= gap
+        reached = max(reached, ends[i])
+    return free, min(reached + left, box.half_x)
+
+
+@inlined
+def is_free(centres, k, x, y, box, but):
+    """Say whether a disc at (x, y) is in the box and overlaps none of the first ``k`` but one."""
+    if (abs(x) > box.half_x) | (abs(y) > box.half_y):
+        return False
+    for j in range(k):
+        dx, dy = around(x - centres[0, j], box.ring), y - centres[1, j]
+        if j != but and dx * dx + dy * dy < box.sigma * box.sigma:
+            return False
+    return True
+
+
+@optional(lambda centres, k, y, box, walls: 0.0)
+def free_at_sides(centres, k, y, box, walls):
+    """Return at how many of the two walls of x a disc is free at height ``y``."""
+    free = 1.0 if is_free(centres, k, box.half_x, y, box, -1) else 0.0
+    return free + (1.0 if is_free(centres, k, -box.half_x, y, box, -1) else 0.0)
+
+
+@compiled
+def sample_blocks(seed, first, stop, discs, box, walls):
+    """Return (sums, products) of the samples of blocks ``first`` … ``stop`` − 1, int64.
+
+    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``; products (6, 6),
+    for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
+    """
+    n = len(QUANTITIES)
+    centres = np.empty((2, discs))
+    starts, ends = np.empty(3 * discs), np.empty(3 * discs)
+    weights = np.zeros(n)
+    sums, products = np.zeros(n, np.int64), np.zeros((n, n), np.int64)
+    length, last = 2 * box.half_x, discs - 1
+    for block in range(first, stop):
+        state = open_stream(seed, block)
+        for _ in range(BLOCK):
+            weight = 1.0 / box.typical
+            for k in range(last):
+                y = box.half_y * signed_uniform(state)
+                free, x = free_place(state, centres, k, y, box, starts, ends)
+                centres[0, k], centres[1, k] = x, y
+                weight *= free / length
+                if weight == 0.0:
+                    break
+            weights[:] = 0.0
+            if weight > 0.0:
+                x, y = box.half_x * signed_uniform(state), box.half_y * signed_uniform(state)
+                free, _ = free_place(state, centres, last, y, box, starts, ends)
+                weights[0] = free / length
+                weights[1] = free_at_sides(centres, last, y, box, walls) / 2
+                top = is_free(centres, last, x, box.half_y, box, -1)
+                bottom = is_free(centres, last, x, -box.half_y, box, -1)
+                weights[2] = ((1.0 if top else 0.0) + (1.0 if bottom else 0.0)) / 2
+                j = np.int64(next_bits(state) % np.uint64(last))
+                while True:
+                    p, q = signed_uniform(state), signed_uniform(state)
+                    square = p * p + q * q
+                    if 0.0 < square < 1.0:
+                        break
+                scale = box.sigma / math.sqrt(square)
+                at_x = around(centres[0, j] + p * scale, box.ring)
+                touches = is_free(centres, last, at_x, centres[1, j] + q * scale, box, j)
+                weights[3] = 1.0 if touches else 0.0
+                weights[4] = 1.0 if is_free(centres, last, centres[0, j], y, box, -1) else 0.0
+                weights[5] = 1.0 if is_free(centres, last, x, centres[1, j], box, -1) else 0.0
+            for e in range(n):
+                weights[e] *= weight
+                sums[e] += np.int64(weights[e] * UNITS + uniform(state))
+            for e in range(n):
+                for f in range(e, n):
+                    products[e, f] += np.int64(weights[e] * weights[f] * UNITS)
+    return sums, products
+
+
+def box_of(gas):
+    """Return the ``Box`` of a ``Gas``."""
+    pairs = gas.discs * (gas.discs - 1) / 2
+    # Rounded to a power of two: the same on every machine.
+    typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(gas)))
+    return Box(
+        gas.range_x / 2, gas.range_y / 2, gas.contact_distance,
+        gas.width if gas.periodic else None, typical,
+    )  # fmt: skip
+
+
+def run_blocks(gas, seed, first, stop):
+    """Return (sums, products) of the samples of a ``Gas``, integers: two shards add up."""
+    seed, walls = np.uint64(whole("seed", seed, 0)), None if gas.periodic else True
+    return sample_blocks(seed, first, stop, gas.discs, box_of(gas), walls)
+
+
+def free_fraction(gas):
+    """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it, maybe 0."""
+    sums, _ = run_blocks(gas, 0, 0, 1)
+    return float(sums[0]) / UNITS / BLOCK * box_of(gas).typical
+
+
+def estimate(gas, sums, products, samples):
+    """Return (``Measures``, their standard errors as ``Measures``) of so many ``samples``.
+
+    Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a
+    ring hops in x and the walls of x are 0. Raises ``InputError`` where not a sample had room.
+    """
+    n, a, b = gas.discs, gas.range_x, gas.range_y
+    if sums[0] == 0:
+        raise InputError(f"of {samples} samples none had room for {n} discs")
+    unit = UNITS * samples
+    mean = np.asarray(sums) / unit
+    second = np.triu(products) / unit
+    second = second + np.triu(second, 1).T
+    covariance = (second - np.outer(mean, mean)) / samples
+    pairs = n * (n - 1) / 2
+    factors = np.array(
+        [n / a, n / b, pairs * 2 * math.pi * gas.contact_distance / (a * b), pairs / a, pairs / b]
+    )
+    if gas.periodic:
+        factors[[0, 3]] = 0.0
+    ratios = mean[1:] / mean[0]
+    spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
+    errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]
+    log_volume = n * math.log(a * b) + math.log(box_of(gas).typical) + math.log(mean[0])
+    return (
+        Measures(log_volume, *map(float, factors * ratios)),
+        Measures(math.sqrt(covariance[0, 0]) / mean[0], *map(float, factors * errors)),
+    )
+
+
+def sample(gas, samples, seed):
+    """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
+    blocks = -(-whole("samples", samples) // BLOCK)
+    return estimate(gas, *run_blocks(gas, seed, 0, blocks), blocks * BLOCK)

@@ -1,0 +1,360 @@
+"""Any number of discs that keep their order in a channel, exact by a transfer operator.
+
+For h ≤ (2 + √3) r only neighbours touch. They keep d(y, y') = √(σ² − (y − y')²) apart along x, so
+
+    V = ∫_[0,B]^N dy (A − S)₊^N,  S = Σ d(y_i, y_{i+1})
+
+The Laplace transform of that by A is N! p^(−N−1) Z(p), with Z(p) = ⟨1|T^(N−1)|1⟩ of the transfer
+operator T(y, y') = exp(−p d(y, y')). Derivatives of V are such integrals, with one of the T
+replaced by T σ/d (by σ) or by T (y − y')²/(B d) (by B): all their terms are positive. In a hop in y
+of neighbours it is T δ(y − y'), in others the diagonal of a power of T.
+
+Conditioning. The least d is d₀ = √(σ² − B²) ≥ r, between discs on opposite walls: d is smooth
+everywhere (B < σ), and only the room A − (N − 1) d₀ and d − d₀ = (B² − (y − y')²)/(d + d₀) count.
+Both are formed without cancellation, with y measured from the nearer wall. Nodes are those of Gauss
+on panels that crowd at both walls, where discs that hardly fit are.
+
+The inverse is taken along the vertical line through the saddle of e^{pA} p^(−N−1) Z(p), where terms
+do not cancel, by the trapezoidal rule. A contour that bends to the left, such as Talbot's, would be
+wrong: Z grows there like exp(|p| (N − 1) σ), which is more than e^{pA} takes back unless the
+channel is longer than the discs in a row. Along the line terms fall like a power of p at least, the
+higher the more discs; they are most where A is near a length at which S is stationary, as it is at
+(N − 1) σ.
+
+As N → ∞ at a given p, which is the force along the channel over kT, V grows by the factor λ/p for
+each disc, λ the largest eigenvalue of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
+"""
+
+import math
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.model.checks import InputError, number
+from twodiscs.theory.many.rates import Measures
+from twodiscs.theory.quadrature import gauss_legendre
+
+#: Nodes of a panel, the phase that they follow, and the most panels that double.
+ORDER, PHASE, MOST_PANELS = 20, 15.0, 60
+
+#: exp(−this) is negligible.
+NEGLIGIBLE = 40.0
+
+#: Relative size of what is left out: copies of the function that the step of the trapezoidal rule
+#: lets in, and terms that are not summed.
+ALIAS, TAIL = 1e-14, 1e-11
+
+#: Terms of an inverse at the first look at them, and at most.
+FIRST_TERMS, TERMS = 24, 6000
+
+
+class Channel(NamedTuple):
+    """What the transfer operator needs: lengths, nodes across half of the channel, and their pairs.
+
+    Of pairs of nodes there are two kinds, on the same side of the middle and on opposite ones:
+    arrays (2, m, m).
+    """
+
+    discs: int
+    sigma: float
+    height: float  # B
+    least: float  # d₀
+    room: float  # A − (N − 1) d₀
+    weights: np.ndarray  # (m,)
+    apart: np.ndarray  # d − d₀
+    distance: np.ndarray  # d
+    separation: np.ndarray  # |y − y'|
+
+
+def _nodes(height, finest, widest, farthest):
+    """Return (distances from the nearer wall, weights) on panels that double from the wall on.
+
+    The first one is about ``finest``, none is wider than ``widest``, and none begins beyond
+    ``farthest``.
+    """
+    rule = gauss_legendre(ORDER)
+    x, w = np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
+    ends = [height / 2]
+    while ends[-1] > finest and len(ends) < MOST_PANELS:
+        ends.append(ends[-1] / 2)
+    split = [0.0]
+    for end in reversed(ends):
+        start = split[-1]
+        if start >= farthest:
+            break
+        pieces = max(1, math.ceil((end - start) / widest))
+        split += [start + (end - start) * (k + 1) / pieces for k in range(pieces)]
+    low, high = np.array(split[:-1])[:, None], np.array(split[1:])[:, None]
+    return (low + (high - low) * x).ravel(), ((high - low) * w).ravel()
+
+
+def _pairs(height, sigma, y):
+    """Return (d − d₀, d, |y − y'|, d₀) of pairs of ``y`` on the same side and on opposite ones."""
+    both, same = y[:, None] + y, np.abs(y[:, None] - y)
+    short = np.array([height - same, both])  # B − |y − y'|
+    separation = np.array([same, height - both])
+    distance = np.sqrt((sigma - separation) * (sigma + separation))
+    least = math.sqrt((sigma - height) * (sigma + height))
+    return short * (height + separation) / (distance + least), distance, separation, least
+
+
+def _room(gas):
+    """Return A − (N − 1) d₀, from an exact difference of squares."""
+    a, n = gas.exact_range_x, gas.discs - 1
+    h, r = Fraction(gas.height), Fraction(gas.radius)
+    square = h * (4 * r - h)
+    return float(a * a - n * n * square) / (float(a) + n * math.sqrt(square))
+
+
+def channel_of(gas, force=None, reach=None):
+    """Return the ``Channel`` of a ``Gas``, for transforms at a real part ``force`` of p.
+
+    Its nodes follow exp(−p (d − d₀)) up to |p| = ``reach``, where that is not negligible.
+    """
+    if not gas.is_ordered:
+        raise InputError(
+            "the transfer operator is for an ordered channel, height ≤ (2 + √3) radius, but the "
+            f"height is {gas.height / gas.radius!r} radii"
+        )
+    room = _room(gas)
+    # At the saddle p is N/room to (2N + 1)/room.
+    force = force or gas.discs / room
+    nodes = _nodes(*_panels(gas.range_y, gas.contact_distance, force, reach or 2 * force))
+    y, weights = nodes
+    apart, distance, separation, least = _pairs(gas.range_y, gas.contact_distance, y)
+    return Channel(
+        gas.discs, gas.contact_distance, gas.range_y, least, room, weights, apart, distance,
+        separation,
+    )  # fmt: skip
+
+
+def _panels(height, sigma, force, reach):
+    """Return the arguments of ``_nodes`` for p with a real part ``force`` up to |p| = ``reach``."""
+    least = math.sqrt((sigma - height) * (sigma + height))
+    # For a length ℓ off a corner d − d₀ rises by at most ℓ B/d₀; a disc that far off both walls has
+    # no neighbour as close as this.
+    steepest, far = height / least, least + NEGLIGIBLE / force
+    return (
+        height,
+        1 / (2 * force * steepest),
+        PHASE / (reach * steepest),
+        height - math.sqrt((sigma - far) * (sigma + far)) if far < sigma else height,
+    )
+
+
+# Laplace transforms ------------------------------------------------------------------------------
+
+
+def _folded(channel, kinds):
+    """Return the operator of a kernel (2, m, m) on functions that are even about the middle.
+
+    √weight stands with each node, so that it is symmetric.
+    """
+    root = np.sqrt(channel.weights)
+    return root[:, None] * (kinds[0] + kinds[1]) * root
+
+
+def _vectors(channel, p):
+    """Return (kernels T, T^k 1 for k = 0 … N − 1, ln of the factors taken out of those).
+
+    Without the factor exp(−p d₀) of each T.
+    """
+    kinds = np.exp(-p * channel.apart)
+    kernel = _folded(channel, kinds)
+    vectors, logs = [np.sqrt(channel.weights) + 0 * p], [0.0]
+    for _ in range(channel.discs - 1):
+        new = kernel @ vectors[-1]
+        # Powers of 64 discs might underflow.
+        size = np.max(np.abs(new))
+        vectors.append(new / size)
+        logs.append(logs[-1] + math.log(size))
+    return kinds, np.array(vectors), np.array(logs)
+
+
+def _log_partition(channel, p):
+    """Return ln Z at a real ``p``, without (N − 1) p d₀."""
+    _, vectors, logs = _vectors(channel, p)
+    return math.log(2 * float(vectors[0] @ vectors[-1])) + logs[-1]
+
+
+def saddle(channel):
+    """Return (p, φ(p)) where φ = p room − (N + 1) ln p + ln Z is least on the real axis."""
+
+    def phi(log_p):
+        p = math.exp(log_p)
+        return p * channel.room - (channel.discs + 1) * log_p + _log_partition(channel, p)
+
+    # From the ideal gas, N + 1, to discs that hardly fit, 2N + 1.
+    low = math.log((channel.discs + 1) / channel.room) - 0.1
+    high = math.log((2 * channel.discs + 1) / channel.room) + 0.5
+    golden = (math.sqrt(5) - 1) / 2
+    for _ in range(24):
+        left, right = high - golden * (high - low), low + golden * (high - low)
+        low, high = (low, right) if phi(left) < phi(right) else (left, high)
+    middle = (low + high) / 2
+    return math.exp(middle), phi(middle)
+
+
+def _inverses(channel, p, hops):
+    """Return (ln |scale|, values of the transforms at ``p``): V, ∂A, ∂B, −∂σ, hops in y.
+
+    All without exp(p room) and N!.
+    """
+    kinds, vectors, logs = _vectors(channel, p)
+    n, scale = channel.discs, logs[-1]
+    total = 2 * (vectors[0] @ vectors[-1])
+    # T^(k−1) 1 and T^(N−1−k) 1 stand on both sides of bond k; each has its own scale.
+    left, right = vectors[: n - 1], vectors[: n - 1][::-1]
+    factors = 2 * np.exp(logs[: n - 1] + logs[: n - 1][::-1] - scale)
+
+    def bonds(weight):
+        operator = _folded(channel, kinds * weight)
+        return np.sum(factors * np.einsum("ki,ki->k", left @ operator, right))
+
+    contact = bonds(channel.sigma / channel.distance)
+    height = bonds(channel.separation**2 / (channel.height * channel.distance))
+    level = _levels(channel, kinds, vectors, logs) if hops else 0.0
+    power = p ** -(n + 1)
+    per_height = n / channel.height * power * total + power * p * height
+    values = (power * total, power * p * total, per_height, power * p * contact, power * level)
+    return scale, np.array(values)
+
+
+def _levels(channel, kinds, vectors, logs):
+    """Return Σ over i < j of ∫ T^(i−1)1 T^(j−i)(y, y) T^(N−j)1 dy."""
+    n, found = channel.discs, 0.0
+    for sign in (1, -1):
+        # Even and odd functions about the middle have half of the diagonal each, on both sides.
+        kernel = _folded(channel, kinds * np.array([1, sign])[:, None, None])
+        walk, log = kernel, 0.0
+        for k in range(1, n):
+            diagonal = np.diag(walk) / channel.weights
+            i = np.arange(n - k)
+            part = np.einsum("ki,i,ki->k", vectors[i], diagonal, vectors[n - 1 - k - i])
+            found += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
+            if k < n - 1:
+                walk = walk @ kernel
+                size = np.max(np.abs(walk))
+                walk, log = walk / size, log + math.log(size)
+    return found
+
+
+def measures(gas, hops=True, tail=TAIL):
+    """Return the ``Measures`` of a ``Gas`` in an ordered channel.
+
+    Hops in x are impossible. Hops in y, of any pair, take the time of N matrix products for each
+    term; with ``hops`` False they are None. Relative errors are some 1e-11 (``tail``), and
+    roundings over the room that is left where the discs hardly fit. Of two or three discs there are
+    many terms in a short channel: they have methods of their own. Raises ``InputError`` where the
+    channel is not ordered or the terms are too many.
+    """
+    channel = channel_of(gas)
+    p, phi = saddle(channel)
+    step = _step(channel, p, phi)
+    terms, first, reach, check, last = [], None, 2 * p, FIRST_TERMS, None
+    channel = channel_of(gas, p, reach)
+    while True:
+        z = complex(p, len(terms) * step)
+        if abs(z) > reach:
+            # Nodes that follow the phase p (d − d₀), as far as the next doubling.
+            reach = 2 * abs(z)
+            channel = channel_of(gas, p, reach)
+        scale, values = _inverses(channel, z, hops)
+        first = scale if first is None else first
+        terms.append((values * np.exp((z - p) * channel.room + scale - first)).real)
+        if len(terms) < check:
+            continue
+        sums = _windowed(np.array(terms))
+        change = np.inf if last is None else np.max(np.abs(sums - last)[:4] / np.abs(sums)[:4])
+        if change < tail:
+            break
+        if len(terms) >= TERMS:
+            raise InputError(
+                f"the inverse Laplace transform for {gas.discs} discs needs more than {TERMS} terms"
+            )
+        last, check = sums, math.ceil(1.25 * check)
+    sums = sums * step / math.pi
+    log_volume = math.lgamma(gas.discs + 1) + math.log(sums[0]) + first + p * channel.room
+    ratios = sums[1:] / sums[0]
+    return Measures(
+        log_volume, *map(float, ratios[:3]), hops_x=0.0, hops_y=float(ratios[3]) if hops else None
+    )
+
+
+def _windowed(terms):
+    """Return the sums of ``terms`` (n, …), the first one halved, with a smooth end to them.
+
+    The terms oscillate as exp(i ω (A − S)) for each S that is stationary or at an end of its range.
+    A smooth end leaves next to nothing of what is not summed, but where A is such an S.
+    """
+    n = len(terms)
+    window = [math.erfc(10 * (k / n - 0.6)) / 2 for k in range(n)]
+    window[0] /= 2
+    return np.array(window) @ terms
+
+
+def _step(channel, p, phi):
+    """Return the step along the line at which copies of V let in by the rule are below ``ALIAS``.
+
+    They are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each; and V there
+    is at most what its transform at any q < p says, e^{q (room + 2π/step)} q^(−N−1) Z(q).
+    """
+    best = math.inf
+    for share in (0.2, 0.35, 0.5, 0.65, 0.8):
+        q = share * p
+        at_q = q * channel.room - (channel.discs + 1) * math.log(q) + _log_partition(channel, q)
+        best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - share) * p))
+    # V vanishes for no room at all, so copies at shorter rooms need only be that far.
+    return 2 * math.pi / max(best, channel.room)
+
+
+# Infinitely many ---------------------------------------------------------------------------------
+
+
+class Limit(NamedTuple):
+    """A channel of infinitely many discs at kT = 1, all for each disc.
+
+    ``length`` is the mean length of the channel for a disc, ``per_height`` ∂lnV/∂B and
+    ``per_contact`` −∂lnV/∂σ, ``level`` the density of neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
+    """
+
+    force: float
+    length: float
+    per_height: float
+    per_contact: float
+    level: float
+
+
+def limit(height, radius, force):
+    """Return the ``Limit`` of discs of ``radius`` in a channel, at a ``force`` over kT.
+
+    The force is along the channel, in 1/length. In the units of the other rates, kT is 1/D of the
+    total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and
+    √(2 kT/π) times ``per_height`` for walls. Raises ``InputError`` unless 2r < h ≤ (2 + √3) r.
+    """
+    force = number("force", force, 1e-60, 1e60)
+    if not 2 * radius < height <= (2 + math.sqrt(3)) * radius:
+        raise InputError(
+            "height must lie between 2 and 2 + √3 radii for an ordered channel, not be "
+            f"{height / radius!r} radii"
+        )
+    sigma, b = 2 * radius, float(Fraction(height) - 2 * Fraction(radius))
+    y, weights = _nodes(*_panels(b, sigma, force, 2 * force))
+    apart, distance, separation, least = _pairs(b, sigma, y)
+    root = np.sqrt(weights)
+    kinds = np.exp(-force * apart)
+    values, vectors = np.linalg.eigh(root[:, None] * (kinds[0] + kinds[1]) * root)
+    psi, value = vectors[:, -1], values[-1]
+
+    def mean(of):
+        kernel = root[:, None] * np.sum(kinds * of, axis=0) * root
+        return float(psi @ kernel @ psi / value)
+
+    return Limit(
+        force=force,
+        length=1 / force + least + mean(apart),
+        per_height=1 / b + force * mean(separation**2 / (b * distance)),
+        per_contact=force * mean(sigma / distance),
+        level=float(psi**2 @ np.diag(kinds[0]) / value),
+    )

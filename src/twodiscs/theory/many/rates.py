@@ -1,0 +1,133 @@
+"""Rates of N discs from what is known of configuration space, and what holds for every N.
+
+With D components of velocity (2N, less a momentum that is conserved) uniform on a sphere at total
+energy 1/2, and c_D of ``weighted.constant``, all events of a class together happen at the rates
+
+    collisions     −(c_D/√2) ∂lnV/∂σ
+    walls of x     c_D ∂lnV/∂A                              walls of y likewise
+    hops in x      √2 c_D Σ_pairs ∫ δ(x_i − x_j) / V        hops in y likewise
+
+V is the volume of configuration space, a function of the ranges A and B of the centres and of the
+contact distance σ. It scales as a length to the power 2N, so that the virial theorem follows for
+any N, without V:
+
+    (A ν_x + B ν_y − √2 σ ν_coll) / (2N c_D) = 1
+
+ν_x are all hits of both walls of x by any disc. At the same energy per disc times scale as 1/√N.
+"""
+
+import math
+from typing import NamedTuple
+
+from twodiscs.model.checks import InputError
+from twodiscs.model.scene import Scene
+from twodiscs.theory import plain
+from twodiscs.theory.weighted import constant
+
+
+class Measures(NamedTuple):
+    """The volume V of configuration space and, over it, its derivatives and the hops.
+
+    ``per_contact`` is −∂lnV/∂σ. ``hops_x`` is Σ_pairs ∫ δ(x_i − x_j)/V; either of the hops may be
+    None where it was not asked for. All but the logarithm are over a length.
+    """
+
+    log_volume: float
+    per_width: float
+    per_height: float
+    per_contact: float
+    hops_x: float | None = None
+    hops_y: float | None = None
+
+    def turned(self):
+        """Return what these are for the box turned by a quarter."""
+        return Measures(
+            self.log_volume, self.per_height, self.per_width, self.per_contact,
+            self.hops_y, self.hops_x,
+        )  # fmt: skip
+
+
+def rates(gas, measures):
+    """Return {class of events: rate}, of all events of the class, given the ``Measures``.
+
+    For a ``Gas``. Hops that are None there have no entry.
+    """
+    c = constant(gas.velocity_components)
+    found = {
+        "vertical_hop": measures.hops_y and math.sqrt(2) * c * measures.hops_y,
+        "horizontal_hop": measures.hops_x and math.sqrt(2) * c * measures.hops_x,
+        "disc_collision": c / math.sqrt(2) * measures.per_contact,
+        "right_wall": c * measures.per_width,
+        "top_wall": c * measures.per_height,
+    }
+    return {event: rate for event, rate in found.items() if rate is not None}
+
+
+def virial_weights(gas):
+    """Return {class of events: weight} with which the rates of a ``Gas`` add up to 1.
+
+    Between walls only: on a ring the force across a line is no rate of events. Raises
+    ``InputError`` there.
+    """
+    if gas.periodic:
+        raise InputError("a ring has no walls of x, whose rate the virial theorem needs")
+    c = gas.velocity_components * constant(gas.velocity_components)
+    return {
+        "disc_collision": -math.sqrt(2) * gas.contact_distance / c,
+        "right_wall": gas.range_x / c,
+        "top_wall": gas.range_y / c,
+    }
+
+
+def virial_sum(gas, found):
+    """Return what the virial theorem says is 1, from {class of events: rate} of a ``Gas``."""
+    return math.fsum(weight * found[event] for event, weight in virial_weights(gas).items())
+
+
+# Small discs --------------------------------------------------------------------------------------
+
+
+def overlap_of_two(gas):
+    """Return q, the probability that two of the centres, drawn uniformly, overlap."""
+    if gas.periodic:
+        # The separation along x is uniform, that along y has the density 2 (B − v)/B².
+        b, sigma = gas.range_y, gas.contact_distance
+        reach = min(b, sigma)
+        phi = math.asin(reach / sigma)
+        whole = b * sigma * (phi + math.sin(phi) * math.cos(phi)) / 2 * sigma
+        moment = sigma**3 * (1 - math.cos(phi) ** 3) / 3
+        return 4 * (whole - moment) / (b * b * gas.width)
+    two = Scene(gas.width, gas.height, gas.radius)
+    return 1 - plain.exact(two)[0] / (gas.range_x * gas.range_y) ** 2
+
+
+def bonferroni_bounds(gas):
+    """Return (lower, upper) bounds of V/(AB)^N, the probability of no overlap at all.
+
+    With q for a pair they are 1 − n q and 1 − n q + S₂, n = N(N − 1)/2 (Bonferroni 1936). S₂ sums
+    the probabilities that two given pairs overlap: q² where they have no disc in common, and else
+    at most q times the largest part of the box that a disc closes to another one, πσ²/(AB).
+    """
+    n, q = gas.discs * (gas.discs - 1) / 2, overlap_of_two(gas)
+    closed = min(1.0, math.pi * gas.contact_distance**2 / (gas.range_x * gas.range_y))
+    sharing = n * (gas.discs - 2)
+    apart = n * (n - 1) / 2 - sharing
+    first = 1 - n * q
+    return max(0.0, first), min(1.0, first + sharing * q * closed + apart * q * q)
+
+
+def small_disc_rates(gas):
+    """Return {class of events: rate} to the first order in σ at fixed ranges A and B, but hops.
+
+    From V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2: walls are those of
+    an ideal gas with its second virial coefficient, and collisions have the first two orders.
+    """
+    c, n = constant(gas.velocity_components), gas.discs * (gas.discs - 1) / 2
+    a, b, sigma = gas.range_x, gas.range_y, gas.contact_distance
+    closed = math.pi * sigma**2 / (a * b)
+    return {
+        "disc_collision": c / math.sqrt(2) * n * (2 * closed / sigma)
+        * (1 - 2 * sigma * (a + b) / (math.pi * a * b)),
+        "right_wall": c * (gas.discs + n * closed) / a,
+        "top_wall": c * (gas.discs + n * closed) / b,
+    }  # fmt: skip

@@ -1,0 +1,199 @@
+"""Three discs in any box, exact by quadrature that is split where the integrand is not smooth.
+
+With centres x1 < x2 < x3 the discs i and j keep d_ij = √(σ² − (y_i − y_j)²)₊ apart along x, so that
+given the heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, as long as d13 ≤ s, and
+
+    h(s, d13) = ∫ (A − t)(t − s) dt from d13 to A = (A − s) m²/2 − m³/3,  m = (A − d13)₊
+
+beyond that. Of the heights only the gaps between them matter, sorted by height: a larger one P, a
+smaller one Q and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
+
+    V = 24 ∫_0^B dt (B − t) ∫_{t/2}^t dP [g(p + q) + g(q + c) + h(p + c, q)]
+
+where h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
+their terms are positive. Of the pairs that are level in x, at least σ apart in y,
+
+    Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
+                       [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
+
+The integrands are smooth but where P, Q or t is σ, p + q, p + c, q + c or q is A, and q = p + c,
+which is where the discs form an equilateral triangle. All of these P and the t at which two of them
+meet are known in closed form. Between them P, Q and t are σ times the sine of an angle, as far as
+they are less than σ, in which the roots d are smooth too. Relative errors are some 1e-14, times
+r/(r_max − r) where the discs hardly fit.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from twodiscs.model.checks import InputError
+from twodiscs.theory.many.rates import Measures
+from twodiscs.theory.quadrature import gauss_legendre
+
+#: Nodes between two ends, of the sum of the gaps and of the larger gap.
+OUTER, INNER = 48, 32
+
+
+def _nodes(order):
+    rule = gauss_legendre(order)
+    return np.array([t for t, _, _ in rule]), np.array([weight for _, _, weight in rule])
+
+
+def _root(square):
+    return math.sqrt(square) if square > 0 else 0.0
+
+
+def _ends(a, b, sigma):
+    """Return the ascending sums of gaps, 0 and B among them, at which two kinks in P meet."""
+    level = _root(sigma**2 - a * a)  # where q is A
+    found = [
+        sigma, 2 * sigma, math.sqrt(0.75) * sigma,
+        _root(4 * sigma**2 - a * a),  # p + q reaches A at P = Q
+        _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, as q + c does
+        _root(sigma**2 - a * a / 4),  # p + c at Q = 0
+        level, 2 * level, sigma + level,
+    ]  # fmt: skip
+    if a < sigma:
+        # p + c = q = A.
+        found.append(sigma * math.sin(math.acos(a / sigma) + math.pi / 3))
+    return [0.0, *sorted({end for end in found if 0.0 < end < b}), b]
+
+
+def _sums(a, b, sigma):
+    """Return (t, weight, c) of the nodes of the outer integral."""
+    x, w = _nodes(OUTER)
+    # Powers of a half at the ends are smooth in the angle of a sine squared.
+    share, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
+    t, weight, c = [], [], []
+    ends = _ends(a, b, sigma)
+    for low, high in pairwise(ends):
+        if high <= sigma:
+            start = math.asin(low / sigma)
+            width = math.asin(min(high / sigma, 1.0)) - start
+            angle = start + width * share
+            t.append(sigma * np.sin(angle))
+            c.append(sigma * np.cos(angle))
+            weight.append(width * slope * w * c[-1])
+        else:
+            t.append(low + (high - low) * share)
+            c.append(np.zeros(OUTER))
+            weight.append((high - low) * slope * w)
+    return np.concatenate(t), np.concatenate(weight), np.concatenate(c)
+
+
+def _kinks(a, sigma, t, c):
+    """Return gaps (P, Q), each (n, t), with a kink of the integrand there, and with both ends.
+
+    P ascends. Where the one is known the other is t less it, with a rounding that would count in
+    the root of a Q that should be σ: so both are kept.
+    """
+    level = _root(sigma**2 - a * a)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        middle = np.arctan2(t, a)
+        apart = np.arccos(np.hypot(t, a) / (2 * sigma))
+        beside = np.where(a >= c, np.sqrt(sigma**2 - (a - c) ** 2), np.nan)
+        by_p = [
+            t / 2,
+            t,
+            np.full_like(t, sigma),
+            np.full_like(t, level),
+            np.where(middle + apart <= math.pi / 2, sigma * np.sin(middle + apart), np.nan),
+            beside,
+            np.where(c > 0, sigma * np.sin(2 * math.pi / 3 - np.arcsin(t / sigma)), np.nan),
+        ]
+        by_q = [np.full_like(t, sigma), np.full_like(t, level), beside]
+    p = np.array(by_p + [t - q for q in by_q])
+    q = np.array([t - p for p in by_p] + by_q)
+    # What is nowhere in the range is an end.
+    p, q = np.clip(np.where(np.isnan(p), t, p), t / 2, t), np.clip(np.nan_to_num(q), 0.0, t / 2)
+    order = np.argsort(p, axis=0)
+    return np.take_along_axis(p, order, 0), np.take_along_axis(q, order, 0)
+
+
+def _gaps(a, sigma, t, c):
+    """Return (p, q, weight, P < σ, Q < σ) at the inner nodes, arrays (panels, nodes, t)."""
+    x, w = (part[:, None] for part in _nodes(INNER))
+    larger, smaller = _kinks(a, sigma, t, c)
+    low, high = larger[:-1, None, :], larger[1:, None, :]
+    most, least = smaller[:-1, None, :], smaller[1:, None, :]
+    near_p, near_q = low + high < 2 * sigma, most + least < 2 * sigma
+
+    def sines(start, stop):
+        """Return (gap, d(gap), weight) between two gaps, σ times the sines of their angles."""
+        start, stop = (np.arcsin(np.clip(gap / sigma, 0.0, 1.0)) for gap in (start, stop))
+        angle = start + (stop - start) * x
+        d = sigma * np.cos(angle)
+        return sigma * np.sin(angle), d, (stop - start) * d * w
+
+    # The larger gap as a sine; or it is beyond σ, and the smaller one is, or beyond it, too.
+    gap, p, weight_p = sines(low, high)
+    rest = t - gap
+    q_of_p = np.sqrt(np.maximum((sigma - rest) * (sigma + rest), 0.0))
+    _, q, weight_q = sines(least, most)
+    q = np.where(near_p, q_of_p, np.where(near_q, q, 0.0))
+    weight = np.where(near_p, weight_p, np.where(near_q, weight_q, (high - low) * w))
+    return np.where(near_p, p, 0.0), q, weight, near_p, near_q
+
+
+def measures(gas):
+    """Return the ``Measures`` of a ``Gas`` of three discs between walls, with both hops.
+
+    Raises ``InputError`` for another number of discs and for a ring.
+    """
+    if gas.discs != 3 or gas.periodic:
+        raise InputError("the quadrature for three discs is for three discs between walls")
+    volume, per_width, per_height, per_contact, hops_x = integrals(
+        gas.range_x, gas.range_y, gas.contact_distance
+    )
+    hops_y = integrals(gas.range_y, gas.range_x, gas.contact_distance)[4]
+    return Measures(
+        math.log(volume),
+        *(part / volume for part in (per_width, per_height, per_contact, hops_x, hops_y)),
+    )
+
+
+def integrals(a, b, sigma):
+    """Return (V, ∂V/∂A, ∂V/∂B, −∂V/∂σ, Σ ∫ δ(x_i − x_j)) for ranges ``a`` and ``b`` of the centres.
+
+    They touch at the distance ``sigma``. V is in length⁶, the others in length⁵.
+    """
+    t, outer, c = _sums(a, b, sigma)
+    p, q, inner, near_p, near_q = _gaps(a, sigma, t, c)
+
+    def free(occupied):
+        return np.maximum(a - occupied, 0.0)
+
+    both, beside, across = free(p + q), free(q + c), free(p + c)
+    most = free(q)
+    bent = q > p + c
+    volume = both**3 / 6 + beside**3 / 6
+    volume += np.where(bent, across * most**2 / 2 - most**3 / 3, across**3 / 6)
+    slope = both**2 / 2 + beside**2 / 2
+    across_slope = np.where(bent, most**2 / 2, across**2 / 2)
+    far_slope = np.where(bent, across * most - most**2, 0.0)
+    slope += across_slope + far_slope
+
+    with np.errstate(divide="ignore"):
+        over_p = np.where(p > 0, sigma / p, 0.0)
+        over_q = np.where(q > 0, sigma / q, 0.0)
+        over_c = np.where(c > 0, sigma / c, 0.0)
+    contact = both**2 / 2 * (over_p + over_q) + beside**2 / 2 * (over_q + over_c)
+    contact += across_slope * (over_p + over_c) + far_slope * over_q
+
+    beyond_p, beyond_q, beyond_t = ~near_p, ~near_p & ~near_q, c == 0
+    level = a * a * beyond_q + most**2 * (1.0 * beyond_p + beyond_t)
+
+    def over_gaps(integrand):
+        return np.sum(inner * integrand, axis=(0, 1))
+
+    volume_at = over_gaps(volume)
+    weight = outer * (b - t)
+    return (
+        24 * float(weight @ volume_at),
+        24 * float(weight @ over_gaps(slope)),
+        24 * float(outer @ volume_at),
+        24 * float(weight @ over_gaps(contact)),
+        12 * float(weight @ over_gaps(level)),
+    )

@@ -1,0 +1,156 @@
+"""N discs in lock step: exact rates where there are any, another program, the engine of two."""
+
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import scalar_many
+
+from twodiscs.dynamics import counting, many
+from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.model.events import EVENTS
+from twodiscs.model.many import CLASSES, Gas
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.many import measures
+from twodiscs.theory.many import exact
+from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
+
+
+def counted(gas, blocks, seed=1, events=None):
+    """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
+    duration = many.duration_of(gas, events)
+    sums, products = many.run_blocks(gas, seed, 0, blocks, duration)
+    replicas = blocks * REPLICAS
+    found = sums / replicas / duration
+    errors = found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
+    second = np.triu(products) + np.triu(products, 1).T
+    covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
+    named = dict(zip(CLASSES, found, strict=True))
+    return named, dict(zip(CLASSES, errors, strict=True)), covariance
+
+
+def check(gas, found, errors, expected, expected_errors=None):
+    """Five sigma on every class."""
+    for event, rate in expected.items():
+        error = math.hypot(errors[event], (expected_errors or {}).get(event, 0.0))
+        assert abs(found[event] - rate) <= 5 * error, (gas, event, found[event], rate, error)
+
+
+EXACT = {
+    "three": Gas(3, 1.5, 1.0, 0.15),
+    "three, dense": Gas(3, 1.5, 1.0, 0.26),
+    "three, upright": Gas(3, 1.0, 1.5, 0.24),
+    "three in a channel": Gas(3, 1.5, 0.6, 0.18),
+    "four in a channel": Gas(4, 1.5, 0.6, 0.18),
+    "eight in a channel": Gas(8, 3.5, 0.6, 0.18),
+    "eight, dense": Gas(8, 2.4, 0.6, 0.18),
+    "four, upright": Gas(4, 0.6, 1.6, 0.18),
+}
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_rates_are_exact(name):
+    gas = EXACT[name]
+    found, errors, covariance = counted(gas, 6)
+    check(gas, found, errors, rates(gas, exact.measures(gas)))
+    weights = np.array([virial_weights(gas).get(event, 0.0) for event in CLASSES])
+    error = math.sqrt(weights @ covariance @ weights)
+    assert abs(virial_sum(gas, found) - 1) < 5 * error
+    assert error < 0.05
+
+
+#: Without an exact value: Monte Carlo, and another program, say what dynamics is to say.
+OTHERS = {
+    "four": Gas(4, 1.5, 1.0, 0.12),
+    "five, dense": Gas(5, 1.5, 1.0, 0.19),
+    "eight": Gas(8, 2.0, 1.5, 0.15),
+    "four on a ring": Gas(4, 1.5, 1.0, 0.15, "x"),
+    "three on a narrow ring": Gas(3, 1.5, 0.6, 0.18, "x"),
+    "two on a ring": Gas(2, 1.5, 1.0, 0.2, "x"),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_monte_carlo_and_dynamics_agree(name):
+    gas = OTHERS[name]
+    found, errors, _ = counted(gas, 4, seed=2)
+    known, spread = measures.sample(gas, 300_000, 3)
+    expected = rates(gas, known)
+    error_of = rates(gas, spread)
+    check(gas, found, errors, expected, error_of)
+
+
+SCALAR = {
+    name: gas
+    for name, gas in (EXACT | OTHERS).items()
+    if name
+    in ("three, dense", "eight in a channel", "four", "five, dense", "eight", "four on a ring")
+}
+
+
+@pytest.mark.parametrize("name", SCALAR)
+def test_another_program_has_the_same_rates(name):
+    """Time averages of one trajectory: batches of some ten thousand events are independent."""
+    gas = SCALAR[name]
+    found, errors, _ = counted(gas, 4, seed=5)
+    other, spread = scalar_many.rates(gas, 1_000_000, 6)
+    named = dict(zip(CLASSES, other, strict=True))
+    check(gas, found, errors, named, dict(zip(CLASSES, spread, strict=True)))
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.3])
+def test_two_discs_are_those_of_the_engine_of_two(radius):
+    """From its states, for its time: the same law gives the same events, replica for replica."""
+    scene, gas = Scene(1.5, 1.0, radius), Gas(2, 1.5, 1.0, radius)
+    duration = counting.replica_duration(scene)
+    found, errors, _ = counted(gas, 8, seed=3)
+    sums, products = counting.run_blocks(scene, EVENTS, 4, 0, 8, duration)
+    replicas = 8 * REPLICAS
+    scale = sums / replicas / duration
+    spread = scale * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
+    at = {event: EVENTS.index(event) for event in CLASSES}
+    # Four pairs of a disc and a wall of an axis are counted by both.
+    expected = {event: scale[at[event]] for event in CLASSES}
+    check(gas, found, errors, expected, {event: spread[at[event]] for event in CLASSES})
+
+
+BITS = """
+import hashlib
+from twodiscs.dynamics import many
+from twodiscs.model.many import Gas
+from twodiscs.sampling.many import initial, measures
+gases = [Gas(3, 1.5, 1.0, 0.15), Gas(8, 2.3, 0.6, 0.18), Gas(6, 1.5, 1.0, 0.2)]
+found = hashlib.sha256()
+for gas in [*gases, Gas(4, 1.5, 1.0, 0.15, "x")]:
+    counts = many.run_blocks(gas, 5, 0, 1, 16.0, replicas=64)
+    for part in (*counts, *measures.run_blocks(gas, 5, 0, 1), initial.states(gas, 50, 3)):
+        found.update(part.tobytes())
+print(found.hexdigest())
+"""
+
+
+@pytest.mark.slow
+def test_the_bits_do_not_depend_on_the_processor(tmp_path):
+    """A processor without AVX computes the same."""
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+    generic |= {"NUMBA_CACHE_DIR": str(tmp_path)}
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", BITS], env=environment, check=True, capture_output=True
+        ).stdout
+        for environment in (os.environ, os.environ | generic)
+    }
+    assert len(found) == 1
+
+
+def test_lanes_and_shards_do_not_matter():
+    for gas in (EXACT["three"], EXACT["four in a channel"], OTHERS["five, dense"]):
+        whole = many.run_blocks(gas, 7, 0, 3, 8.0, replicas=100)
+        other = many.run_blocks(gas, 7, 0, 3, 8.0, replicas=100, lanes=5)
+        parts = [many.run_blocks(gas, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
+        for one, same, *pieces in zip(whole, other, *parts, strict=True):
+            assert np.array_equal(one, same)
+            assert np.array_equal(one, sum(pieces))

@@ -1,0 +1,127 @@
+"""Initial states of N discs: uniform where that is known, whichever way they are drawn."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from twodiscs.model.many import Gas
+from twodiscs.sampling.many import initial
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory.many import exact
+
+GASES = {
+    "rejection": Gas(5, 1.5, 1.0, 0.16),
+    "channel": Gas(4, 1.5, 0.6, 0.18),
+    "channel, dense": Gas(8, 2.3, 0.6, 0.18),
+    "channel, upright": Gas(5, 0.6, 2.0, 0.18),
+    "channel, narrow": Gas(64, 40.0, 0.6, 0.29),
+    "chain": Gas(6, 1.5, 1.0, 0.2),
+    "ring": Gas(4, 1.5, 1.0, 0.15, "x"),
+}
+
+
+def parts(gas, found):
+    """Return x, y, u, v, each (N, number)."""
+    return np.split(found, 4)
+
+
+@pytest.mark.parametrize("name", GASES)
+def test_states_are_allowed(name):
+    gas = GASES[name]
+    assert initial.method(gas) == {"ring": "rejection"}.get(name, name.split(",")[0])
+    x, y, u, v = parts(gas, initial.states(gas, 200, 1))
+    assert np.max(np.abs(x)) <= gas.range_x / 2
+    assert np.max(np.abs(y)) <= gas.range_y / 2
+    for i, j in itertools.combinations(range(gas.discs), 2):
+        dx = np.abs(x[i] - x[j])
+        dx = np.minimum(dx, gas.width - dx) if gas.periodic else dx
+        assert np.min(np.hypot(dx, y[i] - y[j])) >= gas.contact_distance * (1 - 1e-14)
+    assert np.sum(u**2 + v**2, axis=0) == pytest.approx(1.0, rel=1e-12)
+    if gas.periodic:
+        assert np.sum(u, axis=0) == pytest.approx(0.0, abs=1e-14)
+
+
+def moments(gas, found):
+    """Return (mean, standard error) of what two ways to draw are to agree on."""
+    x, y, u, v = parts(gas, found)
+    pairs = list(itertools.combinations(range(gas.discs), 2))
+    square = np.array([(x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 for i, j in pairs])
+    seen = np.array(
+        [
+            (x**2).mean(0), (y**2).mean(0), (y**4).mean(0), square.mean(0), square.min(0),
+            (square < 1.2 * gas.contact_distance**2).sum(0), (u**4).mean(0), (v**4).mean(0),
+            np.abs(np.array([y[i] - y[j] for i, j in pairs])).mean(0),
+        ]
+    )  # fmt: skip
+    return seen.mean(1), seen.std(1) / math.sqrt(seen.shape[1])
+
+
+@pytest.mark.parametrize(
+    ("gas", "one", "other"),
+    [
+        (Gas(4, 2.0, 0.6, 0.18), "channel", "rejection"),
+        (Gas(3, 1.2, 0.6, 0.18), "channel", "rejection"),
+        (Gas(5, 1.5, 1.0, 0.19), "chain", "rejection"),
+        # It takes long until the zigzag that the chain starts from has its defects.
+        (Gas(8, 2.5, 0.6, 0.18), "chain", "channel"),
+    ],
+)
+def test_ways_to_draw_agree(gas, one, other):
+    """Five sigma of both."""
+    (mean, error), (same, spread) = (
+        moments(gas, initial.states(gas, 500 if way == "chain" else 20_000, seed, by=way))
+        for seed, way in ((1, one), (2, other))
+    )
+    assert np.all(np.abs(mean - same) <= 5 * np.hypot(error, spread))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gas", [Gas(3, 1.5, 1.0, 0.295), Gas(7, 2.0, 1.5, 0.24)])
+def test_longer_chains_are_no_different(gas, monkeypatch):
+    """Half as long and twice as long: what is forgotten is forgotten."""
+    found = []
+    for seed, factor in ((1, 0.5), (2, 2)):
+        monkeypatch.setattr(initial, "SWEEPS", int(factor * initial.SWEEPS))
+        found.append(moments(gas, initial.states(gas, 2000, seed, by="chain")))
+    (mean, error), (same, spread) = found
+    assert np.all(np.abs(mean - same) <= 5 * np.hypot(error, spread))
+
+
+def test_chains_that_are_too_short_are_seen(monkeypatch):
+    gas = Gas(8, 2.5, 0.6, 0.18)
+    found = []
+    for seed, sweeps, number in ((1, 50, 4000), (2, 4000, 400)):
+        monkeypatch.setattr(initial, "SWEEPS", sweeps)
+        found.append(moments(gas, initial.states(gas, number, seed, by="chain")))
+    (mean, error), (same, spread) = found
+    assert np.max(np.abs(mean - same) / np.hypot(error, spread)) > 10
+
+
+@pytest.mark.parametrize(
+    ("gas", "least"),
+    [(Gas(4, 1.18, 0.6, 0.18), 0.1), (Gas(8, 2.25, 0.6, 0.18), 0.05),
+     (Gas(64, 18.0, 0.6, 0.18), 0.03), (Gas(64, 17.3, 0.6, 0.18), 0.01),
+     (Gas(16, 6.0, 0.3600001, 0.18), 0.5)],
+)  # fmt: skip
+def test_heights_in_a_channel_are_accepted_at_every_density(gas, least):
+    state, cells = open_stream(np.uint64(1), 0), initial.initial_of(gas, "channel").cells
+    heights = np.zeros(gas.discs)
+    accepted = sum(
+        initial.propose_heights(state, cells, gas.contact_distance, heights) for _ in range(2000)
+    )
+    assert accepted / 2000 > least
+
+
+def test_mean_room_in_a_channel():
+    """⟨1/(A − S)⟩ = ∂lnV/∂A / N over the drawn heights; five sigma."""
+    for gas in (GASES["channel"], GASES["channel, dense"]):
+        x, y, _, _ = parts(gas, initial.states(gas, 20_000, 4))
+        order = np.argsort(x, axis=0)
+        heights = np.take_along_axis(y, order, 0)
+        taken = np.sqrt(gas.contact_distance**2 - np.diff(heights, axis=0) ** 2).sum(0)
+        seen = 1 / (gas.range_x - taken)
+        true = exact.measures(gas, hops=False).per_width / gas.discs
+        # The inverse has a finite variance for N ≥ 2.
+        assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)

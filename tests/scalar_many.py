@@ -1,0 +1,122 @@
+"""N discs one event at a time, by textbook formulas, for comparison with the lock-step kernel.
+
+One long trajectory from any state without overlap, with the mean of batches of equal length; it
+shares neither the law, nor the initial states, nor the random numbers of the package.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled
+
+#: Vertical hops, horizontal hops, collisions, hits of the walls of x and of y.
+KINDS = 5
+
+
+@compiled
+def time_to_wall(position, velocity, half):
+    """Return the time to the wall ahead."""
+    if velocity > 0:
+        return (half - position) / velocity
+    if velocity < 0:
+        return (-half - position) / velocity
+    return math.inf
+
+
+@compiled
+def time_to_contact(dx, dy, du, dv, sigma):
+    """Return the smaller root of |Δx + t Δv| = σ, infinite for discs that part or miss."""
+    b = dx * du + dy * dv
+    if b >= 0:
+        return math.inf
+    a, c = du * du + dv * dv, dx * dx + dy * dy - sigma * sigma
+    root = b * b - a * c
+    if root <= 0:
+        return math.inf
+    return max((-b - math.sqrt(root)) / a, 0.0)
+
+
+@compiled
+def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length):
+    """Return the counts (batches, kinds) of a trajectory, after a tenth of it; changes the state.
+
+    ``ring`` is the circumference along x, or 0 between walls.
+    """
+    n = x.size
+    counts = np.zeros((batches, KINDS), np.int64)
+    spare = -0.1 * length * batches
+    now, batch = spare, 0
+    while batch < batches:
+        best, kind, first, second, shift = math.inf, -1, -1, -1, 0.0
+        for i in range(n):
+            if ring == 0:
+                t = time_to_wall(x[i], u[i], half_x)
+                if t < best:
+                    best, kind, first = t, 3, i
+            t = time_to_wall(y[i], v[i], half_y)
+            if t < best:
+                best, kind, first = t, 4, i
+            for j in range(i):
+                for image in range(-2, 3) if ring > 0 else range(1):
+                    t = time_to_contact(
+                        x[i] - x[j] + image * ring, y[i] - y[j], u[i] - u[j], v[i] - v[j], sigma
+                    )
+                    if t < best:
+                        best, kind, first, second, shift = t, 2, i, j, image * ring
+        # On a ring no disc may go further than once around before one looks again.
+        if ring > 0 and best > ring / 4:
+            best, kind = ring / 4, -1
+        left = length * (batch + 1) - now
+        if left < best:
+            best, kind = left, 5
+        before = (now >= 0) and (batch < batches)
+        for i in range(n):
+            for j in range(i):
+                if before:
+                    dy, dx = y[i] - y[j], x[i] - x[j]
+                    counts[batch, 0] += (dy < 0) != (dy + best * (v[i] - v[j]) < 0)
+                    if ring == 0:
+                        counts[batch, 1] += (dx < 0) != (dx + best * (u[i] - u[j]) < 0)
+        for i in range(n):
+            x[i] += best * u[i]
+            y[i] += best * v[i]
+        now += best
+        if kind == 3:
+            u[first] = -u[first]
+        elif kind == 4:
+            v[first] = -v[first]
+        elif kind == 2:
+            dx, dy = x[first] - x[second] + shift, y[first] - y[second]
+            along = dx * (u[first] - u[second]) + dy * (v[first] - v[second])
+            along /= dx * dx + dy * dy
+            u[first] -= along * dx
+            v[first] -= along * dy
+            u[second] += along * dx
+            v[second] += along * dy
+        if before and 2 <= kind <= 4:
+            counts[batch, kind] += 1
+        if kind == 5:
+            batch += 1
+        if ring > 0:
+            for i in range(n):
+                if abs(x[i]) > half_x:
+                    x[i] -= math.copysign(ring, x[i])
+    return counts
+
+
+def rates(gas, events, seed, batches=50):
+    """Return (rates of all events of a kind, standard errors), of about so many ``events``."""
+    rng = np.random.default_rng(seed)
+    x, y = np.array(gas.arrangement).T.copy()
+    u, v = rng.standard_normal((2, gas.discs))
+    if gas.periodic:
+        u -= u.mean()
+    scale = math.sqrt(np.sum(u * u + v * v))
+    u, v = u / scale, v / scale
+    ring = gas.width if gas.periodic else 0.0
+    box = gas.range_x / 2, gas.range_y / 2, gas.contact_distance, ring
+    trial = run(x, y, u, v, *box, 1, 4.0)
+    length = 4.0 * events / max(1, int(trial[0, 2:].sum())) / batches
+    counts = run(x, y, u, v, *box, batches, length) / length
+    return counts.mean(axis=0), counts.std(axis=0, ddof=1) / math.sqrt(batches)

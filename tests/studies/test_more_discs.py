@@ -1,0 +1,47 @@
+"""The study of more discs: all methods agree, and its figure has what the table has."""
+
+import pytest
+
+from twodiscs.studies.more_discs import figure, measure
+from twodiscs.studies.more_discs.table import MoreDiscs
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return list(measure.rows(300_000, 60_000, 1, discs=(2, 3, 4), radii=(0.1, 0.28)))
+
+
+def test_rows_are_those_of_the_table(rows, tmp_path):
+    path = tmp_path / "more_discs.csv"
+    MoreDiscs.write(path, rows)
+    assert MoreDiscs.read(path) == rows
+    assert len(rows) == 2 * 3 * 6
+
+
+def test_dynamics_agrees_with_what_is_known(rows):
+    """Five sigma of each."""
+    compared = [row["z"] for row in rows if row["z"] is not None]
+    assert len(compared) >= 30
+    assert max(map(abs, compared)) < 5
+    virial = [row["dynamics"] for row in rows if row["event"] == "virial"]
+    assert virial == pytest.approx([1.0] * len(virial), abs=0.05)
+
+
+def test_no_exact_value_is_not_impossible(rows):
+    """Four discs that pass each other have a time, but no exact one; in a channel there is none."""
+    at = {(row["discs"], row["radius"], row["event"]): row for row in rows}
+    four = at[4, 0.1, "horizontal_hop"]
+    assert (four["theory"], four["exact"]) == ("none", None)
+    assert four["dynamics"] > 0
+    blocked = at[4, 0.28, "horizontal_hop"]
+    assert blocked["theory"] == "channel"
+    assert blocked["exact"] is blocked["dynamics"] is blocked["monte_carlo"] is None
+
+
+def test_the_figure_shows_each_event(rows):
+    drawn = figure.draw(None, {"more_discs": rows})
+    top = drawn.axes[-1]
+    labels = {text.get_text() for text in top.get_legend().get_texts()}
+    assert labels == {
+        "vertical hops", "horizontal hops", "disc collisions", "right wall", "top wall",
+    }  # fmt: skip

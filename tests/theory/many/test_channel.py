@@ -1,0 +1,221 @@
+"""The ordered channel: against other theories, moments in many digits, and its limits."""
+
+import math
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+
+from twodiscs.model.checks import InputError
+from twodiscs.model.many import Gas
+from twodiscs.model.scene import Scene
+from twodiscs.theory.many import channel, exact, three
+from twodiscs.theory.many.rates import rates, virial_sum
+
+BOUND = 1e-10
+
+
+def agree(found, expected, rel):
+    """The logarithm of V has an absolute error."""
+    assert found.log_volume == pytest.approx(expected.log_volume, abs=rel)
+    assert found[1:] == pytest.approx(expected[1:], rel=rel)
+
+
+@pytest.mark.parametrize("width", [1.5, 1.0, 6.0])
+def test_two_discs_have_the_plain_theory(width):
+    gas = Gas(2, width, 0.6, 0.18)
+    agree(channel.measures(gas), exact.measures(gas), BOUND)
+
+
+@pytest.mark.parametrize(
+    ("width", "height"), [(1.5, 0.6), (1.2, 0.6), (3.0, 0.4), (1.2, 0.36001), (10.0, 0.67)]
+)
+def test_three_discs_have_the_quadrature(width, height):
+    gas = Gas(3, width, height, 0.18)
+    agree(channel.measures(gas), three.measures(gas), BOUND)
+
+
+def by_moments(gas, digits, order):
+    """Return the ``Measures`` but hops of a channel that is longer than the discs in a row.
+
+    Then V = ∫ (A − S)^N is a sum of moments of S, by Gauss's rule in many digits; derivatives in
+    the same way, of ∫ N (A − S)^(N−1) times the derivative of S.
+    """
+    n = gas.discs
+    with mp.workdps(digits):
+        sigma = 2 * mpf(gas.radius)
+        a, b = mpf(gas.width) - sigma, mpf(gas.height) - sigma
+        assert a > (n - 1) * sigma
+        rule = np.polynomial.legendre.leggauss(order)[0]
+        nodes = [
+            mp.findroot(lambda z: mp.legendre(order, z), mpf(start), solver="newton")
+            for start in rule
+        ]
+        weights = [2 * (1 - z * z) / ((order * mp.legendre(order - 1, z)) ** 2) for z in nodes]
+        y = [b * (1 + z) / 2 for z in nodes]
+        w = [b * weight / 2 for weight in weights]
+        d = [[mp.sqrt(sigma**2 - (p - q) ** 2) for q in y] for p in y]
+        bonds = {
+            "contact": [[sigma / e for e in row] for row in d],
+            "height": [[(sigma**2 - e * e) / (b * e) for e in row] for row in d],
+        }
+
+        def step(state, factor=None):
+            """Multiply moments (k, node) of S by a bond, with ``factor`` if given."""
+            top = len(state)
+            new = [[mpf(0)] * order for _ in range(top)]
+            for i in range(order):
+                for j in range(order):
+                    f = w[j] * (1 if factor is None else factor[i][j])
+                    powers = [f * d[i][j] ** m for m in range(top)]
+                    for k in range(top):
+                        new[k][i] += sum(
+                            mp.binomial(k, m) * powers[m] * state[k - m][j] for m in range(k + 1)
+                        )
+            return new
+
+        one = [[mpf(k == 0)] * order for k in range(n + 1)]
+        plain = [one]
+        for _ in range(n - 1):
+            plain.append(step(plain[-1]))
+
+        def mean(state):
+            return [sum(p * q for p, q in zip(w, row, strict=True)) for row in state]
+
+        moments = mean(plain[-1])
+        volume = sum(
+            mp.binomial(n, k) * a ** (n - k) * (-1) ** k * moments[k] for k in range(n + 1)
+        )
+
+        def slope(values):
+            return n * sum(
+                mp.binomial(n - 1, k) * a ** (n - 1 - k) * (-1) ** k * values[k] for k in range(n)
+            )
+
+        found = {}
+        for name, factor in bonds.items():
+            total = mpf(0)
+            for bond in range(n - 1):
+                state = step(plain[bond], factor)
+                for _ in range(n - 2 - bond):
+                    state = step(state)
+                total += slope(mean(state))
+            found[name] = total
+        return (
+            float(mp.log(volume)),
+            float(slope(moments) / volume),
+            float(n / b + found["height"] / volume),
+            float(found["contact"] / volume),
+        )
+
+
+def test_four_discs_in_many_digits():
+    gas = Gas(4, 1.5, 0.6, 0.18)
+    log_volume, *derivatives = by_moments(gas, 25, 14)
+    found = channel.measures(gas)
+    assert found.log_volume == pytest.approx(log_volume, abs=BOUND)
+    assert found[1:4] == pytest.approx(derivatives, rel=BOUND)
+
+
+@pytest.mark.parametrize("width", [1.3, 1.25])
+def test_four_discs_in_a_shorter_channel(width):
+    """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
+    gas, values = Gas(4, width, 0.6, 0.18), []
+    for order in (40, 56):
+        x, w = np.polynomial.legendre.leggauss(order)
+        y, w = gas.range_y * (1 + x) / 2, gas.range_y * w / 2
+        d = np.sqrt(gas.contact_distance**2 - (y[:, None] - y) ** 2)
+        middle = d[:, :, None] + d[None]
+        room = gas.range_x - middle
+        total = 0.0
+        for i in range(order):
+            left = np.maximum(room[i, :, :, None] - d[None], 0.0) ** 4
+            total += w[i] * np.einsum("j,k,l,jkl", w, w, w, left)
+        values.append(math.log(total))
+    spread = abs(values[0] - values[1])
+    assert spread < 1e-7
+    assert channel.measures(gas, hops=False).log_volume == pytest.approx(values[1], abs=2 * spread)
+
+
+@pytest.mark.parametrize(
+    ("discs", "width", "height", "radius"),
+    [(4, 1.2, 0.6, 0.18), (5, 1.6, 0.6, 0.18), (8, 2.7, 0.6, 0.18), (16, 7.0, 1.0, 0.29),
+     (64, 30.0, 0.6, 0.18), (4, 1e-6, 4e-7, 1.2e-7)],
+)  # fmt: skip
+def test_the_virial_theorem(discs, width, height, radius):
+    gas = Gas(discs, width, height, radius)
+    known = channel.measures(gas, hops=False)
+    # Where there is little room walls and collisions cancel.
+    size = gas.range_x * known.per_width / (2 * discs)
+    assert virial_sum(gas, rates(gas, known)) == pytest.approx(1, abs=1e-11 * size)
+
+
+@pytest.mark.parametrize("discs", [4, 8, 64])
+def test_a_tonks_gas_is_left_where_the_channel_is_as_wide_as_the_discs(discs):
+    """V → B^N (A − (N − 1) σ)^N, with relative corrections of the order N (B/σ)² σ/room."""
+    radius, gap = 0.25, 1e-6
+    gas = Gas(discs, 1.0 * discs, 0.5 + gap, radius)
+    room = gas.range_x - (discs - 1) * gas.contact_distance
+    known = channel.measures(gas)
+    small = discs**2 * gas.range_y**2 / gas.contact_distance / room
+    assert known.log_volume == pytest.approx(
+        discs * math.log(gas.range_y * room), abs=small + 1e-11 * discs
+    )
+    assert known.per_width == pytest.approx(discs / room, rel=1e-9)
+    assert known.per_contact == pytest.approx(discs * (discs - 1) / room, rel=1e-9)
+    assert known.per_height == pytest.approx(discs / gas.range_y, rel=1e-5)
+    # All heights are independent: ∫ δ(y_i − y_j) is 1/B for each pair.
+    assert known.hops_y == pytest.approx(discs * (discs - 1) / 2 / gas.range_y, rel=1e-5)
+
+
+def test_many_discs_tend_to_the_largest_eigenvalue():
+    """At the same force: what is left are the two ends, 1/N."""
+    height, radius, force = 0.6, 0.18, 20.0
+    ideal = channel.limit(height, radius, force)
+    differences = []
+    for discs in (16, 32, 64):
+        gas = Gas(discs, ideal.length * discs + radius, height, radius)
+        known = channel.measures(gas, hops=False)
+        differences.append(
+            [known.per_width / force - 1, known.per_contact / discs / ideal.per_contact - 1,
+             known.per_height / discs / ideal.per_height - 1]
+        )  # fmt: skip
+    differences = np.array(differences)
+    # Without the first order in 1/N, and without the second.
+    first = 2 * differences[1:] - differences[:-1]
+    second = (4 * first[1] - first[0]) / 3
+    assert np.all(np.abs(differences[-1]) > 0.02)
+    # Each order takes off a power of 1/N, N = 64.
+    assert np.all(np.abs(first[1]) < 5e-3)
+    assert np.all(np.abs(second) < 5e-4)
+
+
+def test_the_limit_is_a_tonks_gas_in_a_narrow_channel():
+    found = channel.limit(0.5 + 1e-7, 0.25, 3.0)
+    assert found.length == pytest.approx(1 / 3.0 + 0.5, rel=1e-10)
+    assert found.per_contact == pytest.approx(3.0, rel=1e-10)
+    assert found.level == pytest.approx(1e7, rel=1e-6)
+
+
+def test_what_is_no_ordered_channel_is_refused():
+    with pytest.raises(InputError, match="ordered channel"):
+        channel.measures(Gas(4, 3.0, 1.0, 0.2))
+    with pytest.raises(InputError, match="2 \\+ √3 radii"):
+        channel.limit(1.0, 0.2, 1.0)
+    with pytest.raises(InputError, match="force must"):
+        channel.limit(0.6, 0.18, 0.0)
+
+
+def test_turned_channels_are_the_same():
+    along, up = exact.measures(Gas(4, 3.0, 0.6, 0.18)), exact.measures(Gas(4, 0.6, 3.0, 0.18))
+    assert along == up.turned()
+    assert exact.mean_times(Gas(4, 3.0, 0.6, 0.18))["horizontal_hop"] is None
+
+
+def test_two_discs_are_those_of_a_scene():
+    scene, gas = Scene(1.5, 1.0, 0.2), Gas(2, 1.5, 1.0, 0.2)
+    from twodiscs.theory.exact import rate
+
+    for event, found in rates(gas, exact.measures(gas)).items():
+        multiplicity = gas.multiplicity(event)
+        assert found == pytest.approx(multiplicity * rate(scene, event), rel=1e-13)
