@@ -12,7 +12,7 @@ from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.theory.reference import exact_numbers
+from twodiscs.theory.numerics.reference import exact_numbers
 
 # Estimates ------------------------------------------------------------------------------------
 

@@ -11,8 +11,8 @@ from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.blocks.strata import mean_of
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, states
-from twodiscs.sampling.strata import mean_of
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 

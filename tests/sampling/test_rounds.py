@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
-from twodiscs.sampling import montecarlo, rounds
-from twodiscs.sampling.strata import mean_of
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling.blocks.strata import mean_of
 
 PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import betainc
 
-from twodiscs.sampling.strata import (
+from twodiscs.sampling.blocks.strata import (
     LEAST_FRACTION,
     PARTS,
     fraction_below,

@@ -20,8 +20,8 @@ from twodiscs.studies.errata import measure as errata
 from twodiscs.studies.errata import published
 from twodiscs.studies.errata.statements import LIMITS, REGIMES, STATEMENTS
 from twodiscs.studies.errata.table import Errata
-from twodiscs.theory import reference
-from twodiscs.theory.reference import QUANTITIES, MpScene, mean_time
+from twodiscs.theory.numerics import reference
+from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
     "axis of the cylinder",

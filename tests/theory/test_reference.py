@@ -13,8 +13,8 @@ from theory.antiderivatives import DIGITS, lengths, reference, reference_times, 
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.theory import reference as reference_module
-from twodiscs.theory.reference import (
+from twodiscs.theory.numerics import reference as reference_module
+from twodiscs.theory.numerics.reference import (
     QUANTITIES,
     MpScene,
     contact_density,

@@ -58,7 +58,7 @@ def _check_strip(strip, what):
     """Raise ``InputError`` that begins with ``what`` unless a strip holds what it should."""
     import numpy as np  # tables, which are quick to import, import this module
 
-    from twodiscs.sampling.strata import mean_of
+    from twodiscs.sampling.blocks.strata import mean_of
 
     if not isinstance(strip, dict):
         raise InputError(f"{what} is not an object")

@@ -35,8 +35,8 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import Scene, a_scene
+from twodiscs.sampling.blocks.rounds import SequentialRun, in_rounds, on_grid
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.rounds import SequentialRun, in_rounds, on_grid
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -294,7 +294,7 @@ def count_events(scene, target, budget, seed, report=None):
     ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
     blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
     events to simulate; a block of replicas is the least that is. Work goes in rounds: see
-    ``sampling.rounds``, also for ``report``.
+    ``sampling.blocks.rounds``, also for ``report``.
 
     Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
     share the budget evenly with all the rest; what starts anywhere see of them is counted, too.

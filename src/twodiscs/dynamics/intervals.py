@@ -25,8 +25,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, a_scene
+from twodiscs.sampling.blocks.rounds import all_at_once, fixed
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.rounds import all_at_once, fixed
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact

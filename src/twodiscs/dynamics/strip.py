@@ -12,7 +12,7 @@ so that holds for every T. The past of a start is the future of the one with rev
 For the same reason a path ends as soon as |Δ| exceeds β times the time that is left.
 
 How far a start is from the surface and how fast it comes says most of whether it will cross, and
-their laws are exact: ⟨N⟩ is a mean over strata of both (``sampling.strata``).
+their laws are exact: ⟨N⟩ is a mean over strata of both (``sampling.blocks.strata``).
 """
 
 import math
@@ -32,11 +32,11 @@ from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, nex
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
+from twodiscs.sampling.blocks.strata import PARTS, fractions_of_speeds, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
-from twodiscs.sampling.rounds import SequentialRun, on_grid
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fraction_at, origins
-from twodiscs.sampling.strata import PARTS, fractions_of_speeds, mean_of
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 

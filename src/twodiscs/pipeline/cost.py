@@ -127,7 +127,7 @@ def shards(scene, stage, radius):
     """
     if _most(scene, stage) <= scene.shard_events:
         return []
-    from twodiscs.sampling.rounds import pieces
+    from twodiscs.sampling.blocks.rounds import pieces
 
     parts = run_of(scene, stage, radius).parts
     work = {name: run.block_events * run.cost_ratio for name, run in parts.items()}

@@ -58,7 +58,7 @@ class Pilot(NamedTuple):
 
 def pilot(work):
     """Return the ``Pilot`` of a job, given what it runs (see ``jobs.point``)."""
-    from twodiscs.sampling.rounds import FIRST_ROUND, MARGIN
+    from twodiscs.sampling.blocks.rounds import FIRST_ROUND, MARGIN
 
     events = seconds = 0.0
     for part in work.parts.values():

@@ -19,7 +19,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from twodiscs.model.events import DECLARED, by_kind
-from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.numerics.quadrature import gauss_legendre
 
 #: The integrands are trigonometric polynomials of degree 4 at most over a quarter of a turn, or as
 #: smooth as that: sixteen nodes are exact to rounding.

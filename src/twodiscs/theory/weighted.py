@@ -35,7 +35,7 @@ import numpy as np
 from twodiscs.model.checks import whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.scene import ENERGY
-from twodiscs.theory.quadrature import double_exponential, gauss_legendre
+from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legendre
 
 
 def constant(components):

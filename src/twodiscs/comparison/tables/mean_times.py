@@ -103,7 +103,7 @@ def _counted(box, theory, points):
 def _row(scene, event, point, exact, strip=None):
     """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
     from twodiscs.comparison import estimates, scores  # which need numpy and scipy
-    from twodiscs.sampling.strata import mean_of
+    from twodiscs.sampling.blocks.strata import mean_of
 
     mean = octaves = None
     if strip is None:

@@ -67,7 +67,7 @@ def shard(work, part, first, stop):
 
 def joined(work, paths):
     """Return the point that is the sum of the shards at ``paths``, in any order."""
-    from twodiscs.sampling.rounds import joined
+    from twodiscs.sampling.blocks.rounds import joined
 
     parts = {name: [] for name in work.parts}
     for path in paths:

@@ -39,8 +39,8 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.studies.accuracy_cost import precision, scalar, timestepping
 from twodiscs.theory import exact, laws
-from twodiscs.theory.quadrature import gauss_legendre
-from twodiscs.theory.reference import DIGITS, MpScene, disc_collision_area, volume
+from twodiscs.theory.numerics.quadrature import gauss_legendre
+from twodiscs.theory.numerics.reference import DIGITS, MpScene, disc_collision_area, volume
 
 #: The box of all measurements, a radius in the middle, and one where the discs hardly fit.
 SCENE = Scene(1.5, 1.0, 0.2)

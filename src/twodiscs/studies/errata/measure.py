@@ -14,7 +14,7 @@ from mpmath import mp, mpf
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.studies.errata.statements import GENERAL, LIMITS, NEAR, REGIMES, SAME, STATEMENTS
-from twodiscs.theory.reference import DIGITS, QUANTITIES, MpScene
+from twodiscs.theory.numerics.reference import DIGITS, QUANTITIES, MpScene
 
 #: The box of the source's figures, in which ratios are reported.
 WIDTH, HEIGHT = 1.5, 1.0

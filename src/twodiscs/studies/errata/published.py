@@ -12,7 +12,7 @@ Integrals are evaluated over the printed limits. Where all hops are open the sou
 
 from mpmath import mp, mpf
 
-from twodiscs.theory.reference import inside, line, on_circle, outside, rectangle, smooth
+from twodiscs.theory.numerics.reference import inside, line, on_circle, outside, rectangle, smooth
 
 # Section II: model --------------------------------------------------------------------------------
 

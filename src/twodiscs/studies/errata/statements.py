@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from mpmath import mp, mpf
 
 from twodiscs.studies.errata import published
-from twodiscs.theory import reference
-from twodiscs.theory.reference import QUANTITIES, MpScene, largest_radius, mean_time
+from twodiscs.theory.numerics import reference
+from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, largest_radius, mean_time
 
 #: A regime that formulas are stated for: its boxes and radii (width, height, radius). The first is
 #: the one to report, unless the tables have a radius near it.

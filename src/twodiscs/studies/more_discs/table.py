@@ -1,6 +1,6 @@
 """The table of the mean times of more than two discs."""
 
-from twodiscs.comparison.tables import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
 
 AS_EXACT = Column(float, "as exact")
 
@@ -42,3 +42,10 @@ class MoreDiscs(Table):
     standard normal deviate of dynamics from the exact value, or from Monte Carlo where none is
     known
     """
+
+    @staticmethod
+    def rows(events, samples, seed):
+        """Return the rows of so many ``events`` and ``samples`` for each gas."""
+        from twodiscs.studies.more_discs import measure
+
+        return list(measure.rows(events, samples, seed))

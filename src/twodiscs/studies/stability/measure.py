@@ -29,7 +29,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
 from twodiscs.theory import exact, laws
-from twodiscs.theory.reference import DIGITS, exact_numbers
+from twodiscs.theory.numerics.reference import DIGITS, exact_numbers
 
 #: Spacing of doubles at 1.
 EPSILON = 2.0**-52

@@ -33,7 +33,7 @@ import numpy as np
 
 from twodiscs.model.checks import InputError, number
 from twodiscs.theory.many.rates import Measures
-from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs.theory.numerics.quadrature import gauss_legendre
 
 #: Nodes of a panel, the phase that they follow, and the most panels that double.
 ORDER, PHASE, MOST_PANELS = 20, 15.0, 60

@@ -209,7 +209,7 @@ def any_wall_area(q):
 
 
 AREAS = by_kind(
-    "theory/reference.py",
+    "theory/numerics/reference.py",
     {
         "hop": lambda event: vertical_hop_area if event.axis == "y" else horizontal_hop_area,
         "collision": lambda event: disc_collision_area,

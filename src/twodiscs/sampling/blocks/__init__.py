@@ -1,0 +1,1 @@
+"""Work in blocks: their random streams, rounds, and strata."""

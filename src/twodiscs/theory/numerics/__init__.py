@@ -1,0 +1,1 @@
+"""Quadrature, and reference values of many digits."""
