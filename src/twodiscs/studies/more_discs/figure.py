@@ -2,7 +2,7 @@
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import GREY, new_figure
+from twodiscs.figures.kit.style import new_figure
 
 #: Inches: a panel for each radius, the gap between them, the room above.
 PANEL, GAP, TOP = 1.5, 0.1, 0.12
@@ -43,7 +43,6 @@ def draw(box, tables):
         axes.set(xscale="log", yscale="log", ylabel=f"mean time, $r={radius:g}$")
         axes.set_xticks([2, 3, 4, 8], ["2", "3", "4", "8"])
         axes.minorticks_off()
-        axes.grid(color=GREY, lw=0.2)
         if place:
             axes.tick_params(labelbottom=False)
         else:
