@@ -13,4 +13,6 @@ COPY profiles profiles
 COPY src src
 COPY workflow workflow
 RUN pip install --no-cache-dir --no-deps --no-build-isolation --editable .
+# Whoever runs it may have no home: caches are kept here.
+ENV HOME=/tmp XDG_CACHE_HOME=/tmp/cache USER=twodiscs
 ENTRYPOINT ["snakemake"]
