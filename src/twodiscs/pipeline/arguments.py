@@ -160,9 +160,11 @@ def end_with_workflow():
     """End this process as soon as the workflow that started it is gone, however that ended.
 
     The workflow's process is the one in the variable TWODISCS_WORKFLOW; without it nothing happens.
+    Ctrl-C ends it at once, too: a kernel that runs does not hear of Python's own handler.
     """
     pid = os.environ.get("TWODISCS_WORKFLOW", "")
     if pid.isdecimal():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
         threading.Thread(target=_end_after, args=(int(pid),), daemon=True).start()
 
 
