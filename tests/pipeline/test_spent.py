@@ -10,8 +10,8 @@ HEAD = "s\th:m:s\tmax_rss\tmax_vms\tcpu_time\n"
 
 def test_jobs_of_a_kind_are_added_up(tmp_path):
     jobs = {
-        "one/dynamics-0.1": (2.0, 50, 1.5), "one/dynamics-1e-05": (3.0, 70, 2.5),
-        "two/dynamics-0.1": (1.0, 60, 1.0), "check": (0.5, "NA", "NA"),
+        "one/dynamics/0.1": (2.0, 50, 1.5), "one/dynamics/1e-05": (3.0, 70, 2.5),
+        "two/dynamics/0.1_all-0-9": (1.0, 60, 1.0), "check": (0.5, "NA", "NA"),
     }  # fmt: skip
     for name, (seconds, memory, processor) in jobs.items():
         path = tmp_path / "benchmarks" / f"{name}.tsv"

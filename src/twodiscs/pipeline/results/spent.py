@@ -17,7 +17,7 @@ COLUMNS = {"seconds": "s", "processor": "cpu_time", "memory": "max_rss"}
 def spent(folder):
     """Return a DataFrame of the jobs whose files are in ``folder``/benchmarks, a row each kind.
 
-    The kind is the name up to the first hyphen: radii, scenes and names of figures come later.
+    The kind of a radius is the folder, that of all else the name up to the first hyphen.
     Columns are the number of jobs, their seconds of wall-clock and of processor time in all, and
     the largest memory of one in MiB; what takes longest comes first. Raises ``InputError`` for a
     folder in which no job was measured.
@@ -27,9 +27,13 @@ def spent(folder):
     paths = sorted(Path(folder, "benchmarks").rglob("*.tsv"))
     if not paths:
         raise InputError(f"{folder} must be a folder of results, with benchmarks/*.tsv in it")
+    kinds = [p.parent.name if p.stem[0].isdigit() else p.stem.split("-")[0] for p in paths]
     # A job that is over before anything is measured has "NA" there.
     found = pandas.concat(
-        [pandas.read_csv(path, sep="\t").assign(kind=path.stem.split("-")[0]) for path in paths]
+        [
+            pandas.read_csv(path, sep="\t").assign(kind=kind)
+            for path, kind in zip(paths, kinds, strict=True)
+        ]
     )
     found = found.rename(columns={theirs: ours for ours, theirs in COLUMNS.items()})
     kinds = found.groupby("kind")

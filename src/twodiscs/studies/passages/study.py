@@ -7,7 +7,7 @@ from twodiscs.studies.study import Study, scaled
 
 def _parameters(configuration):
     return {
-        "events": scaled(configuration.main.event_budget, 96, 2**19, 2**25),
+        "events": scaled(configuration.main.event_budget, 160, 2**19, 2**25),
         "scenes": {scene.name: scene.box.parameters() for scene in configuration.plain},
         "seed": configuration.seed,
     }
