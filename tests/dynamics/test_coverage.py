@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.comparison import estimates, rows
+from twodiscs.comparison import estimates
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
@@ -95,18 +97,23 @@ BURSTS = Scene(
 )  # fmt: skip
 
 
+def row_of(scene, point):
+    """Return the one row of mean_times.csv of a point."""
+    box = Box.of(scene)
+    (row,) = MeanTimes.rows(box, Theory.rows(box, [scene.radius]), {"dynamics": [point]})
+    return row
+
+
 def test_bursts_of_collisions_have_no_error_bar():
     """Rough discs that hardly pass each other: rare replicas have a thousand times the mean.
 
     A sample without a large one is wrong by up to 80 of its own errors. The rule sees that in 39 of
     40 samples; one in which nothing but usual replicas are looks like any other.
     """
-    time, wrong, bars = mean_times(BURSTS)["disc_collision"], 0, 0
+    wrong, bars = 0, 0
     for seed in range(40):
         point = counting.count_events(BURSTS, {"disc_collision": 1e-3}, 10**6, seed)
-        (row,) = rows.mean_time_rows(
-            BURSTS, {(BURSTS.radius, "disc_collision_time"): time}, [point]
-        )
+        row = row_of(BURSTS, point)
         bars += row["stderr"] is not None
         wrong += row["stderr"] is not None and abs(row["z"]) > 5
     assert wrong <= bars <= 4
@@ -116,10 +123,9 @@ def test_bursts_of_collisions_have_no_error_bar():
 def test_rough_discs_with_an_error_bar_are_covered(radius):
     """Mean square deviate within five sigma of 1, of those that have an error bar."""
     scene, z = Scene(1.0, 1.0, radius, moment_of_inertia=0.9), []
-    time = mean_times(scene)["disc_collision"]
     for seed in range(20):
         point = counting.count_events(scene, {"disc_collision": 1e-3}, 10**6, seed)
-        (row,) = rows.mean_time_rows(scene, {(radius, "disc_collision_time"): time}, [point])
+        row = row_of(scene, point)
         z += [row["z"]] if row["stderr"] else []
     assert len(z) >= 15
     assert abs(np.mean(np.square(z)) - 1) < 5 * math.sqrt(2 / len(z))
