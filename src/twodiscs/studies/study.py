@@ -17,7 +17,8 @@ class Study:
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
     tables hold seconds, so that they differ from run to run. One that is not ``shared`` is built
-    only when asked for. Pages list studies by their ``order``.
+    only when asked for, and the manuscript brings along those that are ``in_manuscript``. Pages
+    list studies by their ``order``.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Study:
     about_plain: bool = True
     timed: tuple = ()
     shared: bool = True
+    in_manuscript: bool = True
 
 
 def scaled(budget, divisor, least, most):

@@ -4,7 +4,7 @@ from hashlib import blake2b
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
+from twodiscs.studies.catalogue import STUDIES
 
 #: The tables of a scene that are made of points, and the stages that found those.
 GATHERED = {
@@ -78,10 +78,10 @@ class Files:
 
     def studied(self, kind):
         """Return all "tables", or "figures" as PDF, of the studies that the manuscript reads."""
+        read = [study for study in STUDIES.values() if study.shared and study.in_manuscript]
         if kind == "figures":
-            return [f"{self.folder}/figures/{name}.pdf" for name in STUDY_FIGURES]
-        shared = (study for study in STUDIES.values() if study.shared)
-        return [self.table(table.name()) for study in shared for table in study.tables]
+            return [f"{self.folder}/figures/{name}.pdf" for study in read for name in study.figures]
+        return [self.table(table.name()) for study in read for table in study.tables]
 
     def configuration_hash(self):
         """Return 16 hexadecimal digits of the configuration with every default filled in."""

@@ -38,4 +38,5 @@ STUDY = Study(
         ),
     },
     parameters=_parameters,
+    in_manuscript=False,
 )
