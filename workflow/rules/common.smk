@@ -8,6 +8,7 @@ from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.arguments import box_arguments, word, words
 from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
 from twodiscs.pipeline.configuration.request import STAGES
+from twodiscs.pipeline.jobs.figure import ENTRIES
 from twodiscs.model.sources import fingerprint
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs.studies.effects.study import SCENES as EFFECTS
@@ -37,9 +38,9 @@ FILES = Files(CONFIGURATION, SCENES)
 RESULTS = FILES.folder
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
-if cost.days(CONFIGURATION.scenes) > 1:
+if (days := cost.days(CONFIGURATION.scenes)) > 1:
     logger.warning(
-        f"This configuration takes some {cost.days(CONFIGURATION.scenes):.2g} days of processor time;"
+        f"This configuration takes some {days:.2g} days of processor time;"
         " snakemake forecast says it better."
     )
 
@@ -105,8 +106,6 @@ POINT = {
     stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
     for stage, module in STAGES.items()
 }
-
-ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
 
 
 def about(w):
