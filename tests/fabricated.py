@@ -74,7 +74,7 @@ class Laws:
         for event in events:
             mean = 0.0
             if event in self.times:
-                mean = self.scene.copies(event) * duration / self.times[event]
+                mean = self.scene.multiplicity(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
         walls = {"right_wall", "top_wall", "any_wall"}
         if walls <= {*events} and not self.scene.has_effects:  # as symmetry has it

@@ -32,7 +32,7 @@ MUTANTS = [
     ("model/scene.py", "conserved momentum", " + spins - len(self.conserved)", " + spins"),
     ("model/scene.py", "rough walls keep momentum", "return tuple(self.periodic) if self.moment_of_inertia is None else ()", "return tuple(self.periodic)"),
     ("model/scene.py", "wrong radius in the lowest potential", "m1 * max(apart + r2 - r1, 0.0)", "m1 * max(apart + r1 - r2, 0.0)"),
-    ("model/scene.py", "multiplicity of confined walls", "(1 + self.alike) * self.share(event)", "(1 + self.alike)"),
+    ("model/scene.py", "multiplicity of confined walls", "(1 + self.identical) * self.share(event)", "(1 + self.identical)"),
     ("model/scene.py", "mirror images of the right wall", 'mirrored = found.axis == "x" or not self.field', "mirrored = not self.field"),
     ("model/scene.py", "reach of the top", "self.field * (self.height - 2 * self.radius)", "self.field * (self.height - self.radius)"),
     ("model/box.py", "swapped axis of a threshold", 'self.width if AXIS[hop] == "y"', 'self.width if AXIS[hop] == "x"'),

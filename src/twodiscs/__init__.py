@@ -67,8 +67,8 @@ def __getattr__(name: str):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    found = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    return found
+    value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return value
 
 
 def __dir__() -> list[str]:
@@ -182,16 +182,16 @@ def trajectory(
     return measurements.trajectory(scene, seed, start, duration, name)
 
 
-def plot(found, path: str | PathLike | None = None, figure: str | None = None) -> Figure:
+def plot(result, path: str | PathLike | None = None, figure: str | None = None) -> Figure:
     """Draw a result, and write it to ``path`` (.pdf, .png or .svg) if that is given.
 
-    ``found`` is a trajectory, a result of ``simulate``, ``sample`` or ``intervals``, or a list of
+    ``result`` is a trajectory, a result of ``simulate``, ``sample`` or ``intervals``, or a list of
     such results at several radii of one box, which are drawn beside the exact curves; a scene or
     box is sketched. ``figure`` names one of several that suit, as the workflow does.
     """
     from twodiscs.figures import plot
 
-    return plot.plot(found, path, figure)
+    return plot.plot(result, path, figure)
 
 
 def animate(trajectory: pd.DataFrame, path: str | PathLike) -> None:

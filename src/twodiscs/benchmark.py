@@ -72,8 +72,8 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
 
 def lockstep_intervals(intervals=5_000_000):
     """Record exact intervals between vertical hops; events are as many as their time holds."""
-    found, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
-    return found["intervals"] * found["mean"] * event_rate(SCENE), seconds
+    summary, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
+    return summary["intervals"] * summary["mean"] * event_rate(SCENE), seconds
 
 
 def scalar_engine(blocks=BLOCKS // 8):
@@ -163,14 +163,14 @@ def intervals_until(error):
     def work():
         intervals = 500_000
         while True:
-            found = hop_intervals(SCENE, "vertical_hop", intervals, 1)
-            excess = found["stderr"] / found["mean"] / error
+            summary = hop_intervals(SCENE, "vertical_hop", intervals, 1)
+            excess = summary["stderr"] / summary["mean"] / error
             if excess <= 1:
-                return found
-            intervals = math.ceil(1.05 * excess**2 * found["intervals"])
+                return summary
+            intervals = math.ceil(1.05 * excess**2 * summary["intervals"])
 
-    found, seconds = timed(work)
-    return found["intervals"], seconds
+    summary, seconds = timed(work)
+    return summary["intervals"], seconds
 
 
 def _shard(blocks, ready, go, done):
@@ -278,7 +278,7 @@ def main():
     parser.add_argument("--table", choices=("benchmark", "effects_cost"), default="benchmark")
     parser.add_argument("--output", default="results/benchmark.csv")
     given = parser.parse_args()
-    requests = (one for path in given.scenes for one in load(read(path)).scenes)
+    requests = (request for path in given.scenes for request in load(read(path)).scenes)
     effects = {request.name: request.effects for request in requests}
     quick = given.table == "effects_cost"
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)

@@ -45,13 +45,13 @@ def _parser():
     commands = parser.add_subparsers(dest="command", title="commands", metavar="COMMAND")
 
     def command(name, work, text):
-        found = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-        add_scene(found)
-        form = found.add_mutually_exclusive_group()
+        command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        add_scene(command)
+        form = command.add_mutually_exclusive_group()
         form.add_argument("--json", action="store_true", help="print JSON")
         form.add_argument("--csv", action="store_true", help="print CSV, as the tables of results")
-        found.set_defaults(work=work)
-        return found
+        command.set_defaults(work=work)
+        return command
 
     command("exact", _exact, "exact volume, areas and mean times of one scene")
     some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
@@ -107,23 +107,23 @@ def _sample(scene, options):
     )
 
 
-def _print_measured(found, options):
+def _print_measured(result, options):
     if options.csv:
-        _print_csv(found.rows)
+        _print_csv(result.rows)
     elif options.json:
-        _print_json(dict(zip(found, found.rows, strict=True)))
+        _print_json(dict(zip(result, result.rows, strict=True)))
     else:
-        print(found)
+        print(result)
 
 
 def _trajectory(scene, options):
-    found = twodiscs.trajectory(scene, options.seed, options.start, options.duration, options.name)
+    path = twodiscs.trajectory(scene, options.seed, options.start, options.duration, options.name)
     if options.csv:
-        found.to_csv(sys.stdout, index=False)
+        path.to_csv(sys.stdout, index=False)
     elif options.json:
-        _print_json(found.to_dict("records"))
+        _print_json(path.to_dict("records"))
     else:
-        print(f"{scene}; times in time, places in length\n\n{found.to_string(index=False)}")
+        print(f"{scene}; times in time, places in length\n\n{path.to_string(index=False)}")
 
 
 def _print_json(value):

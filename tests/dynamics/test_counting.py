@@ -113,7 +113,7 @@ for e, event in enumerate(EVENTS):
         assert mean == 0
         continue
     error = math.sqrt((products[e, e] / replicas - mean**2) / replicas)
-    assert abs(mean - scene.copies(event) * duration / time) <= 5 * error, event
+    assert abs(mean - scene.multiplicity(event) * duration / time) <= 5 * error, event
 """
 
 
@@ -164,8 +164,8 @@ def test_walls_that_symmetry_makes_equal_are_counted_together():
     left, right = (
         counting.run_blocks(scene, EVENTS, 1, 0, 4, 32.0, sides=(side, 0)) for side in (-1, 1)
     )
-    expected = scene.copies("right_wall") * 32.0 / mean_times(scene)["right_wall"]
-    assert scene.copies("right_wall") == 2
+    expected = scene.multiplicity("right_wall") * 32.0 / mean_times(scene)["right_wall"]
+    assert scene.multiplicity("right_wall") == 2
     for sums, products in (left, right):
         error = relative_errors(sums, products, 4 * REPLICAS)[3]
         assert abs(sums[3] / (4 * REPLICAS) - expected) <= 5 * error * expected

@@ -148,7 +148,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
     rows = list(trajectory.follow(scene, start(scene, 3), 64.0))
     names = Counter(row[5] for row in rows)
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
-    discs = (1, 2) if scene.alike else (1,)
+    discs = (1, 2) if scene.identical else (1,)
     seen["right_wall"] = sum(names[f"wall_x{disc}"] for disc in discs)
     seen["top_wall"] = sum(
         row[5] == f"wall_y{disc}" and (row[2 * disc] > 0 or not scene.field)

@@ -130,7 +130,7 @@ def test_the_share_is_exact(scene, hop):
         cuts = sorted({least, min(sigma, a), a})
         volume = mp.quad(density, [c for c in cuts if c >= least])
         share = mp.quad(density, [0, end / 4, end]) / volume
-        assert abs(exact.share_near(scene, hop, band.within) / share - 1) < 1e-13
+        assert abs(exact.fraction_near(scene, hop, band.within) / share - 1) < 1e-13
 
 
 @pytest.mark.parametrize(("scene", "hop"), [(PAPER, "vertical_hop"), *NECKS.values()])
@@ -141,7 +141,7 @@ def test_the_share_is_that_of_draws_from_everywhere(scene, hop):
     apart = np.abs(found[k] - found[k + 2])
     for part in (0.3, 0.9):
         distance = part * math.sqrt(2) * min(scene.radii)
-        share = exact.share_near(scene, hop, distance)
+        share = exact.fraction_near(scene, hop, distance)
         inside = np.count_nonzero(apart <= distance)
         assert abs(inside - n * share) <= 5 * math.sqrt(n * share * (1 - share))
 
@@ -152,7 +152,7 @@ def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     k = "xy".index(AXIS[hop])
     distance = math.sqrt(2) * min(scene.radii)
     # Some 35 000 in the strip, or as many as a few seconds allow.
-    number = min(35_000 / exact.share_near(scene, hop, distance), 800_000)
+    number = min(35_000 / exact.fraction_near(scene, hop, distance), 800_000)
     everywhere = states(scene, round(number), 5)
     seen = everywhere[:, np.abs(everywhere[k] - everywhere[k + 2]) <= distance]
     drawn = np.zeros((COMPONENTS, 40_000))
@@ -255,4 +255,4 @@ def test_a_budget_is_shared_and_spent():
 )
 def test_bad_distances_are_refused(hop, distance):
     with pytest.raises(ValueError, match="must"):
-        exact.share_near(PAPER, hop, distance)
+        exact.fraction_near(PAPER, hop, distance)

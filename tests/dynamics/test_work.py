@@ -141,10 +141,10 @@ def test_draws_are_within_the_price_of_a_budget(drawn):
     for name, run in parts.items():
         starts = run.budget / run.block_events * REPLICAS
         if name == "all":
-            chance = exact.free_share(scene)
+            chance = exact.free_fraction(scene)
         else:
             chance = strip.acceptance(scene, name, strip.strip_of(scene, name))
-        assert chance >= exact.LEAST_SHARE
+        assert chance >= exact.MIN_FRACTION
         assert starts / chance <= 1.01 * strip.PROPOSALS_PER_EVENT * events
 
 

@@ -213,7 +213,7 @@ def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effect
     scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
     others = {event for event in EVENTS if DECLARED[event].kind != "wall"}
     expected = dict.fromkeys(others, 1) | {"right_wall": right, "top_wall": top}
-    assert {event: scene.copies(event) for event in EVENTS} == expected
+    assert {event: scene.multiplicity(event) for event in EVENTS} == expected
 
 
 def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():

@@ -50,7 +50,7 @@ def test_single_precision_has_the_exact_rates_where_there_is_room(radius):
         if not scene.is_possible(event):
             assert counts[e] == 0
         elif double[e] >= 1000:
-            expected = scene.copies(event) / exact.mean_times(scene)[event] * duration
+            expected = scene.multiplicity(event) / exact.mean_times(scene)[event] * duration
             expected *= blocks * ensemble.REPLICAS
             assert abs(counts[e] / expected - 1) < 5 * noise[e], event
     assert 1e-8 < energy < 1e-5

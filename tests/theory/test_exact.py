@@ -92,9 +92,9 @@ def test_share_of_discs_that_are_almost_level(radius):
         volume = reference(scene)["volume"]
         for distance in (1e-3 * radius, radius, 1.4 * radius):
             upright = 2 * Profile(a, sigma).weighted(b, min(mpf(distance), b), 2) / volume
-            found = exact.share_near(scene, "vertical_hop", distance)
+            found = exact.fraction_near(scene, "vertical_hop", distance)
             assert relative_error(found, upright) < BOUND
-            turned = exact.share_near(Scene(*PAPER[::-1], radius), "horizontal_hop", distance)
+            turned = exact.fraction_near(Scene(*PAPER[::-1], radius), "horizontal_hop", distance)
             assert turned == pytest.approx(found, rel=BOUND)
 
 

@@ -267,16 +267,16 @@ def sums_of_others(counts, products=None, replicas=None):
     all replicas decide. Of events that are related in this way the last one in the order of
     ``EVENTS`` is named: any_wall where right_wall and top_wall count all that symmetry makes equal.
     """
-    found = set()
+    derived = set()
     for event in reversed(EVENTS):
-        rest = [e for e in EVENTS if e != event and e not in found and counts.get(e)]
+        rest = [e for e in EVENTS if e != event and e not in derived and counts.get(e)]
         terms = chain.from_iterable(combinations(rest, n) for n in range(1, len(rest) + 1))
         for some in terms if counts.get(event) else ():
             if sum(counts[e] for e in some) == counts[event]:
                 weights = {e: -1 if e in some else 1 for e in EVENTS if e in (*some, event)}
                 if not products or combination(weights, counts, products, replicas).stderr == 0:
-                    found.add(event)
-    return found
+                    derived.add(event)
+    return derived
 
 
 def sum_rule(scene, duration, replicas, counts, products):
@@ -290,7 +290,7 @@ def sum_rule(scene, duration, replicas, counts, products):
     if weights is None:
         raise InputError(f"scene must have a sum rule, but has {', '.join(scene.effects)}")
     duration = real("duration", duration)
-    rates = {e: scene.share(e) / scene.copies(e) / duration for e in weights}
+    rates = {e: scene.share(e) / scene.multiplicity(e) / duration for e in weights}
     return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)
 
 

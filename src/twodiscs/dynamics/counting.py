@@ -74,7 +74,7 @@ def facing(position, side, gravity):
     return position * side > 0.0
 
 
-# Of a wall everything counts that ``Scene.copies`` does.
+# Of a wall everything counts that ``Scene.multiplicity`` does.
 
 
 def _wall_seen(event):
@@ -280,11 +280,11 @@ def run_blocks(
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
     # Four pairs of a disc and a wall along each of two axes are all there are.
-    complete = scene.alike and not scene.field and scene.walled == ("x", "y")
+    complete = scene.identical and not scene.field and scene.walled == ("x", "y")
     rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        sides, scene.alike or None, hops, walls, rest, octaves,
+        sides, scene.identical or None, hops, walls, rest, octaves,
     )  # fmt: skip
 
 
@@ -365,7 +365,7 @@ class CountingRun:
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
         replicas = (
-            relative_variance(exact.rate(scene, event) * scene.copies(event) * duration)
+            relative_variance(exact.rate(scene, event) * scene.multiplicity(event) * duration)
             / self.target[event] ** 2
             for event in self._waited
         )
@@ -432,7 +432,7 @@ def work_per_event(scene):
 def _proposals(scene):
     """Return the proposals of starts for each event, with effects; without, they are few."""
     events = exact.event_rate(scene) * replica_duration(scene)
-    return 1 / exact.free_share(scene) / events if scene.has_effects else 0.0
+    return 1 / exact.free_fraction(scene) / events if scene.has_effects else 0.0
 
 
 def relative_variance(count):

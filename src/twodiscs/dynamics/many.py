@@ -214,7 +214,7 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
     codes, speeds = np.zeros(lanes), np.zeros(lanes)
     counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    one = np.zeros(N, np.int64)
+    count = np.zeros(N, np.int64)
     block, used, running = first, replicas, 0
     while True:
         for l in range(lanes):
@@ -222,12 +222,12 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
                 continue
             if busy[l]:
                 for e in range(N):
-                    one[e] = np.int64(counts[e, l])
+                    count[e] = np.int64(counts[e, l])
                     counts[e, l] = 0.0
                 for e in range(N):
-                    sums[e] += one[e]
+                    sums[e] += count[e]
                     for f in range(e, N):
-                        products[e, f] += one[e] * one[f]
+                        products[e, f] += count[e] * count[f]
                 busy[l] = False
                 running -= 1
             if used == replicas and block < stop:

@@ -92,7 +92,7 @@ def strip_around(scene, hop, time):
     if scene.field:
         # That high up there is less energy left, in the strip that is wide enough in any case.
         within *= math.sqrt(neck_of(scene, hop, within).most)
-    return Strip(time, within, exact.share_near(scene, hop, within))
+    return Strip(time, within, exact.fraction_near(scene, hop, within))
 
 
 def _fill(scene, hop, strip):
@@ -138,7 +138,7 @@ def strip_of(scene, hop):
 def fractions_of(scene, hop, strip):
     """Return the exact shares of the strata of starts, by |Δ| and by |Δ̇| (``PARTS``, m)."""
     ends = [strip.within * part / PARTS for part in range(1, PARTS + 1)]
-    near = [exact.share_near(scene, hop, end) for end in ends]
+    near = [exact.fraction_near(scene, hop, end) for end in ends]
     distances = np.diff([0.0, *near]) / near[-1]
     return np.outer(distances, fractions_of_speeds(scene.velocity_components))
 
@@ -159,7 +159,7 @@ def rare_hops(scene):
     """Return the hops that are counted from strips: those that are rare because of a neck.
 
     But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
-    whole (``exact.LEAST_SHARE``). They are waited for like everything else, mostly in vain.
+    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain.
     """
     return tuple(
         hop
@@ -167,7 +167,7 @@ def rare_hops(scene):
         if scene.is_possible(hop)
         and exact.event_rate(scene) > RARE * exact.rate(scene, hop)
         and _fill(scene, hop, strip_around(scene, hop, widest(scene, hop))) < NO_NECK
-        and acceptance(scene, hop, strip_of(scene, hop)) >= exact.LEAST_SHARE
+        and acceptance(scene, hop, strip_of(scene, hop)) >= exact.MIN_FRACTION
     )
 
 

@@ -111,10 +111,10 @@ class Box:
         for _ in range(60):
             middle = (low + high) / 2
             try:
-                found = holds(self.scene(middle))
+                fits = holds(self.scene(middle))
             except InputError:
-                found = False
-            low, high = (middle, high) if found else (low, middle)
+                fits = False
+            low, high = (middle, high) if fits else (low, middle)
         return high
 
     def threshold(self, event):
@@ -145,5 +145,5 @@ class Box:
 
         Those of h/4 and w/4 that fit, where there are no effects.
         """
-        found = {self.threshold(hop) for hop in HOPS if hop in self.tiny.events}
-        return tuple(sorted(radius for radius in found if radius < self.last_radius))
+        limits = {self.threshold(hop) for hop in HOPS if hop in self.tiny.events}
+        return tuple(sorted(radius for radius in limits if radius < self.last_radius))

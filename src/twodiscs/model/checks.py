@@ -46,14 +46,14 @@ def number(name, value, low, high, kind="number"):
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise InputError(f"{name} must be a positive {kind}, not {shown(value)}")
     try:
-        found = float(value)
+        number = float(value)
     except (ValueError, OverflowError):
         raise InputError(f"{name} must be a positive {kind}, not {shown(value)}") from None
-    if not math.isfinite(found) or found <= 0:
-        raise InputError(f"{name} must be a positive, finite {kind}, not {found!r}")
-    if not low <= found <= high:
-        raise InputError(f"{name} must lie between {low!r} and {high!r}, not {found!r}")
-    return found
+    if not math.isfinite(number) or number <= 0:
+        raise InputError(f"{name} must be a positive, finite {kind}, not {number!r}")
+    if not low <= number <= high:
+        raise InputError(f"{name} must lie between {low!r} and {high!r}, not {number!r}")
+    return number
 
 
 def length(name, value):
@@ -101,7 +101,7 @@ def ascending(name, values):
     """Return ``values`` as floats; raise ``InputError`` unless they are ascending lengths."""
     if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
         raise InputError(f"{name} must be a sequence of numbers, not {shown(values)}")
-    found = [length(name, value) for value in values]
-    if not found or sorted(set(found)) != found:
-        raise InputError(f"{name} must ascend, and there must be some, not {shown(found)}")
-    return found
+    lengths = [length(name, value) for value in values]
+    if not lengths or sorted(set(lengths)) != lengths:
+        raise InputError(f"{name} must ascend, and there must be some, not {shown(lengths)}")
+    return lengths

@@ -65,11 +65,11 @@ def by_kind(where, makers, events=EVENTS):
     ``makers`` maps kinds to functions. Raises ``TypeError`` with a sentence that names the kind of
     which ``where``, a file of this package, says nothing.
     """
-    found = {}
+    places = {}
     for name in events:
         event = DECLARED[name]
         if event.kind not in makers:
             known = ", ".join(makers)
             raise TypeError(f"{where} knows events of kind {known}, not {event.kind} as {name} is")
-        found[name] = makers[event.kind](event)
-    return found
+        places[name] = makers[event.kind](event)
+    return places

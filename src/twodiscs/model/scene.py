@@ -378,7 +378,7 @@ class Scene:
         return self._confined("x"), self._confined("y")
 
     @cached_property
-    def alike(self):
+    def identical(self):
         """Whether the discs are equal, so that they may be exchanged."""
         return self.radius_ratio == self.mass_ratio == 1
 
@@ -387,21 +387,21 @@ class Scene:
 
         That is 1/2 for a wall that disc 1 reaches from its own side of disc 2 only, else 1.
         """
-        found = DECLARED[event]
-        return 0.5 if found.kind == "wall" and self.confined["xy".index(found.axis)] else 1.0
+        declared = DECLARED[event]
+        return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
 
-    def copies(self, event):
+    def multiplicity(self, event):
         """Return the mean count of ``event`` in one mean time, with all that is equal to it.
 
         Mirror images and equal discs leave four of the pairs of a disc and a wall that have one
         rate, two of them within the reach of a trajectory where the discs keep their sides. A field
         has no mirror image along y. It is 1 for everything but walls.
         """
-        found = DECLARED[event]
-        if found.kind != "wall":
+        declared = DECLARED[event]
+        if declared.kind != "wall":
             return 1
-        mirrored = found.axis == "x" or not self.field
-        return round((1 + mirrored) * (1 + self.alike) * self.share(event))
+        mirrored = declared.axis == "x" or not self.field
+        return round((1 + mirrored) * (1 + self.identical) * self.share(event))
 
     @cached_property
     def events(self):
@@ -417,10 +417,10 @@ class Scene:
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
         if one_of("event", event, EVENTS) not in self.events:
             return False
-        found = DECLARED[event]
-        if found.kind == "hop":
-            return found.axis in self._passed
-        if self.field and (found.axis, found.side) == ("y", +1):
+        declared = DECLARED[event]
+        if declared.kind == "hop":
+            return declared.axis in self._passed
+        if self.field and (declared.axis, declared.side) == ("y", +1):
             return self.field * (self.height - 2 * self.radius) < ENERGY
         return True
 

@@ -33,13 +33,13 @@ def imported(*modules, without=()):
     module of this package.
     """
     left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
-    found = set()
+    collected = set()
     while queue:
         name = queue.pop()
-        if name not in found | left_out:
-            found.add(name)
+        if name not in collected | left_out:
+            collected.add(name)
             queue += _imports(name)
-    return sorted(_file(name) for name in found)
+    return sorted(_file(name) for name in collected)
 
 
 def _parts(module):
@@ -129,15 +129,15 @@ def _imports(name):
     """
     path = _file(name)
     here = name if path.name == "__init__.py" else name[:-1]
-    found = {name[:depth] for depth in range(1, len(name))}
+    imported = {name[:depth] for depth in range(1, len(name))}
     for module, level, names in _read(path)[1]:
         base = _below_package(module)
         if level:
             base = here[: len(here) + 1 - level] + tuple(module.split(".") if module else ())
         targets = [] if base is None else [base, *((*base, name) for name in names)]
         for target in filter(None, targets):
-            found.update(target[:depth] for depth in range(1, len(target) + 1))
-    return [target for target in found if _file(target) is not None]
+            imported.update(target[:depth] for depth in range(1, len(target) + 1))
+    return [target for target in imported if _file(target) is not None]
 
 
 def _below_package(dotted):

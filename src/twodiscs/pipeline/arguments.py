@@ -48,13 +48,13 @@ def _no_number(text):
 
 def named(texts, what):
     """Return {name: value} of arguments NAME=VALUE; raise ``InputError`` for another form."""
-    found = {}
+    words = {}
     for text in texts:
         name, mark, value = text.partition("=")
         if not mark or not name or not value:
             raise InputError(f"{what} must be given as NAME=VALUE, not {text!r}")
-        found[name] = value
-    return found
+        words[name] = value
+    return words
 
 
 def number(text):
@@ -70,10 +70,10 @@ def whole_number(text):
     try:
         return int(text)
     except ValueError:
-        found = number(text)
-    if not found.is_integer():
+        value = number(text)
+    if not value.is_integer():
         raise argparse.ArgumentTypeError(f"must be an integer, not {text!r}")
-    return int(found)
+    return int(value)
 
 
 def assignment(text):
@@ -128,7 +128,7 @@ def words(given):
 def word(value):
     """Return the text of a value, a list or a dict of values as an argument."""
     if isinstance(value, dict):
-        return " ".join(f"{name}={one!r}" for name, one in value.items())
+        return " ".join(f"{name}={item!r}" for name, item in value.items())
     return " ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
 
 

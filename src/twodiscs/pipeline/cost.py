@@ -42,7 +42,7 @@ def events(scene, stage, radius):
     total, times, rare = exact.event_rate(here), exact.mean_times(here), rare_hops(here)
     strips = sum(STRIP / scene.target[hop] ** 2 for hop in rare if hop in scene.target)
     others = (
-        CLUSTER * total * times[event] / here.copies(event) / error**2
+        CLUSTER * total * times[event] / here.multiplicity(event) / error**2
         for event, error in scene.target.items()
         if times[event] is not None and event not in rare
     )
@@ -96,22 +96,22 @@ def days(scenes):
 
     Theory is asked only where the budgets alone allow for a day, and at some of many radii.
     """
-    found = 0.0
+    total = 0.0
     for scene in scenes:
         for stage, keys in scene.keys.items():
-            found += len(keys) * _seconds(scene, stage, _most(scene, stage)) / DAY
-            if found > 1:
+            total += len(keys) * _seconds(scene, stage, _most(scene, stage)) / DAY
+            if total > 1:
                 return sum(_days(scene) for scene in scenes)
-    return found
+    return total
 
 
 def _days(scene):
-    found = 0.0
+    total = 0.0
     for stage, keys in scene.keys.items():
         some = [*keys.values()][:: -(-len(keys) // SOME) or 1]
         taken = sum(seconds(scene, stage, radius) for radius in some)
-        found += taken * len(keys) / max(1, len(some)) / DAY
-    return found
+        total += taken * len(keys) / max(1, len(some)) / DAY
+    return total
 
 
 def run_of(scene, stage, radius):

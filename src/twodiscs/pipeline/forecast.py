@@ -91,15 +91,15 @@ def run_pilots(jobs, cores):
 
 def starts():
     """Return {kind: seconds} that jobs take beside their work."""
-    found = {}
+    seconds = {}
     with tempfile.TemporaryDirectory() as folder:
         for kind, words in NOTHING.items():
             command = [sys.executable, "-m", *words.format(folder).split()]
             for _ in range(2):  # the first time something may be compiled
                 start = time.perf_counter()
                 subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-                found[kind] = time.perf_counter() - start
-    return found
+                seconds[kind] = time.perf_counter() - start
+    return seconds
 
 
 def thinned(radii):
@@ -126,11 +126,11 @@ def row(scene, stage, cores, jobs, events=None, seconds=0.0, startup=0.0, radius
 
 def summed(scene, stage, cores, rows):
     """Return the row that is the sum of ``rows``."""
-    events = [one["events"] for one in rows if one["events"] is not None]
+    events = [part["events"] for part in rows if part["events"] is not None]
     return row(
-        scene, stage, cores, sum(one["jobs"] for one in rows),
+        scene, stage, cores, sum(part["jobs"] for part in rows),
         sum(events) if events else None,
-        sum(one["seconds"] for one in rows), sum(one["startup"] for one in rows),
+        sum(part["seconds"] for part in rows), sum(part["startup"] for part in rows),
     )  # fmt: skip
 
 
@@ -161,16 +161,16 @@ def rows(configuration, cores):
     Raises ``InputError`` for another number of them.
     """
     cores, started = whole("cores", cores), starts()
-    found, sums = [], []
+    forecast, sums = [], []
     for scene in configuration.scenes:
-        found += scene_rows(scene, cores, started)
-        sums.append(found[-1])
+        forecast += scene_rows(scene, cores, started)
+        sums.append(forecast[-1])
     shared = [row("all", "compile", cores, 1, startup=COMPILATION)]
     for name in configuration.shared:
         study = STUDIES.get(name)
         seconds = cost.study_seconds(study, configuration) if study else DOCUMENTS[name]
         shared.append(row("all", name, cores, 1, startup=seconds))
-    return [*found, *shared, summed("all", "total", cores, [*sums, *shared])]
+    return [*forecast, *shared, summed("all", "total", cores, [*sums, *shared])]
 
 
 def duration(seconds):
@@ -203,9 +203,9 @@ def main():
     parser.add_argument("--cores", required=True, type=int, help="how many jobs run at once")
     parser.add_argument("--output", required=True, type=Path, help="forecast.csv")
     options = parser.parse_args()
-    found = rows(load(parameters(options.configuration)), options.cores)
-    Forecast.write(options.output, found)
-    print("\n".join(sentences(found)))
+    forecast = rows(load(parameters(options.configuration)), options.cores)
+    Forecast.write(options.output, forecast)
+    print("\n".join(sentences(forecast)))
 
 
 if __name__ == "__main__":

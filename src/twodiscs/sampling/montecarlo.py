@@ -560,7 +560,7 @@ def plan(scene, samples):
     in_blocks = -(-whole("samples", samples) // BLOCK) * BLOCK
     if a_scene(scene).has_effects:
         return weighted, in_blocks
-    if exact.free_share(scene) >= 1 / COST_RATIO:
+    if exact.free_fraction(scene) >= 1 / COST_RATIO:
         return in_prism, in_blocks
     return conditioned, -(-samples // (COST_RATIO * PROPOSALS)) * PROPOSALS
 

@@ -46,10 +46,10 @@ def require_room(scene):
 
 def require_free_fraction(scene):
     """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place."""
-    if scene.has_effects and (fraction := exact.free_share(scene)) < exact.LEAST_SHARE:
+    if scene.has_effects and (fraction := exact.free_fraction(scene)) < exact.MIN_FRACTION:
         raise InputError(
             f"radius {scene.radius!r} leaves the discs {fraction:.1g} of the prism of all places, "
-            f"and a scene with effects needs more room, {exact.LEAST_SHARE:g} of it"
+            f"and a scene with effects needs more room, {exact.MIN_FRACTION:g} of it"
         )
 
 

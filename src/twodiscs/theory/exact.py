@@ -16,7 +16,7 @@ from twodiscs.theory import plain
 
 #: The least share of the prism, in which both centres keep to their ranges, that must be free of
 #: overlaps in a scene with effects: starts are drawn from the prism by rejection.
-LEAST_SHARE = 1e-4
+MIN_FRACTION = 1e-4
 
 #: Times that discs may leave their periodic cell between two events before that counts as work.
 PASSES_PER_EVENT = 64
@@ -141,7 +141,7 @@ def exact(scene):
     }
 
 
-def free_share(scene):
+def free_fraction(scene):
     """Return the share of the prism in which the discs are free, weighted in a field."""
     ranges = (
         scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
@@ -151,7 +151,7 @@ def free_share(scene):
     return volume(scene) / math.prod(ranges)
 
 
-def share_near(scene, hop, distance):
+def fraction_near(scene, hop, distance):
     """Return the share of configuration space where the discs are almost level along a hop's axis.
 
     That is the probability, in the invariant measure, of a separation of at most ``distance`` along

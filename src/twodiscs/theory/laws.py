@@ -78,17 +78,17 @@ def small_radius_time(box, event, radius=0.0):
     w, h, r = box.width, box.height, 0.0
     if isinstance(radius, bool) or radius != 0:
         r = box.scene(radius).radius
-    found = DECLARED[one_of("event", event, EVENTS)]
+    declared = DECLARED[one_of("event", event, EVENTS)]
     # The side along the axis of the event, and the other one.
-    along, across = (w, h) if found.axis == "x" else (h, w)
+    along, across = (w, h) if declared.axis == "x" else (h, w)
     one_sided = 1.5 * math.pi
-    if found.kind == "collision":
+    if declared.kind == "collision":
         if r == 0:
             return math.inf
         return 3 / (8 * math.sqrt(2)) * (w * h / r - (2 - 4 / math.pi) * (w + h))
-    if found.kind == "hop":
+    if declared.kind == "hop":
         return one_sided / math.sqrt(8) * (along + (4 * along / across - 2) * r)
-    if found.kind == "wall":
+    if declared.kind == "wall":
         return one_sided * (along - 2 * r)
     return one_sided / 4 * (w * h - 2 * r * (w * w + h * h) / (w + h)) / (w + h)
 
@@ -103,12 +103,12 @@ def threshold_time(scene, event):
     that is not a plain ``Scene`` or one of ``EVENTS``.
     """
     w, h, r = a_plain_scene(scene).width, scene.height, scene.radius
-    found = DECLARED[one_of("event", event, EVENTS)]
+    declared = DECLARED[one_of("event", event, EVENTS)]
     if not scene.is_possible(event):
         return None
     one_sided = 1.5 * math.pi
-    if found.kind == "hop":
-        along, across = (w, h) if found.axis == "y" else (h, w)
+    if declared.kind == "hop":
+        along, across = (w, h) if declared.axis == "y" else (h, w)
         arc = Arc.of(Scene(along, across, r))
         if along >= 2 * across:  # open to the end
             return one_sided / math.sqrt(8) * arc.range_y
@@ -133,8 +133,8 @@ def threshold_time(scene, event):
         collision = root * left / (math.sqrt(8) * (w + h - root))
         walls = {long: root * left / (2 * last_x), short: root * left / (2 * last_y)}
         any_wall = root * left / (4 * (last_x + last_y))
-    times = {"collision": collision, "wall": walls.get(found.axis), "walls": any_wall}
-    return one_sided * times[found.kind]
+    times = {"collision": collision, "wall": walls.get(declared.axis), "walls": any_wall}
+    return one_sided * times[declared.kind]
 
 
 class Law(NamedTuple):

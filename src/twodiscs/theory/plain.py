@@ -185,8 +185,8 @@ def shell_expectation(scene, event, epsilon):
 
     ``event`` is one of ``SHELLS``, ``epsilon`` a length up to the radius.
     """
-    arc, found = Arc.of(scene), DECLARED[event]
-    if found.kind == "collision":
+    arc, declared = Arc.of(scene), DECLARED[event]
+    if declared.kind == "collision":
         return _collision_shell(arc, epsilon)
-    shell, upright = (_hop_shell, "y") if found.kind == "hop" else (_wall_shell, "x")
-    return shell(arc if found.axis == upright else arc.turned(), epsilon)
+    shell, upright = (_hop_shell, "y") if declared.kind == "hop" else (_wall_shell, "x")
+    return shell(arc if declared.axis == upright else arc.turned(), epsilon)

@@ -183,10 +183,10 @@ def _branch(upper, lower, power, farthest=None):
     )
 
 
-def _walled(one, two, power, farthest=None):
+def _walled(first, second, power, farthest=None):
     """Return {``Branch``: how often} of an axis between walls, from the two ``Interval``s."""
-    found = (_branch(one, two, power, farthest), _branch(two, one, power, farthest))
-    return Counter(branch for branch in found if branch)
+    branches = (_branch(first, second, power, farthest), _branch(second, first, power, farthest))
+    return Counter(branch for branch in branches if branch)
 
 
 def _periodic(side, farthest=None):
@@ -380,10 +380,10 @@ class _Space:
 
 def _walls(scene, event):
     """Return the (axis, disc, whether the far wall) that count for the wall ``event``."""
-    found = DECLARED[event]
-    if found.kind == "walls":
+    declared = DECLARED[event]
+    if declared.kind == "walls":
         return list(product(scene.walled, (0, 1), (False, True)))
-    return [(found.axis, 0, found.side > 0)]
+    return [(declared.axis, 0, declared.side > 0)]
 
 
 def _area(space, event):

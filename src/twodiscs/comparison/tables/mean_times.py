@@ -114,7 +114,7 @@ def _row(scene, event, point, exact, strip=None):
     else:
         count, squares, status = strip["count"], strip["squares"], strip["status"]
         mean = mean_of(**strip["strata"])
-    replicas, duration, copies = strip["replicas"], strip["duration"], scene.copies(event)
+    replicas, duration, copies = strip["replicas"], strip["duration"], scene.multiplicity(event)
     # So long a time would see as many, were starts anywhere, and each wall its own event.
     whole = duration * copies / strip["share"]
     estimate = bound = None

@@ -19,7 +19,7 @@ from twodiscs.pipeline.configuration.reading import ConfigError, shown
 from twodiscs.pipeline.configuration.request import Configuration, SceneRequest, Watch
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
-from twodiscs.theory.exact import LEAST_SHARE, events_per_interval, free_share
+from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 
 #: Relative standard errors of the mean times, by name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
@@ -55,8 +55,8 @@ def load(mapping):
     try:
         return _load(mapping)
     except ConfigError as error:
-        place = re.match(r"scenes\[(\d+)\](?!\.name)", str(error))
-        block = mapping["scenes"][int(place[1])] if place else None
+        match = re.match(r"scenes\[(\d+)\](?!\.name)", str(error))
+        block = mapping["scenes"][int(match[1])] if match else None
         name = block.get("name") if isinstance(block, Mapping) else None
         raise ConfigError(f"{error} (scene {shown(name)})" if name else str(error)) from None
 
@@ -66,7 +66,7 @@ def check_results(results, home):
     node, path = schema()["properties"]["results"], Path(results).resolve()
     home = Path(home).resolve()
     inside = path.is_relative_to(home)
-    a_file = any(place.exists() and not place.is_dir() for place in (path, *path.parents))
+    a_file = any(folder.exists() and not folder.is_dir() for folder in (path, *path.parents))
     if a_file or (inside and not re.match(node["pattern"], path.relative_to(home).as_posix())):
         raise ConfigError(f"results must be {node['allowed']}, not {results!r}")
 
@@ -88,15 +88,16 @@ def _load(mapping):
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
     shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
-    found = Configuration(
+    configuration = Configuration(
         settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
     )
-    if "stability" in shared and not all(LOW <= side <= HIGH for side in found.main.box.sides):
+    main = configuration.main
+    if "stability" in shared and not all(LOW <= side <= HIGH for side in main.box.sides):
         raise ConfigError(
-            f"shared must leave out 'stability' unless the sides of the scene {found.main.name!r} "
+            f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
             f"lie between {LOW:g} and {HIGH:g}, for it goes far below them"
         )
-    return found
+    return configuration
 
 
 def _settled(value, node, path):
@@ -169,8 +170,8 @@ def _fill_defaults(value, node):
 
 def _scene(block, path, common):
     box = _box(block, path)
-    found = _radii(block["radii"], box, f"{path}.radii")
-    scene = box.scene(found[0])
+    radii = _radii(block["radii"], box, f"{path}.radii")
+    scene = box.scene(radii[0])
     watched = block.get("watch")
     if watched is None:
         watched = dict.fromkeys(Watch.__dataclass_fields__, True)
@@ -189,7 +190,7 @@ def _scene(block, path, common):
         raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
     if watch.mean_times:
         try:
-            box.scene(found[-1]).require_followable()
+            box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
     for radius in watch.hop_histogram:
@@ -207,7 +208,7 @@ def _scene(block, path, common):
     return SceneRequest(
         name=block["name"],
         box=box,
-        radii=found,
+        radii=radii,
         watch=watch,
         monte_carlo=block["monte_carlo"],
         dynamics={
@@ -281,14 +282,14 @@ def _histogram(asked, box, scene, path):
         )
     threshold = box.threshold(event)
     default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
-    found = _checked(asked.get("radii", default), box, path)
-    for radius in found:
+    radii = _checked(asked.get("radii", default), box, path)
+    for radius in radii:
         if not box.scene(radius).is_possible(event):
             raise ConfigError(
                 f"{path} must keep to radii below {threshold!r}, where {event} is possible, "
                 f"not {radius!r}"
             )
-    return {**asked, "radii": found, "event": event}
+    return {**asked, "radii": radii, "event": event}
 
 
 def _trajectory(asked, box, scene, path):
@@ -318,23 +319,23 @@ def _events(asked, scene, path):
     return tuple(event for event in EVENTS if event in asked)
 
 
-def _checked(found, box, path):
+def _checked(radii, box, path):
     """Return radii as an ascending tuple if all of them fit and none appears twice."""
     seen = set()
-    for radius in found:
+    for radius in radii:
         try:
             scene = box.scene(radius)
         except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
-        if scene.has_effects and (share := free_share(scene)) < LEAST_SHARE:
+        if scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
             raise ConfigError(
                 f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
-                f"places, and a scene with effects needs more room, {LEAST_SHARE:g} of it"
+                f"places, and a scene with effects needs more room, {MIN_FRACTION:g} of it"
             )
         if radius in seen:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
         seen.add(radius)
-    return tuple(sorted(found))
+    return tuple(sorted(radii))
 
 
 def _shared(asked, all_have_effects):

@@ -21,11 +21,11 @@ DOCUMENTS = ("paper", "report")
 def schema():
     """Return the schema of the configuration."""
     text = Path(__file__).with_name("schema.yaml").read_text(encoding="utf-8")
-    found = yaml.safe_load(text)
-    definitions = found["$defs"]
+    schema = yaml.safe_load(text)
+    definitions = schema["$defs"]
     _choice(definitions["event"], EVENTS)
 
-    top = found["properties"]
+    top = schema["properties"]
     studies = [study.name for study in STUDIES.values() if study.shared]
     once = (*studies, *DOCUMENTS)
     _choice(top["shared"]["items"], once)
@@ -36,11 +36,11 @@ def schema():
     scene = top["scenes"]["items"]["properties"]
     _choice(scene["watch"]["properties"]["hop_histogram"]["properties"]["event"], HOPS)
     for name, effect in EFFECTS.items():
-        place = scene["box" if effect.of_box else "effects"]["properties"]
-        place[name] = _effect(effect) | place.pop(name, {})
+        properties = scene["box" if effect.of_box else "effects"]["properties"]
+        properties[name] = _effect(effect) | properties.pop(name, {})
     scene["accuracy"]["properties"] |= dict.fromkeys(EVENTS, definitions["event_precision"])
-    _fill(found)
-    return found
+    _fill(schema)
+    return schema
 
 
 def _choice(node, names):
@@ -102,10 +102,10 @@ def _section(node, path):
         lines.append(
             f"| `{key}` | {child['description']} | {child['allowed']} | {unit} | {default} |"
         )
-        place = f"{path}.{key}".lstrip(".")
+        key_path = f"{path}.{key}".lstrip(".")
         for inner, suffix in ((child, ""), (child.get("items", {}), "[]")):
             if "properties" in inner:
-                below += _section(inner, place + suffix)
+                below += _section(inner, key_path + suffix)
     return lines + below
 
 

@@ -91,7 +91,7 @@ def crate_of(files, texts, citation, made):
         "author": authors if len(authors) > 1 else authors[0],
         "license": add(licence, "CreativeWork", citation["license"], url=licence),
     }
-    found = files_of(files.items())
+    described_files = files_of(files.items())
     (main, text), *parts = texts.items()
     changed = " with changes" if made["changed_since_the_commit"] else ""
     properties = {
@@ -115,7 +115,7 @@ def crate_of(files, texts, citation, made):
         "actionStatus": "http://schema.org/CompletedActionStatus",
     }
     given = crate.get("configuration.json")
-    results = [one for one in found if one is not given]
+    results = [entity for entity in described_files if entity is not given]
     root = {
         **shared,
         "name": f"Results of {citation['title']}",
@@ -123,12 +123,12 @@ def crate_of(files, texts, citation, made):
         "datePublished": made["last_file"],
         "keywords": ", ".join(citation["keywords"]),
         "conformsTo": [
-            add(f"https://w3id.org/{place}", "CreativeWork", name, version=Path(place).name)
-            for place, name in PROFILES.items()
+            add(f"https://w3id.org/{address}", "CreativeWork", name, version=Path(address).name)
+            for address, name in PROFILES.items()
         ],
         "citation": [
-            add(f"https://doi.org/{one['doi']}", "ScholarlyArticle", one["title"])
-            for one in citation["references"]
+            add(f"https://doi.org/{entity['doi']}", "ScholarlyArticle", entity["title"])
+            for entity in citation["references"]
         ],
         "mentions": crate.add_action(workflow, "#build", given, results, build),
     }

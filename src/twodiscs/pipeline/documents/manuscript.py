@@ -30,16 +30,16 @@ def captions(results, scene):
 def printed(contents):
     """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
     scenes = contents["scenes"]
-    found = numbers(read(contents["results"], scenes), scenes)
+    values = numbers(read(contents["results"], scenes), scenes)
     constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
-    return found | {name: whole(value) for name, value in constants.items()}
+    return values | {name: whole(value) for name, value in constants.items()}
 
 
-def typeset(template, output, contents, found):
+def typeset(template, output, contents, values):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
-    "seed"; ``found`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
+    "seed"; ``values`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
     as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
     template, the ``versions``, and ``results``, their folder, as a path from the root that results
     and the project have in common. The same inputs at the same commit give the same bytes on every
@@ -54,7 +54,7 @@ def typeset(template, output, contents, found):
     contents = contents | {
         "captions": captions(results, contents["scenes"][0]),
         "commit": commit(folder),
-        "numbers": {name: number.text for name, number in found.items()},
+        "numbers": {name: number.text for name, number in values.items()},
         "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
         "versions": versions(),
     }
@@ -119,9 +119,9 @@ def main():
     boxes = {scene: sides(box) for scene, box in named(options.boxes, "boxes").items()}
     contents = contents_of(options.files, boxes, options.output)
     contents |= {"configuration": options.configuration, "seed": options.seed}
-    found = printed(contents)
-    PaperNumbers.write(options.numbers, table_rows(found))
-    typeset(options.template, options.output, contents, found)
+    values = printed(contents)
+    PaperNumbers.write(options.numbers, table_rows(values))
+    typeset(options.template, options.output, contents, values)
 
 
 if __name__ == "__main__":

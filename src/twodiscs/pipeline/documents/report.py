@@ -64,7 +64,7 @@ def figure(folder, path, scenes):
     """
     entry = ENTRIES[path.stem]
     scene = scenes.get(path.parts[0])
-    main = next((one for one in scenes.values() if not one["effects"]), None)
+    main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
     text = caption(entry, folder, about) if about else entry.full_caption()
     if scene:
@@ -89,10 +89,10 @@ def direct(feeds):
     """Return ``feeds`` without the arrows that a chain of others makes up for."""
 
     def reached(rule):
-        return {below for one in feeds[rule] for below in ({one} | reached(one))}
+        return {below for next_rule in feeds[rule] for below in ({next_rule} | reached(next_rule))}
 
     return {
-        rule: [one for one in below if not any(one in reached(o) for o in below)]
+        rule: [later for later in below if not any(later in reached(o) for o in below)]
         for rule, below in feeds.items()
     }
 
@@ -146,7 +146,7 @@ def contents(folder, files, scenes, dot, workflow):
     groups |= {name: [p for p in paths if p.parts[0] == name] for name in by_name}
     movies = [path for path in drawn if path.stem == "animation"]
     return {
-        "agreements": [found for scene in scenes if (found := agreement(folder, scene))],
+        "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "animation": figure(folder, movies[0], by_name) if movies else None,
         "commit": commit(Path(__file__).parent),
         "figures": [figure(folder, path, by_name) for path in key_figures(drawn)],

@@ -24,12 +24,12 @@ class Tables(dict):
 
 def read_tables(texts):
     """Return {name: rows} of arguments NAME=CSV; the stem of a file says which table it is."""
-    found = Tables()
+    tables = Tables()
     for name, path in named(texts, "--tables").items():
         if (table := Path(path).stem) not in TABLES:
             raise InputError(f"{path} must be one of the tables {', '.join(TABLES)}")
-        found[name] = TABLES[table].read(path)
-    return found
+        tables[name] = TABLES[table].read(path)
+    return tables
 
 
 def main():

@@ -27,13 +27,13 @@ def measured(results, scene):
 
     A point in shards took what all of them did. ``results`` is the folder of all results.
     """
-    found = {}
+    points = {}
     for path in Path(results, "benchmarks", scene).glob("*/*.tsv"):
         stage, radius = path.parent.name, float(path.stem.split("_")[0])
         with open(path, encoding="utf-8", newline="") as file:
             seconds = sum(float(row["s"]) for row in csv.DictReader(file, delimiter="\t"))
-        found[stage, radius] = found.get((stage, radius), 0.0) + seconds
-    return found
+        points[stage, radius] = points.get((stage, radius), 0.0) + seconds
+    return points
 
 
 def forecast(results, scene):

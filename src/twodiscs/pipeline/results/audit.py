@@ -76,10 +76,10 @@ def of_tables(folder, scenes):
 
 def audit(folder, configuration):
     """Return (sentences on what is wrong below ``folder``, how many files were read)."""
-    found = [*of_manifest(folder / "manifest.sha256"), *of_points(folder)]
-    found += of_tables(folder, configuration.scenes)
-    wrong = dict.fromkeys(f"{file} {what}" for file, what in found if what)
-    return [*wrong], len({file for file, _ in found})
+    differences = [*of_manifest(folder / "manifest.sha256"), *of_points(folder)]
+    differences += of_tables(folder, configuration.scenes)
+    wrong = dict.fromkeys(f"{file} {what}" for file, what in differences if what)
+    return [*wrong], len({file for file, _ in differences})
 
 
 def main():

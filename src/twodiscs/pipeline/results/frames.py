@@ -18,13 +18,13 @@ def load(folder):
     """Return {name: ``DataFrame``} of the tables in a folder of results (see the face)."""
     if not isinstance(folder, str | Path):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
-    found, folder = {}, Path(folder)
+    frames, folder = {}, Path(folder)
     for path in sorted(folder.glob("*.csv")):
         if path.stem in TABLES:
-            found[path.stem] = read(path, TABLES[path.stem])
-    if not found:
+            frames[path.stem] = read(path, TABLES[path.stem])
+    if not frames:
         raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
-    return found
+    return frames
 
 
 def read(path, table):

@@ -29,14 +29,14 @@ def spent(folder):
         raise InputError(f"{folder} must be a folder of results, with benchmarks/*.tsv in it")
     kinds = [p.parent.name if p.stem[0].isdigit() else p.stem.split("-")[0] for p in paths]
     # A job that is over before anything is measured has "NA" there.
-    found = pandas.concat(
+    spent = pandas.concat(
         [
             pandas.read_csv(path, sep="\t").assign(kind=kind)
             for path, kind in zip(paths, kinds, strict=True)
         ]
     )
-    found = found.rename(columns={theirs: ours for ours, theirs in COLUMNS.items()})
-    kinds = found.groupby("kind")
+    spent = spent.rename(columns={theirs: ours for ours, theirs in COLUMNS.items()})
+    kinds = spent.groupby("kind")
     table = kinds[["seconds", "processor"]].sum().assign(memory=kinds["memory"].max())
     table.insert(0, "jobs", kinds.size())
     return table.sort_values("seconds", ascending=False)

@@ -100,12 +100,12 @@ def table_cells(table, rows):
     sheet, seen = {}, Counter()
     for row in rows:
         radius = row.get("radius")
-        place = "" if radius is None else f"radius {radius!r}"
+        part = "" if radius is None else f"radius {radius!r}"
         words = [row[column] for column in naming if row.get(column)]
-        seen[place, *words] += 1
-        if not words or seen[place, *words] > 1:
-            words.append(f"row {seen[place, *words]}")
-        cells = sheet.setdefault(place, {})
+        seen[part, *words] += 1
+        if not words or seen[part, *words] > 1:
+            words.append(f"row {seen[part, *words]}")
+        cells = sheet.setdefault(part, {})
         for column, value in row.items():
             if column != "radius" and column not in naming:
                 name = " ".join((*words, column))
@@ -132,40 +132,40 @@ def read_points(folder):
 # Comparison -----------------------------------------------------------------------------------
 
 
-def _same(found, expected):
-    if found.value == expected.value:
+def _same(observed, expected):
+    if observed.value == expected.value:
         return True
-    numbers = isinstance(found.value, float) and isinstance(expected.value, float)
-    return numbers and abs(found.value - expected.value) <= expected.tolerance
+    numbers = isinstance(observed.value, float) and isinstance(expected.value, float)
+    return numbers and abs(observed.value - expected.value) <= expected.tolerance
 
 
-def _difference(name, found, expected):
+def _difference(name, observed, expected):
     """Return what is to be said of one cell, None where there is nothing."""
-    if found is None:
+    if observed is None:
         return f"{name} is missing"
     if expected is None:
         return f"{name} is not expected"
-    if _same(found, expected):
+    if _same(observed, expected):
         return None
-    return f"{name} is {found.value!r}, expected {expected.value!r}"
+    return f"{name} is {observed.value!r}, expected {expected.value!r}"
 
 
-def compare(where, found, expected):
-    """Return a sentence for each place at which the sheet ``found`` is not the ``expected`` one.
+def compare(where, observed, expected):
+    """Return a sentence for each place at which the sheet ``observed`` is not the ``expected`` one.
 
     ``where`` is the name of the sheet. A sentence tells the first difference and how many more
     there are. Missing and additional places and cells are differences.
     """
     sentences = []
-    for place in {**expected, **found}:
-        here = f"{where}, {place}" if place else where
-        if place not in found:
+    for part in {**expected, **observed}:
+        here = f"{where}, {part}" if part else where
+        if part not in observed:
             sentences.append(f"{here}: missing")
-        elif place not in expected:
+        elif part not in expected:
             sentences.append(f"{here}: not expected")
         else:
-            names = {**expected[place], **found[place]}
-            told = (_difference(n, found[place].get(n), expected[place].get(n)) for n in names)
+            names = {**expected[part], **observed[part]}
+            told = (_difference(n, observed[part].get(n), expected[part].get(n)) for n in names)
             told = list(filter(None, told))
             if told:
                 more = f", and {len(told) - 1} more" if len(told) > 1 else ""
@@ -173,13 +173,13 @@ def compare(where, found, expected):
     return sentences
 
 
-def other_configuration(found, expected):
-    """Return what distinguishes the mapping ``found`` from the ``expected`` one, "" if nothing.
+def other_configuration(observed, expected):
+    """Return what distinguishes the mapping ``observed`` from the ``expected`` one, "" if nothing.
 
     Both are configurations as ``load`` takes them, and compared after all defaults are
     filled in; only what the compared results depend on counts.
     """
-    here, there = load(found), load(expected)
+    here, there = load(observed), load(expected)
     for name in ("results", "seed"):
         if getattr(here, name) != getattr(there, name):
             return f"{name} is {getattr(here, name)!r}, not {getattr(there, name)!r}"
@@ -212,17 +212,17 @@ def verify(results, expected):
             table = name.stem
             sheet = table_cells(table, TABLES[table].read(there))
             compared["tables"] += 1
-        cells = [cell.value for place in sheet.values() for cell in place.values()]
+        cells = [cell.value for part in sheet.values() for cell in part.values()]
         compared["integers"] += sum(type(value) is int for value in cells)
         compared["floats"] += sum(type(value) is float for value in cells)
         if not here.exists():
             sentences.append(f"{name}: missing")
             continue
         if here.is_dir():
-            found = _points_sheet(read_points(here))
+            observed = _points_sheet(read_points(here))
         else:
-            found = table_cells(table, thinned(table, TABLES[table].read(here)))
-        sentences += compare(name, found, sheet)
+            observed = table_cells(table, thinned(table, TABLES[table].read(here)))
+        sentences += compare(name, observed, sheet)
     return sentences, compared
 
 
@@ -245,11 +245,11 @@ def write(results, expected, configuration):
         for method in STAGES:
             folder = results / scene.name / "points" / method
             if keys := scene.keys[method]:
-                found = read_points(folder)
-                missing = [key for key in keys if key not in found]
+                observed = read_points(folder)
+                missing = [key for key in keys if key not in observed]
                 if missing:
                     raise InputError(f"{folder} must have a point at {missing[0]}, but has none")
-                points[f"{scene.name}/points/{method}.json"] = {key: found[key] for key in keys}
+                points[f"{scene.name}/points/{method}.json"] = {key: observed[key] for key in keys}
 
     for old in (*expected.rglob("*.csv"), *expected.rglob("*.json")):
         old.unlink()

@@ -142,11 +142,11 @@ def joined(run, parts):
     for part in parts:
         if part["first"] != stop:
             break
-        sums = _added(sums, (np.array(one, object) for one in part["sums"]))
+        sums = _added(sums, (np.array(entry, object) for entry in part["sums"]))
         stop = part["stop"]
     else:
         if stop == run.planned:
-            sums = [_narrow(one) for one in sums]
+            sums = [_narrow(entry) for entry in sums]
             return Progress(sums, stop, 1, run.excess_of(sums, stop))
     given = ", ".join(f"{part['first']} to {part['stop']}" for part in parts) or "none"
     raise InputError(

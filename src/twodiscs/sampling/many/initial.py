@@ -339,6 +339,6 @@ def states(gas, number, seed, block=0, by=None):
 
     They are the first ones of the stream of ``seed`` for ``block``.
     """
-    found = np.zeros((4 * gas.discs, number))
-    draw_states(open_stream(np.uint64(seed), block), initial_of(gas, by), found)
-    return found
+    states = np.zeros((4 * gas.discs, number))
+    draw_states(open_stream(np.uint64(seed), block), initial_of(gas, by), states)
+    return states

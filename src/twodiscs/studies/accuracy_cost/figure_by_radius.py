@@ -72,7 +72,7 @@ def _prediction(box, event, counts):
     radii = np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
     scenes = [box.scene(radius) for radius in radii]
     total = [event_rate(scene) for scene in scenes]
-    times = [mean_times(scene)[event] / scene.copies(event) for scene in scenes]
+    times = [mean_times(scene)[event] / scene.multiplicity(event) for scene in scenes]
     return radii, np.array(total) * np.array(times) / counts
 
 

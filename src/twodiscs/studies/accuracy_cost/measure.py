@@ -256,7 +256,7 @@ def times(scene, events, counts, replicas, duration):
     """Return {quantity: mean time} from ``counts`` of ``events`` in ``replicas``."""
     with np.errstate(divide="ignore"):
         return {
-            f"{event}_time": float(scene.copies(event) * duration * replicas / np.float64(n))
+            f"{event}_time": float(scene.multiplicity(event) * duration * replicas / np.float64(n))
             for event, n in zip(events, counts, strict=True)
         }
 
@@ -483,7 +483,7 @@ def predicted_events(scene, event, error=TARGET):
 
     If ``event`` came as by a Poisson process, error⁻² of them would be needed; all else is exact.
     """
-    time = exact.mean_times(scene)[event] / scene.copies(event)
+    time = exact.mean_times(scene)[event] / scene.multiplicity(event)
     return exact.event_rate(scene) * time / error**2
 
 
@@ -493,9 +493,9 @@ def strip_rows(scene, blocks):
         near = strip.strip_of(scene, hop)
         strip.run_blocks(scene, hop, near, 0, 0, 1)
         start = time.process_time()
-        found, events = strip.run_blocks(scene, hop, near, 1, 0, blocks)
+        sums, events = strip.run_blocks(scene, hop, near, 1, 0, blocks)
         seconds = time.process_time() - start
-        more = (strip.relative_error(strip.fractions_of(scene, hop, near), found) / TARGET) ** 2
+        more = (strip.relative_error(strip.fractions_of(scene, hop, near), sums) / TARGET) ** 2
         yield row(
             "radius", f"{hop}_time", scene.radius, "strip",
             setting=near.time, work=round(events * more), seconds=seconds * more, error=TARGET,

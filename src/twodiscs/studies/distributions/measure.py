@@ -67,11 +67,11 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
     5). Intervals are added to ``histogram`` (int64, bins of ``width``, a power of two, from 0; the
     last entry takes what is longer).
     """
-    found = np.zeros((stop - first, 5))
+    rows = np.zeros((stop - first, 5))
     half_x, half_y = draw.half_x, draw.half_y
     per_width, last_bin = 1.0 / width, histogram.size - 1
     for block in range(first, stop):
-        state, sums = open_stream(seed, block), found[block - first]
+        state, sums = open_stream(seed, block), rows[block - first]
         for _ in range(intervals):
             x1, y1, x2, y2, u1, v1, u2, v2 = draw_crossing(state, half_x, half_y, draw.beyond_x)
             # The disc that gets above the other one is called the first.
@@ -91,7 +91,7 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
             sums[4] += min(time, cut)
         sums[:3] /= intervals
         sums[3:] /= passages
-    return found
+    return rows
 
 
 # What counts tell ------------------------------------------------------------------------------

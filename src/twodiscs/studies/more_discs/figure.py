@@ -19,8 +19,8 @@ def draw(box, tables):
     rows = [row for row in tables["more_discs"] if row["event"] != "virial"]
     radii = sorted({row["radius"] for row in rows})
     figure = new_figure(panels.BOTTOM + len(radii) * (PANEL + GAP) + TOP)
-    for place, radius in enumerate(reversed(radii)):
-        axes = panels.add_panel(figure, panels.BOTTOM + place * (PANEL + GAP), PANEL)
+    for index, radius in enumerate(reversed(radii)):
+        axes = panels.add_panel(figure, panels.BOTTOM + index * (PANEL + GAP), PANEL)
         for event, (colour, marker) in LOOKS.items():
             own = [
                 row for row in rows
@@ -37,17 +37,17 @@ def draw(box, tables):
             axes.errorbar(
                 numbers, [row["dynamics"] for row in own],
                 [row["dynamics_stderr"] for row in own], ls="", elinewidth=0.6,
-                label=name_of(event) if place == len(radii) - 1 else None,
+                label=name_of(event) if index == len(radii) - 1 else None,
                 **panels.open_symbol(colour, marker),
             )  # fmt: skip
         axes.set(xscale="log", yscale="log", ylabel=f"mean time, $r={radius:g}$")
         axes.set_xticks([2, 3, 4, 8], ["2", "3", "4", "8"])
         axes.minorticks_off()
-        if place:
+        if index:
             axes.tick_params(labelbottom=False)
         else:
             axes.set_xlabel("number of discs $N$")
-        if place == len(radii) - 1:
+        if index == len(radii) - 1:
             # Room for the names above all symbols.
             axes.set_ylim(top=60 * axes.get_ylim()[1])
             axes.legend(loc="upper right", ncols=2)

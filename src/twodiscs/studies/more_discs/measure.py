@@ -32,9 +32,9 @@ def dynamics_rates(gas, events, seed):
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
     weights = np.array([virial_weights(gas).get(event, 0.0) for event in CLASSES])
-    found = dict(zip(CLASSES, (sums / replicas / duration).tolist(), strict=True))
+    rates = dict(zip(CLASSES, (sums / replicas / duration).tolist(), strict=True))
     errors = dict(zip(CLASSES, np.sqrt(np.diag(covariance)).tolist(), strict=True))
-    return found, errors, math.sqrt(weights @ covariance @ weights)
+    return rates, errors, math.sqrt(weights @ covariance @ weights)
 
 
 def _time(gas, event, rate, error=0.0):

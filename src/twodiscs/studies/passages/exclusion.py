@@ -35,7 +35,7 @@ def exchange(seed, first, stop, sites, swap, times):
     It is that of all particles at the ascending ``times``, (stop − first, times). ``sites`` is a
     power of two.
     """
-    found = np.zeros((stop - first, times.size))
+    squares = np.zeros((stop - first, times.size))
     mask = np.uint64(sites - 1)
     for ring in range(first, stop):
         state = open_stream(seed, ring)
@@ -63,8 +63,8 @@ def exchange(seed, first, stop, sites, swap, times):
                 if b >= 0:
                     moved[b] -= 1
             done = np.int64(times[k] * sites)
-            found[ring - first, k] = np.sum(moved * moved) / moved.size
-    return found
+            squares[ring - first, k] = np.sum(moved * moved) / moved.size
+    return squares
 
 
 def displacements(swap, times, rings, seed):

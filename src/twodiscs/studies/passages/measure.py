@@ -55,8 +55,8 @@ SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
 
 def thresholds(box):
     """Return {hop: radius} at which hops of a plain ``Box`` become blocked before it is full."""
-    found = {hop: box.threshold(hop) for hop in HOPS}
-    return {hop: radius for hop, radius in found.items() if radius in box.thresholds}
+    limits = {hop: box.threshold(hop) for hop in HOPS}
+    return {hop: radius for hop, radius in limits.items() if radius in box.thresholds}
 
 
 def radius_at(limit, halvings):
@@ -67,8 +67,8 @@ def radius_at(limit, halvings):
 def blocks_for(scene, distance, time, events):
     """Return how many blocks of hops, followed for a ``time``, take about so many ``events``."""
     factor, power = MET[scene.moment_of_inertia is not None]
-    one = time * exact.event_rate(scene) + factor / distance**power
-    return int(min(max(events / one, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
+    price = time * exact.event_rate(scene) + factor / distance**power
+    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
 
 
 class _Hop:
@@ -137,9 +137,9 @@ class _Hop:
                 own.append(estimate)
             else:
                 yield self.said("correlation", "hops", estimate, time)
-        found = plateau(own[0], gap, self.mean)
-        if found and kappa:
-            yield self.said("plateau", "hops", found, gap, kappa, events)
+        flat = plateau(own[0], gap, self.mean)
+        if flat and kappa:
+            yield self.said("plateau", "hops", flat, gap, kappa, events)
 
     def slope(self, blocks):
         """Yield the row of −dκ/dt at 0⁺ against its exact value 2 p(0⁺), for plain scenes.
@@ -154,11 +154,11 @@ class _Hop:
         for n in (1, 2):
             sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
             parts.append(by_time(sums)[0])
-        one, two = parts
-        value = (4 * (1 - one.value) - (1 - two.value)) / (2 * time)
-        error = math.hypot(4 * one.stderr, two.stderr) / (2 * time)
-        found = Estimate(value, error, one.n + two.n)
-        yield self.said("slope", "hops", found, time, 2 * density)
+        half, whole = parts
+        value = (4 * (1 - half.value) - (1 - whole.value)) / (2 * time)
+        error = math.hypot(4 * half.stderr, whole.stderr) / (2 * time)
+        curvature = Estimate(value, error, half.n + whole.n)
+        yield self.said("slope", "hops", curvature, time, 2 * density)
 
     def diffusion(self, events):
         """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
@@ -187,40 +187,40 @@ def near_threshold(name, box, hop, halvings, inertia, events, seed):
     ``inertia`` is that of rough discs, None for smooth ones; ``events`` are about how many wall and
     disc events an estimate of κ may take.
     """
-    limit, found = thresholds(box)[hop], []
+    limit, measured = thresholds(box)[hop], []
     effects = {} if inertia is None else {"moment_of_inertia": inertia}
     for n in halvings:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
-        one, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
+        near, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
         blocks = blocks_for(scene, 2.0**-n, both, events)
-        kappa, rows = one.clusters(blocks)
+        kappa, rows = near.clusters(blocks)
         yield from rows
-        yield from one.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
+        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
         if inertia is None:
-            yield from one.slope(MOST_HOPS // REPLICAS)
+            yield from near.slope(MOST_HOPS // REPLICAS)
         if kappa:
-            found.append((one, kappa))
-    yield from _exponents(found)
+            measured.append((near, kappa))
+    yield from _exponents(measured)
 
 
-def _exponents(found):
+def _exponents(measured):
     """Yield the rows of exponents: of κ or 1 − κ between distances, of the time between passages.
 
-    ``found`` are pairs (``_Hop``, κ), the distance halved from one to the next.
+    ``measured`` are pairs (``_Hop``, κ), the distance halved from one to the next.
     """
-    for (_, before), (one, kappa) in pairwise(found):
-        rough = one.scene.moment_of_inertia is not None
+    for (_, before), (near, kappa) in pairwise(measured):
+        rough = near.scene.moment_of_inertia is not None
         values = [(k.value if rough else 1 - k.value) for k in (before, kappa)]
         if min(values) <= 0:
             continue
         errors = [k.stderr / v for k, v in zip((before, kappa), values, strict=True)]
         slope = Estimate(math.log2(values[0] / values[1]), math.hypot(*errors) / math.log(2), 2)
-        yield one.said("exponent", "fit", slope)
-    if len(found) > 2:
-        x = [-one.halvings * math.log(2) for one, _ in found]
-        y = [math.log(one.mean / kappa.value) for one, kappa in found]
-        errors = [kappa.stderr / kappa.value for _, kappa in found]
-        yield found[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
+        yield near.said("exponent", "fit", slope)
+    if len(measured) > 2:
+        x = [-near.halvings * math.log(2) for near, _ in measured]
+        y = [math.log(near.mean / kappa.value) for near, kappa in measured]
+        errors = [kappa.stderr / kappa.value for _, kappa in measured]
+        yield measured[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
 def on_ring(name, box, inertia, events, seed):
@@ -249,10 +249,10 @@ def on_lattice(seed):
     for number, swap in enumerate(SWAPS, 1):
         time = exclusion.run_time(swap)
         rings = RINGS if time > LONG else MORE_RINGS
-        found = exclusion.diffusion(swap, rings, seed + number)
+        diffusion = exclusion.diffusion(swap, rings, seed + number)
         free = exclusion.DENSITY if swap == 1 else None
         rate = {"exact_mean": 1 / (2 * exclusion.DENSITY * swap), "time": time}
-        yield said("diffusion", swap, found, free, **rate)
+        yield said("diffusion", swap, diffusion, free, **rate)
 
 
 def rows(scenes, events, seed):
@@ -263,14 +263,14 @@ def rows(scenes, events, seed):
     may take. Every estimate has random streams of its own, derived from the ``seed``.
     """
     whole("seed", seed, 0), whole("events", events)
-    for place, (name, parameters) in enumerate(scenes.items()):
+    for index, (name, parameters) in enumerate(scenes.items()):
         box = Box(**parameters)
         limits = thresholds(box)
         for hop in limits:
             yield from near_threshold(name, box, hop, SMOOTH, None, events, seed)
-            for inertia in INERTIAS if place == 0 and hop == [*limits][-1] else (ONE_INERTIA,):
+            for inertia in INERTIAS if index == 0 and hop == [*limits][-1] else (ONE_INERTIA,):
                 yield from near_threshold(name, box, hop, ROUGH, inertia, events, seed)
-        if place == 0 and box.fits(box.height / 4):
+        if index == 0 and box.fits(box.height / 4):
             for inertia in (None, ONE_INERTIA):
                 yield from on_ring(name, box, inertia, events, seed)
     yield from on_lattice(seed)

@@ -627,7 +627,9 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
                     status="too-few",
                 )  # fmt: skip
                 continue
-            intervals = [estimates.mean_time(*m, scene.copies(event) * duration) for m in moments]
+            intervals = [
+                estimates.mean_time(*m, scene.multiplicity(event) * duration) for m in moments
+            ]
             covered = sum(i is not None and i.covers(times[event]) for i in intervals)
             yield row(
                 "coverage", event, "ordinary", covered / repetitions, radius=radius,

@@ -64,7 +64,7 @@ def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
     A block has ``samples`` starts in each of ``strata`` strata; ``times`` ascend. The result has
     the shape (stop − first, times), in 1/time.
     """
-    found = np.zeros((stop - first, times.size))
+    rows = np.zeros((stop - first, times.size))
     sums = np.zeros(times.size)
     for block in range(first, stop):
         state = open_stream(seed, block)
@@ -83,9 +83,9 @@ def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
                     sums[i] += 1.0 / interval
             weight = 2.0 * (largest - least) / samples
             for i in range(times.size):
-                found[block - first, i] += weight * sums[i]
+                rows[block - first, i] += weight * sums[i]
             largest = least
-    return found
+    return rows
 
 
 @compiled

@@ -223,7 +223,7 @@ def _inverses(channel, p, hops):
 
 def _levels(channel, kinds, vectors, logs):
     """Return Σ over i < j of ∫ T^(i−1)1 T^(j−i)(y, y) T^(N−j)1 dy."""
-    n, found = channel.discs, 0.0
+    n, total = channel.discs, 0.0
     for sign in (1, -1):
         # Even and odd functions about the middle have half of the diagonal each, on both sides.
         kernel = _folded(channel, kinds * np.array([1, sign])[:, None, None])
@@ -232,12 +232,12 @@ def _levels(channel, kinds, vectors, logs):
             diagonal = np.diag(walk) / channel.weights
             i = np.arange(n - k)
             part = np.einsum("ki,i,ki->k", vectors[i], diagonal, vectors[n - 1 - k - i])
-            found += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
+            total += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
             if k < n - 1:
                 walk = walk @ kernel
                 size = np.max(np.abs(walk))
                 walk, log = walk / size, log + math.log(size)
-    return found
+    return total
 
 
 def measures(gas, hops=True, tail=TAIL):

@@ -53,14 +53,14 @@ def rates(gas, measures):
     For a ``Gas``. Hops that are None there have no entry.
     """
     c = constant(gas.velocity_components)
-    found = {
+    rates = {
         "vertical_hop": measures.hops_y and math.sqrt(2) * c * measures.hops_y,
         "horizontal_hop": measures.hops_x and math.sqrt(2) * c * measures.hops_x,
         "disc_collision": c / math.sqrt(2) * measures.per_contact,
         "right_wall": c * measures.per_width,
         "top_wall": c * measures.per_height,
     }
-    return {event: rate for event, rate in found.items() if rate is not None}
+    return {event: rate for event, rate in rates.items() if rate is not None}
 
 
 def virial_weights(gas):
@@ -79,9 +79,9 @@ def virial_weights(gas):
     }
 
 
-def virial_sum(gas, found):
+def virial_sum(gas, rates):
     """Return what the virial theorem says is 1, from {class of events: rate} of a ``Gas``."""
-    return math.fsum(weight * found[event] for event, weight in virial_weights(gas).items())
+    return math.fsum(weight * rates[event] for event, weight in virial_weights(gas).items())
 
 
 # Small discs --------------------------------------------------------------------------------------

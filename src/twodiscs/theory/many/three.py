@@ -48,7 +48,7 @@ def _root(square):
 def _ends(a, b, sigma):
     """Return the ascending sums of gaps, 0 and B among them, at which two kinks in P meet."""
     level = _root(sigma**2 - a * a)  # where q is A
-    found = [
+    values = [
         sigma, 2 * sigma, math.sqrt(0.75) * sigma,
         _root(4 * sigma**2 - a * a),  # p + q reaches A at P = Q
         _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, as q + c does
@@ -57,8 +57,8 @@ def _ends(a, b, sigma):
     ]  # fmt: skip
     if a < sigma:
         # p + c = q = A.
-        found.append(sigma * math.sin(math.acos(a / sigma) + math.pi / 3))
-    return [0.0, *sorted({end for end in found if 0.0 < end < b}), b]
+        values.append(sigma * math.sin(math.acos(a / sigma) + math.pi / 3))
+    return [0.0, *sorted({end for end in values if 0.0 < end < b}), b]
 
 
 def _sums(a, b, sigma):

@@ -255,10 +255,10 @@ def mean_time(event, q):
 
     Where a hop is blocked, disc 1 reaches a given wall in one of two parts that mirror each other.
     """
-    found = DECLARED[event]
-    blocked = horizontal_hop_area if found.axis == "x" else vertical_hop_area
-    parts = 2 if found.kind == "wall" and blocked(q) == 0 else 1
-    return volume(q) / (parts * found.sides * AREAS[event](q) * normal_speed())
+    declared = DECLARED[event]
+    blocked = horizontal_hop_area if declared.axis == "x" else vertical_hop_area
+    parts = 2 if declared.kind == "wall" and blocked(q) == 0 else 1
+    return volume(q) / (parts * declared.sides * AREAS[event](q) * normal_speed())
 
 
 #: What tables call it, as a function of a ``MpScene``.

@@ -41,8 +41,8 @@ def _faster(rows, method, other):
 
 def floors(rows, quantity):
     """Return pairs of a setting and the error that no work removes, settings ascending."""
-    found = _only(rows, part="floor", quantity=quantity)
-    return sorted((row["setting"], row["error"]) for row in found)
+    floor = _only(rows, part="floor", quantity=quantity)
+    return sorted((row["setting"], row["error"]) for row in floor)
 
 
 def accuracy_cost(rows):

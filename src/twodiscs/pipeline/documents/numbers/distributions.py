@@ -49,13 +49,13 @@ def densities(rows, histogram):
     compared = [
         row for row in rows if row["quantity"] == "density_at_zero" and row["z"] is not None
     ]
-    found = sorted(scores(compared))
+    scored = sorted(scores(compared))
     numbers = {
-        "densities": whole(len(found)),
-        "densities_largest": at_most(found),
-        "densities_others": at_most(found[:-1]),
+        "densities": whole(len(scored)),
+        "densities_largest": at_most(scored),
+        "densities_others": at_most(scored[:-1]),
     }
-    for row in [row for row in compared if abs(row["z"]) == found[-1]][:1]:
+    for row in [row for row in compared if abs(row["z"]) == scored[-1]][:1]:
         same = {name: row[name] for name in ("scene", "event", "radius")} | {"bins": "equal"}
         bins = [other for other in histogram if same.items() <= other.items()][:2]
         numbers |= {

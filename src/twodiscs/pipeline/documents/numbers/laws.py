@@ -102,14 +102,14 @@ def powers_table(rows, scene, check):
 
 def _not_sums(rows):
     """Return those rows of mean times whose count is not the sum of others' counts."""
-    found = []
+    kept = []
     for _, some in groupby(rows, key=lambda row: (row["scene"], row["radius"])):
         of_event = {row["quantity"].removesuffix("_time"): row for row in some}
         summed = sums_of_others(
             {e: row["count"] for e, row in of_event.items() if row["starts"] == "invariant"}
         )
-        found += [row for event, row in of_event.items() if event not in summed]
-    return found
+        kept += [row for event, row in of_event.items() if event not in summed]
+    return kept
 
 
 def effects(rows):
@@ -190,10 +190,10 @@ def formulas(text):
 def _formula(text):
     text = text.replace("−", "-")
     text = re.sub(r"√(\d)", r" sqrt(\1)", text).replace("√", " sqrt")
-    text = re.sub("[²³⁴]", lambda found: "^" + str("  ²³⁴".index(found[0])), text)
+    text = re.sub("[²³⁴]", lambda match: "^" + str("  ²³⁴".index(match[0])), text)
 
-    def letters(found):
-        word = found[0]
+    def letters(match):
+        word = match[0]
         return word if word in ("sqrt", "arcsin", "min", "max") else f" {' '.join(word)} "
 
     text = re.sub("[A-Za-z]+", letters, text).replace(" _", "_")

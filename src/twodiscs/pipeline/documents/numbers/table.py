@@ -84,9 +84,9 @@ def numbers(tables, scenes):
     return {name: number for name, number in prose.items() if number is not None}
 
 
-def table_rows(found):
-    """Return the rows of paper_numbers.csv for the numbers ``found``."""
+def table_rows(values):
+    """Return the rows of paper_numbers.csv for the numbers ``values``."""
     return [
         {"name": name, "value": None if value is None else float(value), "text": text or None}
-        for name, (value, text) in found.items()
+        for name, (value, text) in values.items()
     ]
