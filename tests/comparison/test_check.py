@@ -317,7 +317,7 @@ def bad(points, theory):
 
 
 def test_a_verdict_sums_up_what_passed(good):
-    failures, text = verdict.verdict({"good": good, "again": good})
+    failures, text = verdict.verdict({"good": good, "again": good}, {})
     assert failures == []
     largest = max(abs(row["z"]) for row in good)
     line = f"132 comparisons passed, 73 of them tests, largest |z| {largest:.3g}; "
@@ -328,7 +328,7 @@ def test_a_verdict_sums_up_what_passed(good):
 
 def test_a_verdict_says_what_could_not_be_compared(laws, theory):
     dynamics = laws[1].dynamics(np.random.default_rng(6), replicas=64, relative=1e-2)
-    failures, text = verdict.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)})
+    failures, text = verdict.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)}, {})
     assert failures == []
     assert text.startswith("scene: 6 comparisons passed, ")
     assert text.endswith("6 had too few events for an error, 1 more could not be compared\n")

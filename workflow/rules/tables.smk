@@ -52,6 +52,11 @@ rule check:
             for scene in CONFIGURED
             if "check" in SCENES[scene].tables
         ],
+        studies=[
+            FILES.table(study.tables[0].name())
+            for study in STUDIES.values()
+            if study.checked and study.name in CONFIGURATION.shared
+        ],
     output:
         passed=f"{RESULTS}/check.passed",
     log:
@@ -62,4 +67,5 @@ rule check:
     params:
         code=code("pipeline.results.verdict"),
     shell:
-        "python -m twodiscs.pipeline.results.verdict {input.tables} --output {output.passed} > {log} 2>&1"
+        "python -m twodiscs.pipeline.results.verdict {input.tables} --studies {input.studies}"
+        " --output {output.passed} > {log} 2>&1"

@@ -2,53 +2,91 @@
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import new_figure
+from twodiscs.figures.kit.style import BLACK, GREY, new_figure
 
-#: Inches: a panel for each radius, the gap between them, the room above.
-PANEL, GAP, TOP = 1.5, 0.1, 0.12
+#: Inches: a panel for each radius, the residuals, the gap between them, the room above.
+PANEL, RESIDUALS, GAP, TOP = 1.4, 0.8, 0.1, 0.12
 
 #: Times longer than this are not drawn: hops that all but never happen.
 LONGEST = 1e3
+
+#: Residuals of one number of discs stand side by side, from radius to radius.
+APART = 1.035
+
+DOTTED = (0, (1, 1.5))
 
 
 def draw(box, tables):
     """Draw more_discs.csv: exact values are lines and full, others dotted through Monte Carlo.
 
-    Open symbols are dynamics, with their standard errors.
+    Open symbols are dynamics, with their standard errors. Residuals are beneath.
     """
-    rows = [row for row in tables["more_discs"] if row["event"] != "virial"]
+    rows = tables["more_discs"]
     radii = sorted({row["radius"] for row in rows})
-    figure = new_figure(panels.BOTTOM + len(radii) * (PANEL + GAP) + TOP)
-    for index, radius in enumerate(reversed(radii)):
-        axes = panels.add_panel(figure, panels.BOTTOM + index * (PANEL + GAP), PANEL)
-        for event, (colour, marker) in LOOKS.items():
-            own = [
-                row for row in rows
-                if row["radius"] == radius and row["event"] == event and row["dynamics"]
-                and row["dynamics"] < LONGEST
-            ]  # fmt: skip
-            if not own:
-                continue
-            numbers = [row["discs"] for row in own]
-            expected = [row["exact"] or row["monte_carlo"] for row in own]
-            axes.plot(numbers, expected, color=colour, lw=0.7, ls=(0, (1, 1.5)))
-            known = [row for row in own if row["exact"]]
-            axes.plot([r["discs"] for r in known], [r["exact"] for r in known], color=colour)
-            axes.errorbar(
-                numbers, [row["dynamics"] for row in own],
-                [row["dynamics_stderr"] for row in own], ls="", elinewidth=0.6,
-                label=name_of(event) if index == len(radii) - 1 else None,
-                **panels.open_symbol(colour, marker),
-            )  # fmt: skip
-        axes.set(xscale="log", yscale="log", ylabel=f"mean time, $r={radius:g}$")
-        axes.set_xticks([2, 3, 4, 8], ["2", "3", "4", "8"])
+    bottom = panels.BOTTOM + RESIDUALS + GAP
+    figure = new_figure(bottom + len(radii) * (PANEL + GAP) + TOP)
+    upper = [
+        panels.add_panel(figure, bottom + index * (PANEL + GAP), PANEL)
+        for index in reversed(range(len(radii)))
+    ]
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS)
+    for name, axes, radius in zip("abcdefgh", upper, radii, strict=False):
+        _times(axes, [row for row in rows if row["radius"] == radius])
+        axes.set(yscale="log", ylabel=f"mean time, $r={radius:g}$")
+        axes.tick_params(labelbottom=False)
+        panels.letter(axes, name)
+    _legend(upper[0])
+    _residuals(lower, rows, radii)
+    panels.letter(lower, "abcdefgh"[len(radii)])
+    lower.set_xlabel(r"number of discs $N$, in a box of $0.75\,N\times 1$")
+    numbers = sorted({row["discs"] for row in rows})
+    for axes in (*upper, lower):
+        axes.set(xscale="log", xlim=(numbers[0] / 1.15, numbers[-1] * 1.15))
+        axes.set_xticks(numbers, [str(number) for number in numbers])
         axes.minorticks_off()
-        if index:
-            axes.tick_params(labelbottom=False)
-        else:
-            axes.set_xlabel("number of discs $N$")
-        if index == len(radii) - 1:
-            # Room for the names above all symbols.
-            axes.set_ylim(top=60 * axes.get_ylim()[1])
-            axes.legend(loc="upper right", ncols=2)
     return figure
+
+
+def _times(axes, rows):
+    for event, (colour, marker) in LOOKS.items():
+        own = [
+            row for row in rows
+            if row["event"] == event and row["dynamics"] and row["dynamics"] < LONGEST
+        ]  # fmt: skip
+        if not own:
+            continue
+        numbers = [row["discs"] for row in own]
+        expected = [row["exact"] or row["monte_carlo"] for row in own]
+        axes.plot(numbers, expected, color=colour, lw=0.7, ls=DOTTED)
+        known = [row for row in own if row["exact"]]
+        axes.plot([r["discs"] for r in known], [r["exact"] for r in known], color=colour)
+        axes.errorbar(
+            numbers, [row["dynamics"] for row in own], [row["dynamics_stderr"] for row in own],
+            ls="", elinewidth=0.6, label=name_of(event), **panels.open_symbol(colour, marker),
+        )  # fmt: skip
+
+
+def _legend(axes):
+    axes.plot([], [], color=GREY, label="exact")
+    axes.plot([], [], color=GREY, lw=0.7, ls=DOTTED, label="Monte Carlo")
+    # Room for the names above all symbols.
+    axes.set_ylim(top=100 * axes.get_ylim()[1])
+    axes.legend(loc="upper right", ncols=2)
+
+
+def _residuals(axes, rows, radii):
+    for event, (colour, marker) in {**LOOKS, "virial": (BLACK, "x")}.items():
+        own = [row for row in rows if row["event"] == event and row["z"] is not None]
+        x = [r["discs"] * APART ** (radii.index(r["radius"]) - (len(radii) - 1) / 2) for r in own]
+        style = panels.open_symbol(colour, marker, 0.75) if marker != "x" else {
+            "color": colour, "marker": marker, "markersize": 3,
+        }  # fmt: skip
+        label = "virial theorem" if event == "virial" else None
+        axes.plot(x, [row["z"] for row in own], ls="", label=label, **style)
+    axes.axhline(0, color=GREY, lw=0.5, zorder=0)
+    for size, dashes in panels.GUIDES.items():
+        for z in (-size, size):
+            axes.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
+    axes.set(ylim=(-panels.LARGEST_RESIDUAL, 8.5), ylabel="residual $z$")
+    axes.set_yticks([-5, -2, 0, 2, 5])
+    axes.legend(loc="upper right", borderpad=0.1)

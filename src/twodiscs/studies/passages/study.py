@@ -47,5 +47,5 @@ STUDY = Study(
         ),
     },
     parameters=_parameters,
-    in_manuscript=False,
+    checked=True,
 )

@@ -4,7 +4,14 @@ from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
-from twodiscs.pipeline.documents.numbers import agreement, costs, distributions, laws
+from twodiscs.pipeline.documents.numbers import (
+    agreement,
+    costs,
+    distributions,
+    laws,
+    more_discs,
+    passages,
+)
 from twodiscs.pipeline.documents.numbers.rounding import Number
 from twodiscs.studies.catalogue import STUDY_TABLES
 
@@ -18,6 +25,8 @@ OF_STUDIES = (
     "distributions",
     "thresholds",
     "effects",
+    "passages",
+    "more_discs",
 )
 
 
@@ -68,6 +77,8 @@ def numbers(tables, scenes):
         **laws.powers(tables["thresholds"], main, tables["mean_times"]),
         **laws.effects(tables["effects"]),
         **laws.errata(tables["errata"]),
+        **passages.passages(tables["passages"], main),
+        **more_discs.more_discs(tables["more_discs"]),
         **costs.accuracy_cost(tables["accuracy_cost"]),
         **costs.stability(tables["stability"]),
     }
@@ -76,6 +87,7 @@ def numbers(tables, scenes):
         "rates": distributions.rates_table(tables["distributions"], main),
         "powers": laws.powers_table(tables["thresholds"], main, tables["check"]),
         "errata": laws.errata_table(tables["errata"]),
+        "more": more_discs.more_discs_table(tables["more_discs"]),
     }
     for table, rows in cells.items():
         for row, columns in rows.items():
