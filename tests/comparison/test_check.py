@@ -359,7 +359,7 @@ def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(laws, the
 
 
 def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):
-    failures, _ = verdict.verdict({"good": good, "bad": bad})
+    failures, _ = verdict.verdict({"good": good, "bad": bad}, {})
     wrong = [row for row in bad if row["passed"] is False]
     assert len(failures) == len(wrong) >= 2
     assert all(line.startswith("bad: ") and "top_wall_time" in line for line in failures)
@@ -372,4 +372,17 @@ def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad
     row = {**wrong[0], "radius": None, "comparison": "z_mean"}
     assert verdict.failure("bad", row).startswith(
         "bad: z_mean of top_wall_time over all radii by dynamics has z = "
+    )
+
+
+def test_studies_are_judged_by_their_scores():
+    """1000 scores: a bound of 4.9 or so."""
+    row = dict.fromkeys(("scene", "event", "radius", "z"))
+    rows = [row | {"radius": 0.1, "event": "vertical_hop", "z": z} for z in (*[0.5] * 998, -4.7)]
+    failures, text = verdict.verdict({}, {"passages": [*rows, row]})
+    assert (failures, text) == ([], "passages: 999 comparisons passed, largest |z| 4.7\n")
+    (failure,), _ = verdict.verdict({}, {"passages": [*rows, rows[0] | {"z": 5.1}]})
+    bound = scores.bonferroni_bound(1000, scores.FALSE_ALARM)
+    assert failure == (
+        f"passages: event vertical_hop, radius 0.1 has z = 5.1, beyond the bound {bound:.3g}"
     )

@@ -351,7 +351,7 @@ def test_what_is_built_once():
     assert load.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
     # The manuscript brings along what it reads.
     paper = load.load(PLAIN | {"shared": ["paper"]}).shared
-    left = {name for name, study in STUDIES.items() if not study.in_manuscript} | {"report"}
+    left = {name for name, study in STUDIES.items() if not study.shared} | {"report"}
     assert paper == tuple(name for name in known if name not in left)
     assert {"errata", "effects", "paper"} < {*paper}
     assert not [name for name, study in STUDIES.items() if study.shared != (name in known)]

@@ -16,6 +16,8 @@ from twodiscs.pipeline.documents.numbers import (
     costs,
     distributions,
     laws,
+    more_discs,
+    passages,
     rounding,
     table,
 )
@@ -610,6 +612,117 @@ def test_stability_quotes_the_worst_of_what_was_seen():
     }
 
 
+# Passages and more discs --------------------------------------------------------------------------
+
+
+def passage_rows(exponent=0.4):
+    """Return rows of two hops of a box, of which the horizontal one is blocked first."""
+
+    def row(quantity, distance, estimate, stderr, method="clusters", **values):
+        event = values.pop("event", "horizontal_hop")
+        limit = 0.375 if event == "vertical_hop" else 0.25
+        return {
+            "scene": "main", "event": event, "distance": distance, "quantity": quantity,
+            "radius": limit * (1 - distance), "method": method, "estimate": estimate,
+            "stderr": stderr,
+        } | values  # fmt: skip
+
+    distances = [2.0**-n for n in range(3, 10)]
+    smooth = [row("coefficient", d, 1 - d**exponent, 1e-3 * d**exponent) for d in distances]
+    return rows(
+        "passages",
+        *reversed(smooth),
+        row("coefficient", 0.125, 0.5, 0.01, event="vertical_hop"),
+        *(
+            row("coefficient", d, d**inertia, 1e-2 * d**inertia, moment_of_inertia=inertia)
+            for inertia in passages.INERTIAS.values()
+            for d in distances[-3:]
+        ),
+        row("passage_exponent", 0.01, -2.5, 0.02, "fit", moment_of_inertia=0.5),
+        row("passage_exponent", 0.01, -2.6, 0.02, "fit", moment_of_inertia=0.1),
+        *(
+            row("diffusion", d, 1 + d, 0.01, method, moment_of_inertia=inertia, z=z)
+            for inertia in (None, 0.5)
+            for d, z in ((0.125, 0.5), (0.0625, -1.55))
+            for method in ("hops", "states")
+        ),
+        {"quantity": "single_file", "method": "lattice", "swap": 0.0, "estimate": 1.1}
+        | {"stderr": 0.02},
+        {"quantity": "diffusion", "method": "lattice", "swap": 1.0, "estimate": 0.49}
+        | {"stderr": 0.004},
+        {"quantity": "diffusion", "method": "lattice", "swap": 0.01, "estimate": 1.02}
+        | {"stderr": 0.05},
+    )
+
+
+def test_passages_are_quoted_for_the_hop_that_is_blocked_first():
+    found = texts(passages.passages(passage_rows(), "main"))
+    assert found == {
+        "passages": "8",
+        "passages_largest": "$1.6$",
+        "passages_first_distance": "$2^(-3)$",
+        "passages_last_distance": "$2^(-9)$",
+        "passages_first": "$0.5647 (4)$",
+        "passages_last": "$0.91753 (8)$",
+        "passages_exponent": "$0.4000 (5)$",
+        "passages_rough_one": "$1.000 (10)$",
+        "passages_rough_half": "$0.500 (10)$",
+        "passages_rough_quarter": "$0.250 (10)$",
+        "passages_rough_tenth": "$0.100 (10)$",
+        "passages_rough_distance": "$2^(-9)$",
+        "passages_rough_half_power": "$-2.50 (2)$",
+        "passages_ring_smooth_first": "$1.125 (10)$",
+        "passages_ring_smooth_last": "$1.062 (10)$",
+        "passages_ring_rough_first": "$1.125 (10)$",
+        "passages_ring_rough_last": "$1.062 (10)$",
+        "passages_ring_first_distance": "$2^(-3)$",
+        "passages_ring_last_distance": "$2^(-4)$",
+        "passages_single_file": "$1.10 (2)$",
+        "passages_lattice_first": "$0.490 (4)$",
+        "passages_lattice_last": "$1.02 (5)$",
+        "passages_lattice_swap": "$0.01$",
+    }
+    assert texts(passages.passages(passage_rows(), "other")) == {
+        "passages": "8", "passages_largest": "$1.6$",
+    }  # fmt: skip
+    assert texts(passages.passages([], "main")) == {"passages": "0"}
+
+
+def gas_rows():
+    def row(discs, event, exact, dynamics, z, theory="three"):
+        return {
+            "discs": discs, "width": 0.75 * discs, "radius": 0.1, "theory": theory,
+            "event": event, "exact": exact, "dynamics": dynamics,
+            "dynamics_stderr": dynamics and dynamics / 1000, "z": z,
+        }  # fmt: skip
+
+    return rows(
+        "more_discs",
+        row(4, "vertical_hop", None, 0.25271, 1.0, "none"),
+        row(4, "virial", 1.0, 1.0003, 0.3, "none"),
+        row(3, "vertical_hop", 0.519907, 0.5195, -1.74),
+        row(3, "horizontal_hop", None, None, None),
+    )
+
+
+def test_more_discs_have_exact_times_where_there_are_any():
+    assert texts(more_discs.more_discs(gas_rows())) == {
+        "more_discs": "3", "more_discs_exact": "1", "more_discs_sums": "1",
+        "more_discs_largest": "$1.8$", "more_discs_most": "4", "more_discs_width": "$0.75$",
+    }  # fmt: skip
+    cells = more_discs.more_discs_table(gas_rows())
+    assert [texts(row) for row in cells.values()] == [
+        {"radius": "$0.1$", "discs": "3", "theory": "three", "vertical_hop": "$0.51991$",
+         "largest": "$1.8$"},
+        {"radius": "$0.1$", "discs": "4", "theory": "--", "vertical_hop": "$0.2527 (3)$",
+         "largest": "$1$"},
+    ]  # fmt: skip
+    assert cells["00"]["horizontal_hop"] is None
+    assert texts(more_discs.more_discs([])) == {
+        "more_discs": "0", "more_discs_exact": "0", "more_discs_sums": "0",
+    }  # fmt: skip
+
+
 # The table ----------------------------------------------------------------------------------------
 
 
@@ -667,6 +780,8 @@ def test_what_the_manuscript_prints_is_what_is_computed(tables):
         "errata": errata_rows(),
         "accuracy_cost": cost_rows(),
         "stability": stability_rows(),
+        "passages": passage_rows(),
+        "more_discs": gas_rows(),
     }
     found = table.numbers(tables, [BOX])
     constants = {"dearer", "intervals", "seed"}

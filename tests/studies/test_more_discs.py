@@ -38,10 +38,13 @@ def test_no_exact_value_is_not_impossible(rows):
     assert blocked["exact"] is blocked["dynamics"] is blocked["monte_carlo"] is None
 
 
-def test_the_figure_shows_each_event(rows):
+def test_the_figure_shows_each_event_and_all_residuals(rows):
     drawn = figure.draw(None, {"more_discs": rows})
-    top = drawn.axes[-1]
+    top, *_, lower = drawn.axes
     labels = {text.get_text() for text in top.get_legend().get_texts()}
     assert labels == {
+        "exact", "Monte Carlo",
         "vertical hops", "horizontal hops", "disc collisions", "right wall", "top wall",
     }  # fmt: skip
+    shown = [z for line in lower.lines if line.get_marker() != "None" for z in line.get_ydata()]
+    assert sorted(shown) == sorted(row["z"] for row in rows if row["z"] is not None)

@@ -145,7 +145,7 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
     made = {
         name: {f"{name}_table"} | ({"shared_figure"} if study.figures else set())
         for name, study in STUDIES.items()
-        if study.shared and study.in_manuscript
+        if study.shared
     }
     made["effects"] |= {"effects_cost"}
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}

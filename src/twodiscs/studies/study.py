@@ -17,9 +17,8 @@ class Study:
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
     tables hold seconds, so that they differ from run to run. One that is not ``shared`` is built
-    only when asked for, and the manuscript brings along those that are ``in_manuscript``. The
-    scores z in the first table of one that is ``checked`` are part of the check. Pages list studies
-    by their ``order``.
+    only when asked for; the manuscript brings along all others. The scores z in the first table of
+    one that is ``checked`` are part of the check. Pages list studies by their ``order``.
     """
 
     name: str
@@ -33,7 +32,6 @@ class Study:
     about_plain: bool = True
     timed: tuple = ()
     shared: bool = True
-    in_manuscript: bool = True
     checked: bool = False
 
 

@@ -78,7 +78,7 @@ class Files:
 
     def studied(self, kind):
         """Return all "tables", or "figures" as PDF, of the studies that the manuscript reads."""
-        read = [study for study in STUDIES.values() if study.shared and study.in_manuscript]
+        read = [study for study in STUDIES.values() if study.shared]
         if kind == "figures":
             return [f"{self.folder}/figures/{name}.pdf" for study in read for name in study.figures]
         return [self.table(table.name()) for study in read for table in study.tables]

@@ -351,8 +351,7 @@ def _shared(asked, all_have_effects):
                 f"shared must leave out {name!r} where every scene has effects, for it is about a "
                 "scene without them"
             )
-    read = [name for name in studies if STUDIES[name].in_manuscript]
-    wanted = {*asked, *(read if "paper" in asked else ())}
+    wanted = {*asked, *(studies if "paper" in asked else ())}
     return tuple(name for name in known if name in wanted)
 
 

@@ -23,11 +23,11 @@ def more_discs(rows):
         "more_discs_exact": whole(len(exact)),
         "more_discs_sums": whole(len(sums)),
         "more_discs_largest": at_most(scores(judged)),
-        "more_discs_sums_largest": at_most(scores(sums)),
-        "more_discs_error": at_most([row["dynamics_stderr"] / row["dynamics"] for row in judged]),
     }
     if judged:
-        numbers["more_discs_most"] = whole(max(row["discs"] for row in judged))
+        row = max(judged, key=lambda row: row["discs"])
+        numbers["more_discs_most"] = whole(row["discs"])
+        numbers["more_discs_width"] = significant(row["width"] / row["discs"], 3)
     return numbers
 
 

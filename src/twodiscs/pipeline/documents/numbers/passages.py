@@ -15,8 +15,9 @@ from twodiscs.pipeline.documents.numbers.rounding import (
 #: A power law is fitted to so many distances, each half of the one before: four octaves.
 LAST = 5
 
-#: Moments of inertia, in units of mr², by what the manuscript calls them.
-INERTIAS = {"one": 1.0, "half": 0.5, "quarter": 0.25, "tenth": 0.1}
+#: Moments of inertia, in units of mr², by what the manuscript calls them; one half are solid discs.
+HALF = 0.5
+INERTIAS = {"one": 1.0, "half": HALF, "quarter": 0.25, "tenth": 0.1}
 
 
 def _power_of_two(distance):
@@ -54,14 +55,14 @@ def passages(rows, scene):
     hop = min(boxed, key=lambda row: row["radius"] / (1 - row["distance"]))["event"]
 
     def of(quantity, inertia=None, method=None):
-        found = [
+        rows_of_hop = [
             row
             for row in boxed
             if (row["event"], row["quantity"]) == (hop, quantity)
             and row["moment_of_inertia"] == inertia
             and method in (None, row["method"])
         ]
-        return sorted(found, key=lambda row: -row["distance"])
+        return sorted(rows_of_hop, key=lambda row: -row["distance"])
 
     smooth = of("coefficient")
     if smooth:
@@ -78,14 +79,11 @@ def passages(rows, scene):
         if rough:
             numbers |= {
                 f"passages_rough_{name}": _slope(rough, lambda kappa: kappa),
-                f"passages_rough_{name}_last": _estimate(rough[-1]),
                 "passages_rough_distance": _power_of_two(rough[-1]["distance"]),
             }
-            numbers |= {
-                f"passages_rough_{name}_power": _estimate(row)
-                for row in of("passage_exponent", inertia)
-            }
-    for name, inertia in (("smooth", None), ("rough", 0.5)):
+    for row in of("passage_exponent", HALF):
+        numbers["passages_rough_half_power"] = _estimate(row)
+    for name, inertia in (("smooth", None), ("rough", HALF)):
         ring = of("diffusion", inertia, "hops")
         if ring:
             numbers |= {
