@@ -25,6 +25,8 @@ PANELS = {
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
     "price": ("accuracy_cost_by_radius", 0, ""),
+    "passages": ("passages", 1, ""),
+    "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
 
 #: Drawings that are shown whole.
