@@ -52,10 +52,21 @@ def test_report_holds_every_figure_and_table_and_asks_for_nothing_from_outside(c
 
 
 @pytest.mark.slow
-def test_another_run_on_one_core_gives_the_same_bytes(complete, tmp_path_factory):
+def test_on_one_core_and_by_snakemakes_other_memory_the_bytes_are_the_same(
+    complete, tmp_path_factory
+):
     again = fresh(tmp_path_factory.mktemp("again") / "checkout")
     tables = [f"results/six/{name}.csv" for name in ("grid", "areas", "mean_times", "trajectory")]
-    again.snakemake("--cores", "1", "check", "volume", "hop_histogram", *tables)
+    point = "results/six/points/dynamics/0.2.json"
+    words = ("--persistence-backend", "db", "check", "volume", "hop_histogram", point, *tables)
+    again.snakemake("--cores", "1", *words)
+    assert again.jobs(*words) == []
+    known = (again.path / point).read_bytes()
+    (again.path / point).unlink()
+    assert ("dynamics", ("scene=six", "radius=0.2")) in again.jobs(*words)
+    again.snakemake("--cores", "1", *words)
+    assert (again.path / point).read_bytes() == known
+    assert again.jobs(*words) == []
     first, second = complete.results(), again.results()
     names = {name for name in second if not any(mark in name for mark in TIMED)}
     assert {"check.passed", "six/check.csv", "six/figures/hop_histogram.pdf"} <= names
