@@ -1,0 +1,279 @@
+"use strict";
+// Two equal discs, event by event, and the statistics of many independent runs.
+//
+// Masses are 1 and the total energy is 1/2, so that the speed √(v1² + v2²) is 1.
+
+/** Uniform numbers in [0, 1) that a seed decides: xoshiro128++ of Blackman and Vigna. */
+class Random {
+  constructor(seed) {
+    // Their advice: the state comes from another generator, here a mix of a Weyl sequence.
+    let weyl = seed >>> 0;
+    this.state = Uint32Array.from({ length: 4 }, () => {
+      weyl = (weyl + 0x9e3779b9) >>> 0;
+      let z = weyl;
+      z = Math.imul(z ^ (z >>> 16), 0x85ebca6b);
+      z = Math.imul(z ^ (z >>> 13), 0xc2b2ae35);
+      return z ^ (z >>> 16);
+    });
+  }
+
+  bits() {
+    const s = this.state;
+    const turned = (x, n) => (x << n) | (x >>> (32 - n));
+    const result = turned(s[0] + s[3], 7) + s[0];
+    const t = s[1] << 9;
+    s[2] ^= s[0];
+    s[3] ^= s[1];
+    s[1] ^= s[2];
+    s[0] ^= s[3];
+    s[2] ^= t;
+    s[3] = turned(s[3], 11);
+    return result >>> 0;
+  }
+
+  uniform() {
+    return ((this.bits() >>> 5) * 2 ** 26 + (this.bits() >>> 6)) * 2 ** -53;
+  }
+
+  /** Two numbers uniform in the unit disc, and the sum of their squares. */
+  inDisc() {
+    for (;;) {
+      const x = 2 * this.uniform() - 1, y = 2 * this.uniform() - 1, square = x * x + y * y;
+      if (square > 0 && square < 1) return [x, y, square];
+    }
+  }
+}
+
+/** A function that draws starts from the invariant measure: places in all of configuration space,
+ *  velocities on the unit sphere in four dimensions. */
+function starter(width, height, radius) {
+  const given = lengths(width, height, radius);
+  const [A, B, sigma] = [given.A, given.B, given.sigma].map((value) => given.float(value, 1));
+  const square = given.sigma ** 2n;
+  // The separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density (A − u)(B − v) outside the
+  // arc. The free part of [0, A] × [0, B] fills a good part of the rectangle that just holds it,
+  // whatever the radius. Its sides, with what cancels near the largest radius taken exactly:
+  const room = given.float(given.A ** 2n + given.B ** 2n - square, 2);
+  const side = (whole, other) => {
+    const nearest = Math.sqrt(Math.max(given.float(square - other ** 2n, 2), 0));
+    return nearest > 0 ? room / (whole + nearest) : whole;
+  };
+  const sideX = side(A, given.B), sideY = side(B, given.A);
+
+  return (random) => {
+    let x, y;
+    // x = A − u has a density in proportion to x; u² + v² > σ² in terms of x and y.
+    do {
+      x = sideX * Math.sqrt(random.uniform());
+      y = sideY * Math.sqrt(random.uniform());
+    } while (room - x * (2 * A - x) - y * (2 * B - y) <= 0);
+    // Given the separation, the disc on the left is anywhere between its wall and the other disc.
+    const place = (range, slack) => {
+      const low = slack * random.uniform() - range / 2, high = low + (range - slack);
+      return random.uniform() < 0.5 ? [low, high] : [high, low];
+    };
+    const [x1, x2] = place(A, x);
+    const [y1, y2] = place(B, y);
+    // Marsaglia's way to a point on the sphere (1972).
+    const [p, q, first] = random.inDisc();
+    const [m, n, second] = random.inDisc();
+    const scale = Math.sqrt((1 - first) / second);
+    return { x1, y1, x2, y2, u1: p, v1: q, u2: m * scale, v2: n * scale };
+  };
+}
+
+const END = 0, WALL_X1 = 1, WALL_X2 = 2, WALL_Y1 = 3, WALL_Y2 = 4, DISC = 5;
+
+/** A pair of discs in a box; places count from its centre. */
+class Pair {
+  constructor(width, height, radius, start) {
+    Object.assign(this, start);
+    this.halfX = width / 2 - radius;
+    this.halfY = height / 2 - radius;
+    this.square = (2 * radius) ** 2;
+    // When the last flight saw y1 = y2 or x1 = x2, from its start; −1 for not at all.
+    this.vertical = -1;
+    this.horizontal = -1;
+    this.flight = 0;
+  }
+
+  /** Fly to the next event, but no longer than `most`; return its code. `flight` is the time. */
+  step(most) {
+    let { x1, y1, x2, y2, u1, v1, u2, v2 } = this;
+    const { halfX, halfY } = this;
+    const dx = x1 - x2, dy = y1 - y2, du = u1 - u2, dv = v1 - v2;
+
+    // The wall ahead is at ±half; a disc that rounding has put behind it gets there in as short a
+    // time. For a disc at rest that is infinity or NaN, and neither is less than a time.
+    let time = most, code = END;
+    let t = Math.abs((u1 > 0 ? halfX : -halfX) - x1) / Math.abs(u1);
+    if (t < time) (time = t), (code = WALL_X1);
+    t = Math.abs((u2 > 0 ? halfX : -halfX) - x2) / Math.abs(u2);
+    if (t < time) (time = t), (code = WALL_X2);
+    t = Math.abs((v1 > 0 ? halfY : -halfY) - y1) / Math.abs(v1);
+    if (t < time) (time = t), (code = WALL_Y1);
+    t = Math.abs((v2 > 0 ? halfY : -halfY) - y2) / Math.abs(v2);
+    if (t < time) (time = t), (code = WALL_Y2);
+
+    // Contact is a matter of direction: discs that touch and part are left alone, discs that touch
+    // and approach collide now. The discriminant is taken as a σ² − (Δx ∧ Δv)², which does not
+    // cancel where discs graze.
+    const b = dx * du + dy * dv;
+    if (b < 0) {
+      const cross = dx * dv - dy * du;
+      const discriminant = (du * du + dv * dv) * this.square - cross * cross;
+      if (discriminant > 0) {
+        t = (dx * dx + dy * dy - this.square) / (Math.sqrt(discriminant) - b);
+        if (t < time) (time = t), (code = DISC); // a wall wins a tie
+      }
+    }
+    if (time < 0) time = 0;
+
+    x1 += u1 * time;
+    y1 += v1 * time;
+    x2 += u2 * time;
+    y2 += v2 * time;
+    if (code === WALL_X1) (x1 = u1 > 0 ? halfX : -halfX), (u1 = -u1);
+    else if (code === WALL_X2) (x2 = u2 > 0 ? halfX : -halfX), (u2 = -u2);
+    else if (code === WALL_Y1) (y1 = v1 > 0 ? halfY : -halfY), (v1 = -v1);
+    else if (code === WALL_Y2) (y2 = v2 > 0 ? halfY : -halfY), (v2 = -v2);
+    else if (code === DISC) {
+      const nx = x1 - x2, ny = y1 - y2;
+      const exchange = (nx * du + ny * dv) / (nx * nx + ny * ny);
+      u1 -= exchange * nx;
+      v1 -= exchange * ny;
+      u2 += exchange * nx;
+      v2 += exchange * ny;
+    }
+
+    // A hop is a change of sign over the flight; zero counts as positive.
+    this.vertical = dy < 0 !== y1 - y2 < 0 ? -dy / dv : -1;
+    this.horizontal = dx < 0 !== x1 - x2 < 0 ? -dx / du : -1;
+    this.flight = time;
+    this.x1 = x1;
+    this.y1 = y1;
+    this.x2 = x2;
+    this.y2 = y2;
+    this.u1 = u1;
+    this.v1 = v1;
+    this.u2 = u2;
+    this.v2 = v2;
+    return code;
+  }
+}
+
+const COUNTED = ["vertical_hop", "horizontal_hop", "disc_collision", "any_wall"];
+
+/** How long a run counts events. */
+const DURATION = 20;
+
+/** Bins of the histogram of intervals, and where it ends, in mean times. */
+const BINS = 40, REACH = 5;
+
+/** Below so many runs, or events, there is no honest error. */
+const ENOUGH = 100;
+
+/** Many runs of one scene, one after the other, each from a start of its own.
+ *
+ * The mean count of a run over its duration is the rate, without bias, for starts from the
+ * invariant measure. Events of one run depend on each other, so errors come from the spread of the
+ * counts between runs, which are independent: not from the square root of the number of events.
+ *
+ * An interval between hops belongs to the run in which it begins, and is followed to its end: those
+ * that a run cuts off would be the long ones. What is longer than the histogram only counts.
+ */
+class Runs {
+  constructor(width, height, radius, seed) {
+    this.scene = [width, height, radius];
+    this.random = new Random(seed);
+    this.start = starter(width, height, radius);
+    this.exact = exact(width, height, radius);
+    this.done = 0;
+    this.events = 0;
+    this.sums = new Float64Array(COUNTED.length);
+    this.squares = new Float64Array(COUNTED.length);
+    this.histograms = [0, 1].map((hop) => {
+      const mean = this.exact.times[COUNTED[hop]];
+      return { mean, end: mean ? REACH * mean : 0, bins: new Float64Array(BINS), total: 0 };
+    });
+    this.begin();
+  }
+
+  begin() {
+    this.current = this.start(this.random);
+    this.pair = new Pair(...this.scene, this.current);
+    this.time = 0;
+    this.counts = new Float64Array(COUNTED.length);
+    this.last = [NaN, NaN]; // when each kind of hop was last seen: NaN for not yet
+  }
+
+  /** Simulate some `events`, and no more than so many `runs` in all. */
+  advance(events, runs = Infinity) {
+    for (let i = 0; i < events && this.done < runs; i++) {
+      if (this.time < DURATION) this.count();
+      else if (this.isOpen(0) || this.isOpen(1)) this.follow();
+      else this.finish();
+    }
+  }
+
+  count() {
+    const { pair, counts } = this;
+    const code = pair.step(DURATION - this.time);
+    if (code === DISC) counts[2]++;
+    else if (code !== END) counts[3]++;
+    this.hop(0, pair.vertical, true);
+    this.hop(1, pair.horizontal, true);
+    // The end of a run is reached exactly, whatever the roundings of its flights.
+    this.time = code === END ? DURATION : this.time + pair.flight;
+    this.events++;
+  }
+
+  /** Whether an interval that began in this run is not complete, nor too long for the histogram. */
+  isOpen(hop) {
+    return this.time - this.last[hop] < this.histograms[hop].end;
+  }
+
+  follow() {
+    this.pair.step(Infinity);
+    this.hop(0, this.pair.vertical, false);
+    this.hop(1, this.pair.horizontal, false);
+    this.time += this.pair.flight;
+    this.events++;
+  }
+
+  hop(hop, after, counted) {
+    if (after < 0) return;
+    const now = this.time + after;
+    const { bins, end } = this.histograms[hop];
+    const interval = now - this.last[hop];
+    if (interval < end) bins[Math.floor((BINS * interval) / end)]++;
+    this.last[hop] = counted ? now : NaN;
+    if (counted) {
+      this.counts[hop]++;
+      this.histograms[hop].total++; // as many intervals begin
+    }
+  }
+
+  finish() {
+    this.counts.forEach((count, i) => {
+      this.sums[i] += count;
+      this.squares[i] += count * count;
+    });
+    this.done++;
+    this.shown = this.current;
+    this.begin();
+  }
+
+  /** {count, time, error, exact, z} of an event, by its place in COUNTED; null for what is not
+   *  known. z is positive where the time is too long. */
+  measured(i) {
+    const n = this.done, count = this.sums[i], exact = this.exact.times[COUNTED[i]];
+    const time = count ? (n * DURATION) / count : null;
+    if (n < ENOUGH || count < ENOUGH) return { count, time, error: null, exact, z: null };
+    const mean = count / n;
+    const variance = ((this.squares[i] / n - mean * mean) * n) / (n - 1);
+    const relative = Math.sqrt(variance / n) / mean;
+    const z = exact && (DURATION / exact - mean) / (relative * mean);
+    return { count, time, error: time * relative, exact, z };
+  }
+}
