@@ -7,10 +7,10 @@ import csv
 import html
 import json
 import re
-import shutil
 import subprocess
 
 import pytest
+from browser import ABSENT, BROWSER
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.documents.captions import caption
@@ -20,9 +20,7 @@ from twodiscs.studies.catalogue import STUDY_FIGURES
 #: The scene that figures of no scene are about.
 SIX = {"name": "six", "width": 1.5, "height": 1.0}
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
-pytestmark = pytest.mark.skipif(BROWSER is None, reason=f"none of {', '.join(BROWSERS)}")
+pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)
 
 #: Before anything of the report: whatever asks for more than the page itself holds is refused, and
 #: whatever goes wrong is written down.

@@ -140,6 +140,43 @@ rule provenance:
         " --output {output.json} > {log} 2>&1"
 
 
+rule explorer:
+    """Write the explorer: the discs as they move and are counted, beside exact values and points."""
+    input:
+        tables=[
+            path
+            for scene in CONFIGURATION.plain
+            for name, path in FILES.tables(scene.name).items()
+            if name in ("volume", "areas", "mean_times")
+        ],
+        parts=[
+            source(f"workflow/explorer/{name}")
+            for name in (
+                "explorer.html",
+                "theory.js",
+                "dynamics.js",
+                "page.js",
+                "uPlot/uPlot.iife.min.js",
+                "uPlot/uPlot.min.css",
+                "uPlot/LICENSE",
+            )
+        ],
+    output:
+        html=f"{RESULTS}/explorer.html",
+    log:
+        f"{RESULTS}/logs/explorer.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/explorer.tsv"
+    localrule: True
+    params:
+        scenes=json.dumps(FILES.report()),
+        seed=CONFIGURATION.seed,
+        code=code("pipeline.documents.explorer"),
+    shell:
+        "python -m twodiscs.pipeline.documents.explorer {input.tables} --parts {input.parts}"
+        " --scenes {params.scenes:q} --seed {params.seed} --output {output.html} > {log} 2>&1"
+
+
 rule crate:
     """Describe the results as an RO-Crate, to be published."""
     input:

@@ -1,0 +1,327 @@
+"""The explorer: its formulas are those of the package, and its page counts what they say."""
+
+import itertools
+import json
+import math
+import random
+import re
+import shutil
+import subprocess
+
+import pytest
+from browser import ABSENT, BROWSER, browser
+from checkout import REPOSITORY
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs.model.events import EVENTS
+from twodiscs.pipeline.documents import explorer
+from twodiscs.theory import exact
+
+SOURCES = REPOSITORY / "workflow" / "explorer"
+PARTS = [path for path in SOURCES.rglob("*") if path.is_file()]
+
+#: The tables of the scene 1.5 × 1 that are expected.
+EXPECTED = REPOSITORY / "paper" / "expected" / "paper"
+TABLES = [EXPECTED / f"{name}.csv" for name in ("volume", "areas", "mean_times")]
+
+#: What the report says of the scenes; the one with an effect is not for the explorer.
+SCENES = [
+    {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}},
+    {"name": "torus", "width": 1.0, "height": 1.0, "effects": {"periodic": "xy"}},
+]
+
+#: |z| beyond which a comparison fails.
+SIGMAS = 5
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The path of the explorer, as its job writes it."""
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    words = [*TABLES, "--parts", *PARTS, "--scenes", json.dumps(SCENES)]
+    words = ["explorer", *words, "--seed", 1908, "--output", path]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sys.argv", [*map(str, words)])
+        explorer.main()
+    return path
+
+
+# Formulas -----------------------------------------------------------------------------------------
+
+BOXES = [Box(*sides) for sides in ((1.5, 1), (3, 1), (1, 1), (2, 1), (0.7, 1.2), (0.5, 2), (40, 1))]
+
+
+def radii(box):
+    """Return radii of a ``Box``: anywhere, at its limits, and ever closer to these."""
+    rng = random.Random(f"{box.width} {box.height}")
+    limits = [box.largest_radius, box.width / 4, box.height / 4]
+    found = [rng.uniform(0, box.largest_radius) for _ in range(40)]
+    found += [10**-k * box.shortest for k in range(1, 7)]
+    for limit in limits:
+        found += [limit, *(math.nextafter(limit, side) for side in (0, 1))]
+        found += [limit * (1 + sign * 10**-k) for k in range(1, 13) for sign in (-1, 1)]
+    return found
+
+
+CASES = [(box, radius) for box in BOXES for radius in radii(box)]
+
+
+def numbers(box, radius):
+    """Return what ``theory.js`` should say of a box and a radius: None where nothing fits."""
+    try:
+        scene = box.scene(radius)
+    except InputError:
+        return None
+    times, areas = exact.mean_times(scene), exact.areas(scene)
+    return {"volume": exact.volume(scene), "areas": areas, "times": times}
+
+
+def evaluated(expression, folder):
+    """Return the value of an expression about the formulas, by Node or else by Chromium."""
+    script = (SOURCES / "theory.js").read_text(encoding="utf-8")
+    if node := shutil.which("node"):
+        script += f"\nconsole.log(JSON.stringify({expression}));"
+        run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
+        return json.loads(run.stdout)
+    if BROWSER is None:
+        pytest.skip(f"no Node and {ABSENT}")
+    with browser(folder) as page:
+        page.look(f"{script}; 0")
+        return page.look(expression)
+
+
+def test_formulas_in_javascript_are_those_of_the_package(tmp_path):
+    cases = [[box.width, box.height, radius] for box, radius in CASES]
+    found = evaluated(f"{json.dumps(cases)}.map((sides) => exact(...sides))", tmp_path)
+    assert sum(one is None for one in found) > 20
+    assert sum(one is not None for one in found) > 300
+    for (box, radius), one in zip(CASES, found, strict=True):
+        right = numbers(box, radius)
+        assert (one is None) == (right is None), (box, radius)
+        if one is None:
+            continue
+        assert one["volume"] == pytest.approx(right["volume"], rel=1e-12, abs=0), (box, radius)
+        for event, kind in itertools.product(EVENTS, ("areas", "times")):
+            value, good = one[kind][event], right[kind][event]
+            same = value is None if good is None else math.isclose(value, good, rel_tol=1e-12)
+            assert same, (box, radius, event, kind, value, good)
+
+
+def test_limits_in_javascript_are_those_of_the_package(tmp_path):
+    sides = [[box.width, box.height] for box in BOXES]
+    largest = evaluated(f"{json.dumps(sides)}.map((box) => largestRadius(...box))", tmp_path)
+    ends = evaluated(f"{json.dumps(sides)}.map((box) => thresholds(...box))", tmp_path)
+    assert largest == pytest.approx([box.largest_radius for box in BOXES], rel=1e-15)
+    for box, named in zip(BOXES, ends, strict=True):
+        assert [radius for radius, _ in named] == [*box.thresholds]
+
+
+# Points -------------------------------------------------------------------------------------------
+
+
+def test_points_are_those_of_the_tables():
+    points = explorer.points({path.stem: path for path in TABLES})
+    box = Box(1.5, 1)
+    for event, by in points.items():
+        assert len(by["dynamics"]) > 20
+        assert len(by["monte_carlo"]) > 20
+        for radius, time, error in by["monte_carlo"] + [row for row in by["dynamics"] if row[2]]:
+            right = exact.mean_times(box.scene(radius))[event]
+            assert abs(time - right) < SIGMAS * error, (event, radius)
+            assert error < 0.2 * time
+
+
+def test_a_scene_may_have_no_tables():
+    assert explorer.points({})["vertical_hop"] == {"dynamics": [], "monte_carlo": []}
+
+
+# The file -----------------------------------------------------------------------------------------
+
+
+def test_the_page_is_one_file_with_the_licence_of_its_library(page):
+    text = page.read_text(encoding="utf-8")
+    assert "Copyright (c) 2022 Leon Sorokin" in text
+    assert not re.search(r"""(?:src|href)=["']|@import|url\(|fetch\(|XMLHttpRequest""", text)
+    assert "torus" not in text
+    assert page.stat().st_size < 200_000
+
+
+# In a browser -------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def driven(page, tmp_path_factory):
+    """A browser, and a function of what stands behind # that opens the explorer in it."""
+    if BROWSER is None:
+        pytest.skip(ABSENT)
+    with browser(tmp_path_factory.mktemp("browser")) as one:
+
+        def opened(asked="", **options):
+            one.open(f"{page.as_uri()}#{asked}", **options)
+            return one
+
+        yield opened
+
+
+def counted(page, asked):
+    """Return the rows of the table of an opened page, by event, when as many runs are done."""
+    page.until(f"runs.done === {asked}")
+    page.look("renew()")
+    rows = page.look(
+        "[...document.querySelectorAll('#events tr')].map(row =>"
+        " [row.id, ...[...row.cells].slice(1).map(cell => cell.innerText)])"
+    )
+    return {event: dict(zip(("count", "time", "error", "exact", "z"), cells, strict=True))
+            for event, *cells in rows}  # fmt: skip
+
+
+def value(text):
+    """Return the number in a cell."""
+    return float(text.replace("−", "-").replace("\u202f", "").removesuffix(" %"))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [(1.5, 1.0, 0.2), (1.5, 1.0, 0.01), (1.5, 1.0, 0.3), (1.5, 1.0, 0.38), (2.5, 0.8, 0.19)],
+)
+def test_counts_are_those_of_theory(driven, scene):
+    asked = "width={}&height={}&radius={}&seed=7&runs=2000".format(*scene)
+    page = driven(asked)
+    rows = counted(page, 2000)
+    times = exact.mean_times(Box(*scene[:2]).scene(scene[2]))
+    assert page.problems == []
+    for event, row in rows.items():
+        if times[event] is None:
+            assert row == {"count": "0", "time": "–", "error": "–", "exact": "never", "z": "–"}
+            continue
+        assert value(row["exact"]) == pytest.approx(times[event], rel=3e-3)
+        assert abs(value(row["z"])) < SIGMAS, event
+        assert value(row["error"]) < 12
+        # The error is honest about its size: not much below that of independent events.
+        seen = page.look(f"runs.measured(COUNTED.indexOf('{event}'))")
+        assert seen["count"] == value(row["count"])
+        deviation = (seen["time"] - times[event]) / seen["error"]
+        assert deviation == pytest.approx(value(row["z"]), abs=0.1 + 0.05 * abs(deviation))
+
+
+def test_the_same_seed_gives_the_same_counts_and_more_runs_a_smaller_error(driven):
+    first = counted(driven("radius=0.2&seed=3&runs=500"), 500)
+    assert counted(driven("radius=0.2&seed=3&runs=500"), 500) == first
+    other = counted(driven("radius=0.2&seed=4&runs=500"), 500)
+    assert other["any_wall"]["count"] != first["any_wall"]["count"]
+    more = counted(driven("radius=0.2&seed=3&runs=8000"), 8000)
+    for event, row in more.items():
+        assert value(row["error"]) == pytest.approx(value(first[event]["error"]) / 4, rel=0.3)
+
+
+def test_scores_scatter_by_one(driven):
+    """The sum of squares of 40 scores of seeds of their own: χ² with a false alarm of 1e-6."""
+    page = driven("runs=0")
+    scores = page.look(
+        "Array.from({length: 40}, (_, seed) => {"
+        " const many = new Runs(1.5, 1, 0.2, 1000 + seed);"
+        " while (many.done < 400) many.advance(100);"
+        " return [0, 2, 3].map(i => many.measured(i).z); })"
+    )
+    for z in zip(*scores, strict=True):
+        assert 12 < sum(one * one for one in z) < 98
+
+
+#: Intervals between hops of one long trajectory, which is cut nowhere, in bins as those of runs.
+LONG = """
+(() => {{
+    const {{ end }} = runs.histograms[{hop}], bins = Array(BINS).fill(0);
+    const pair = new Pair(...runs.scene, runs.start(new Random(5)));
+    let total = 0, last = NaN;
+    for (let time = 0; time < {duration}; time += pair.flight) {{
+        pair.step(Infinity);
+        const after = [pair.vertical, pair.horizontal][{hop}];
+        if (after < 0) continue;
+        const interval = time + after - last;
+        if (interval < end) bins[Math.floor(BINS * interval / end)]++;
+        total++;
+        last = time + after;
+    }}
+    return [bins, total];
+}})()
+"""
+
+
+@pytest.mark.parametrize(("radius", "hop", "duration"), [(0.2, 0, 1e5), (0.24, 1, 6e5)])
+def test_intervals_of_runs_are_those_of_one_long_trajectory(driven, radius, hop, duration):
+    """Also where hardly any interval that begins in a run ends in it, as with a mean of 100."""
+    page = driven(f"radius={radius}&seed=7&runs=4000")
+    counted(page, 4000)
+    found = page.look(f"[[...runs.histograms[{hop}].bins], runs.histograms[{hop}].total]")
+    long = page.look(LONG.format(hop=hop, duration=duration))
+    shares = [
+        [count / total for count in itertools.accumulate(bins)] for bins, total in (found, long)
+    ]
+    assert 0.95 < shares[0][-1] < 1
+    for one, other in zip(*shares, strict=True):
+        # Twice the error of independent intervals, for they are not.
+        spread = math.sqrt(one * (1 - one) * (1 / found[1] + 1 / long[1]))
+        assert abs(one - other) < 2 * SIGMAS * spread + 1e-9
+
+
+def test_sliders_are_moved_by_keys_and_everything_begins_anew(driven):
+    page = driven("radius=0.2&seed=7")
+    page.until("runs.done > 200")
+    page.look("at('radius').focus()")
+    page.press("ArrowRight")
+    assert page.look("[state.radius, runs.scene[2], at('radius').nextElementSibling.value]") == [
+        *(0.201, 0.201, "0.201"),
+    ]
+    page.until("runs.done > 200")
+    page.press("End")
+    box = Box(1.5, 1)
+    assert 0.99 * box.largest_radius < page.look("state.radius") < box.largest_radius
+    assert page.look("at('said').textContent").startswith(
+        "In this box discs of this radius make no"
+    )
+    page.look("at('width').focus()")
+    page.press("Home")
+    assert page.look("[state.width, state.radius]") == [0.5, 0.249]
+    assert "no points of this box" in page.look("at('points').textContent")
+    page.look("document.querySelector('#buttons button + span + button').click()")
+    assert page.look("[state.width, state.height]") == [1.5, 1]
+    assert "points of this build" in page.look("at('points').textContent")
+    assert page.problems == []
+
+
+def test_it_can_be_paused(driven):
+    page = driven("radius=0.2&seed=7")
+    page.until("runs.done > 200")
+    page.look("at('pause').focus()")
+    page.look("at('pause').click()")
+    before = page.look("[runs.done, drawn.time]")
+    page.look("new Promise(done => setTimeout(done, 300))")
+    assert page.look("[runs.done, drawn.time]") == before
+    page.look("at('pause').click()")
+    page.until(f"runs.done > {before[0]} && drawn.time > {before[1]}")
+
+
+def test_who_wants_no_motion_starts_it_himself(driven):
+    page = driven("seed=7", reduced=True)
+    page.look("new Promise(done => setTimeout(done, 300))")
+    assert page.look("[runs.done, drawn.time, at('pause').textContent]") == [0, 0, "Run"]
+    page.look("at('pause').click()")
+    page.until("runs.done > 10")
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_nothing_is_wider_than_the_window(driven, width):
+    page = driven("radius=0.38&seed=7", width=width)
+    page.until("runs.done > 200")
+    page.look("renew()")
+    assert page.look("document.documentElement.scrollWidth") <= width
+    of = "...[...document.querySelectorAll('main *')].map"
+    assert page.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width
+    assert page.look(f"Math.min({of}(e => parseFloat(getComputedStyle(e).fontSize)))") >= 13
+
+
+def test_every_control_has_a_name(driven):
+    page = driven("seed=7")
+    names = page.look("[...document.querySelectorAll('input, select')].map(e => e.labels.length)")
+    assert names == [1, 1, 1, 1]
