@@ -2,8 +2,8 @@
 
     python docs/make/pictures.py results docs
 
-draws them from a finished build; the first page of the manuscript and the top of the report are
-taken with ``pdftoppm`` and ``chromium``.
+draws them from a finished build, to which ``snakemake explorer`` has added; the first page of the
+manuscript, the top of the report and the explorer are taken with ``pdftoppm`` and ``chromium``.
 """
 
 import json
@@ -11,6 +11,9 @@ import re
 import subprocess
 from pathlib import Path
 from shutil import copyfile
+from tempfile import TemporaryDirectory
+
+from PIL import Image
 
 from twodiscs.figures.kit import panels, style
 from twodiscs.pipeline.arguments import Parser, run
@@ -34,6 +37,16 @@ WHOLE = ("model",)
 
 #: Inches: the height of a picture, and its margins as in figures; two dots are a pixel shown.
 HEIGHT, TOP, DPI = 2.5, 0.3, 200
+
+
+#: What brings the explorer to where its picture is taken.
+AT_A_HOP = """
+runs.advance(2e7);
+while (!(drawn.time > 3 && drawn.flash && drawn.time - drawn.flash.since < 0.05)) move(0.02);
+state.paused = true;
+draw();
+renew();
+"""
 
 
 def tables_of(name, results):
@@ -69,15 +82,30 @@ def first_pages(results, output):
     subprocess.run(
         ["pdftoppm", "-png", "-r", "80", "-singlefile", results / "paper.pdf", page], check=True
     )
+    photograph(results / "report.html", output / "report.png", "1060,1120")
+
+
+def photograph(page, picture, size):
+    """Take a picture of the HTML file ``page`` in a window of ``size``, "width,height"."""
     subprocess.run(
         [
             *("chromium", "--headless", "--no-sandbox", "--hide-scrollbars"),
-            *("--window-size=1060,1120", f"--screenshot={output / 'report.png'}"),
-            (results / "report.html").resolve().as_uri(),
+            *(f"--window-size={size}", f"--screenshot={picture}", page.resolve().as_uri()),
         ],
         check=True,
         capture_output=True,
     )
+
+
+def explorer(results, output):
+    """Take a picture of the explorer after a few million events, at a hop, in 256 colours."""
+    text = (results / "explorer.html").read_text(encoding="utf-8")
+    with TemporaryDirectory() as folder:
+        page, picture = Path(folder, "explorer.html"), Path(folder, "explorer.png")
+        page.write_text(text.replace("</body>", f"<script>{AT_A_HOP}</script></body>"), "utf-8")
+        photograph(page, picture, "1280,1064")
+        with Image.open(picture) as image:
+            image.convert("RGB").quantize(256).save(output / "explorer.png", optimize=True)
 
 
 def main():
@@ -96,6 +124,7 @@ def main():
             figure.savefig(options.output / f"{picture}.png", dpi=DPI, metadata={"Software": None})
     copyfile(folders[0] / "figures" / "animation.gif", options.output / "animation.gif")
     first_pages(options.results, options.output)
+    explorer(options.results, options.output)
 
 
 if __name__ == "__main__":
