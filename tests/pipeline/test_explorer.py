@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
@@ -226,6 +227,56 @@ def test_scores_scatter_by_one(driven):
     )
     for z in zip(*scores, strict=True):
         assert 12 < sum(one * one for one in z) < 98
+
+
+#: Means, and means of squares, of what starts have: separations, velocities, and what never varies.
+STARTS = """
+(() => {{
+    const random = new Random(11), draw = starter({0}, {1}, {2}), n = 40000;
+    const sums = Array(6).fill(0), squares = Array(6).fill(0);
+    let least = Infinity, farthest = -Infinity, energy = 0;
+    for (let i = 0; i < n; i++) {{
+        const {{ x1, y1, x2, y2, u1, v1, u2, v2 }} = draw(random);
+        const seen = [Math.abs(x1 - x2), Math.abs(y1 - y2), x1 * x1, y2 * y2, u1 ** 4, v2 ** 4];
+        seen.forEach((one, k) => {{ sums[k] += one / n; squares[k] += one * one / n; }});
+        least = Math.min(least, Math.hypot(x1 - x2, y1 - y2) - 2 * {2});
+        farthest = Math.max(farthest, ...[x1, x2].map(x => Math.abs(x) - {0} / 2 + {2}),
+                            ...[y1, y2].map(y => Math.abs(y) - {1} / 2 + {2}));
+        energy = Math.max(energy, Math.abs(u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2 - 1));
+    }}
+    return {{ n, sums, squares, least, farthest, energy }};
+}})()
+"""
+
+
+@pytest.mark.parametrize("sides", [(1.5, 1, 0.1), (1.5, 1, 0.3), (1.5, 1, 0.38), (3, 1, 0.49)])
+def test_starts_are_uniform(driven, sides):
+    """Against sums over a grid of separations, which have the density (A − u)(B − v)."""
+    seen = driven("runs=0").look(STARTS.format(*sides))
+    width, height, radius = sides
+    range_x, range_y, sigma = width - 2 * radius, height - 2 * radius, 2 * radius
+    low_x, low_y = (
+        math.sqrt(max(sigma**2 - other**2, 0)) for other in (range_y, range_x)
+    )  # below, the discs do not fit
+    steps = (np.arange(2000) + 0.5) / 2000
+    u = (low_x + steps * (range_x - low_x))[:, np.newaxis]
+    v = low_y + steps * (range_y - low_y)
+    weight = (range_x - u) * (range_y - v) * (u**2 + v**2 > sigma**2)
+
+    def mean(values):
+        return float((values * weight).sum() / weight.sum())
+
+    # The centre of the two is uniform in its range A − u, and they are half of u to its sides.
+    squares = [
+        mean((side - one) ** 2 / 12 + one**2 / 4 + 0 * weight)
+        for side, one in ((range_x, u), (range_y, v))
+    ]
+    right = [mean(u + 0 * v), mean(v + 0 * u), *squares, 1 / 8, 1 / 8]
+    for found, square, good in zip(seen["sums"], seen["squares"], right, strict=True):
+        assert abs(found - good) < SIGMAS * math.sqrt((square - found**2) / seen["n"]) + 1e-4 * good
+    assert seen["least"] > -1e-15
+    assert seen["farthest"] < 1e-15
+    assert seen["energy"] < 1e-15
 
 
 #: Intervals between hops of one long trajectory, which is cut nowhere, in bins as those of runs.
