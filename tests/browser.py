@@ -32,8 +32,8 @@ class Page:
         self.read, self.write = read, write
         self.sent, self.session, self.problems = 0, None, []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        found = self.call("Target.attachToTarget", targetId=target, flatten=True)
-        self.session = found["sessionId"]
+        attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
+        self.session = attached["sessionId"]
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.call(f"{domain}.enable")
 
@@ -54,11 +54,11 @@ class Page:
 
     def message(self):
         """Return the next message."""
-        found = bytearray()
+        text = bytearray()
         while (byte := self.read.read(1)) != b"\0":
             assert byte, "the browser has ended"
-            found += byte
-        return json.loads(found)
+            text += byte
+        return json.loads(text)
 
     def note(self, event):
         """Keep what an event says of a problem."""
@@ -86,21 +86,21 @@ class Page:
 
     def look(self, expression):
         """Return the value of an expression in JavaScript; a promise is waited for."""
-        found = self.call(
+        answer = self.call(
             "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
         )
-        assert "exceptionDetails" not in found, found["exceptionDetails"]
-        return found["result"].get("value")
+        assert "exceptionDetails" not in answer, answer["exceptionDetails"]
+        return answer["result"].get("value")
 
     def until(self, condition, milliseconds=60000):
         """Wait until an expression is true; raise ``AssertionError`` after so long."""
-        found = self.look(
+        came = self.look(
             "new Promise(done => { const begun = performance.now(); (function ask() {"
             f" if ({condition}) done(true);"
             f" else if (performance.now() - begun > {milliseconds}) done(false);"
             " else setTimeout(ask, 20); })(); })"
         )
-        assert found, f"not within {milliseconds} ms: {condition}"
+        assert came, f"not within {milliseconds} ms: {condition}"
 
     def press(self, key):
         """Press a key of ``KEYS``."""

@@ -57,12 +57,12 @@ def radii(box):
     """Return radii of a ``Box``: anywhere, at its limits, and ever closer to these."""
     rng = random.Random(f"{box.width} {box.height}")
     limits = [box.largest_radius, box.width / 4, box.height / 4]
-    found = [rng.uniform(0, box.largest_radius) for _ in range(40)]
-    found += [10**-k * box.shortest for k in range(1, 7)]
+    some = [rng.uniform(0, box.largest_radius) for _ in range(40)]
+    some += [10**-k * box.shortest for k in range(1, 7)]
     for limit in limits:
-        found += [limit, *(math.nextafter(limit, side) for side in (0, 1))]
-        found += [limit * (1 + sign * 10**-k) for k in range(1, 13) for sign in (-1, 1)]
-    return found
+        some += [limit, *(math.nextafter(limit, side) for side in (0, 1))]
+        some += [limit * (1 + sign * 10**-k) for k in range(1, 13) for sign in (-1, 1)]
+    return some
 
 
 CASES = [(box, radius) for box in BOXES for radius in radii(box)]
@@ -94,17 +94,17 @@ def evaluated(expression, folder):
 
 def test_formulas_in_javascript_are_those_of_the_package(tmp_path):
     cases = [[box.width, box.height, radius] for box, radius in CASES]
-    found = evaluated(f"{json.dumps(cases)}.map((sides) => exact(...sides))", tmp_path)
-    assert sum(one is None for one in found) > 20
-    assert sum(one is not None for one in found) > 300
-    for (box, radius), one in zip(CASES, found, strict=True):
+    computed = evaluated(f"{json.dumps(cases)}.map((sides) => exact(...sides))", tmp_path)
+    assert sum(written is None for written in computed) > 20
+    assert sum(written is not None for written in computed) > 300
+    for (box, radius), written in zip(CASES, computed, strict=True):
         right = numbers(box, radius)
-        assert (one is None) == (right is None), (box, radius)
-        if one is None:
+        assert (written is None) == (right is None), (box, radius)
+        if written is None:
             continue
-        assert one["volume"] == pytest.approx(right["volume"], rel=1e-12, abs=0), (box, radius)
+        assert written["volume"] == pytest.approx(right["volume"], rel=1e-12, abs=0), (box, radius)
         for event, kind in itertools.product(EVENTS, ("areas", "times")):
-            value, good = one[kind][event], right[kind][event]
+            value, good = written[kind][event], right[kind][event]
             same = value is None if good is None else math.isclose(value, good, rel_tol=1e-12)
             assert same, (box, radius, event, kind, value, good)
 
@@ -156,11 +156,11 @@ def driven(page, tmp_path_factory):
     """A browser, and a function of what stands behind # that opens the explorer in it."""
     if BROWSER is None:
         pytest.skip(ABSENT)
-    with browser(tmp_path_factory.mktemp("browser")) as one:
+    with browser(tmp_path_factory.mktemp("browser")) as chromium:
 
         def opened(asked="", **options):
-            one.open(f"{page.as_uri()}#{asked}", **options)
-            return one
+            chromium.open(f"{page.as_uri()}#{asked}", **options)
+            return chromium
 
         yield opened
 
@@ -226,19 +226,19 @@ def test_scores_scatter_by_one(driven):
         " return [0, 2, 3].map(i => many.measured(i).z); })"
     )
     for z in zip(*scores, strict=True):
-        assert 12 < sum(one * one for one in z) < 98
+        assert 12 < sum(score * score for score in z) < 98
 
 
-#: Means, and means of squares, of what starts have: separations, velocities, and what never varies.
-STARTS = """
+#: Means, and means of squares, of initial states: separations, centres, velocities; worst errors.
+STATES = """
 (() => {{
-    const random = new Random(11), draw = starter({0}, {1}, {2}), n = 40000;
+    const random = new Random(11), draw = initialStates({0}, {1}, {2}), n = 40000;
     const sums = Array(6).fill(0), squares = Array(6).fill(0);
     let least = Infinity, farthest = -Infinity, energy = 0;
     for (let i = 0; i < n; i++) {{
         const {{ x1, y1, x2, y2, u1, v1, u2, v2 }} = draw(random);
         const seen = [Math.abs(x1 - x2), Math.abs(y1 - y2), x1 * x1, y2 * y2, u1 ** 4, v2 ** 4];
-        seen.forEach((one, k) => {{ sums[k] += one / n; squares[k] += one * one / n; }});
+        seen.forEach((x, k) => {{ sums[k] += x / n; squares[k] += x * x / n; }});
         least = Math.min(least, Math.hypot(x1 - x2, y1 - y2) - 2 * {2});
         farthest = Math.max(farthest, ...[x1, x2].map(x => Math.abs(x) - {0} / 2 + {2}),
                             ...[y1, y2].map(y => Math.abs(y) - {1} / 2 + {2}));
@@ -250,9 +250,9 @@ STARTS = """
 
 
 @pytest.mark.parametrize("sides", [(1.5, 1, 0.1), (1.5, 1, 0.3), (1.5, 1, 0.38), (3, 1, 0.49)])
-def test_starts_are_uniform(driven, sides):
+def test_initial_states_are_uniform(driven, sides):
     """Against sums over a grid of separations, which have the density (A − u)(B − v)."""
-    seen = driven("runs=0").look(STARTS.format(*sides))
+    seen = driven("runs=0").look(STATES.format(*sides))
     width, height, radius = sides
     range_x, range_y, sigma = width - 2 * radius, height - 2 * radius, 2 * radius
     low_x, low_y = (
@@ -268,12 +268,13 @@ def test_starts_are_uniform(driven, sides):
 
     # The centre of the two is uniform in its range A − u, and they are half of u to its sides.
     squares = [
-        mean((side - one) ** 2 / 12 + one**2 / 4 + 0 * weight)
-        for side, one in ((range_x, u), (range_y, v))
+        mean((side - apart) ** 2 / 12 + apart**2 / 4 + 0 * weight)
+        for side, apart in ((range_x, u), (range_y, v))
     ]
     right = [mean(u + 0 * v), mean(v + 0 * u), *squares, 1 / 8, 1 / 8]
-    for found, square, good in zip(seen["sums"], seen["squares"], right, strict=True):
-        assert abs(found - good) < SIGMAS * math.sqrt((square - found**2) / seen["n"]) + 1e-4 * good
+    for measured, square, good in zip(seen["sums"], seen["squares"], right, strict=True):
+        error = math.sqrt((square - measured**2) / seen["n"])
+        assert abs(measured - good) < SIGMAS * error + 1e-4 * good
     assert seen["least"] > -1e-15
     assert seen["farthest"] < 1e-15
     assert seen["energy"] < 1e-15
@@ -283,7 +284,7 @@ def test_starts_are_uniform(driven, sides):
 LONG = """
 (() => {{
     const {{ end }} = runs.histograms[{hop}], bins = Array(BINS).fill(0);
-    const pair = new Pair(...runs.scene, runs.start(new Random(5)));
+    const pair = new Pair(...runs.scene, runs.draw(new Random(5)));
     let total = 0, last = NaN;
     for (let time = 0; time < {duration}; time += pair.flight) {{
         pair.step(Infinity);
@@ -304,16 +305,16 @@ def test_intervals_of_runs_are_those_of_one_long_trajectory(driven, radius, hop,
     """Also where hardly any interval that begins in a run ends in it, as with a mean of 100."""
     page = driven(f"radius={radius}&seed=7&runs=4000")
     counted(page, 4000)
-    found = page.look(f"[[...runs.histograms[{hop}].bins], runs.histograms[{hop}].total]")
+    of_runs = page.look(f"[[...runs.histograms[{hop}].bins], runs.histograms[{hop}].total]")
     long = page.look(LONG.format(hop=hop, duration=duration))
-    shares = [
-        [count / total for count in itertools.accumulate(bins)] for bins, total in (found, long)
+    fractions = [
+        [count / total for count in itertools.accumulate(bins)] for bins, total in (of_runs, long)
     ]
-    assert 0.95 < shares[0][-1] < 1
-    for one, other in zip(*shares, strict=True):
+    assert 0.95 < fractions[0][-1] < 1
+    for some, other in zip(*fractions, strict=True):
         # Twice the error of independent intervals, for they are not.
-        spread = math.sqrt(one * (1 - one) * (1 / found[1] + 1 / long[1]))
-        assert abs(one - other) < 2 * SIGMAS * spread + 1e-9
+        spread = math.sqrt(some * (1 - some) * (1 / of_runs[1] + 1 / long[1]))
+        assert abs(some - other) < 2 * SIGMAS * spread + 1e-9
 
 
 def test_sliders_are_moved_by_keys_and_everything_begins_anew(driven):

@@ -44,9 +44,9 @@ class Random {
   }
 }
 
-/** A function that draws starts from the invariant measure: places in all of configuration space,
- *  velocities on the unit sphere in four dimensions. */
-function starter(width, height, radius) {
+/** A function that draws initial states from the invariant measure: centres in all of
+ *  configuration space, velocities on the unit sphere in four dimensions. */
+function initialStates(width, height, radius) {
   const given = lengths(width, height, radius);
   const [A, B, sigma] = [given.A, given.B, given.sigma].map((value) => given.float(value, 1));
   const square = given.sigma ** 2n;
@@ -68,12 +68,12 @@ function starter(width, height, radius) {
       y = sideY * Math.sqrt(random.uniform());
     } while (room - x * (2 * A - x) - y * (2 * B - y) <= 0);
     // Given the separation, the disc on the left is anywhere between its wall and the other disc.
-    const place = (range, slack) => {
+    const centres = (range, slack) => {
       const low = slack * random.uniform() - range / 2, high = low + (range - slack);
       return random.uniform() < 0.5 ? [low, high] : [high, low];
     };
-    const [x1, x2] = place(A, x);
-    const [y1, y2] = place(B, y);
+    const [x1, x2] = centres(A, x);
+    const [y1, y2] = centres(B, y);
     // Marsaglia's way to a point on the sphere (1972).
     const [p, q, first] = random.inDisc();
     const [m, n, second] = random.inDisc();
@@ -84,14 +84,14 @@ function starter(width, height, radius) {
 
 const END = 0, WALL_X1 = 1, WALL_X2 = 2, WALL_Y1 = 3, WALL_Y2 = 4, DISC = 5;
 
-/** A pair of discs in a box; places count from its centre. */
+/** A pair of discs in a box, whose centre is the origin. */
 class Pair {
-  constructor(width, height, radius, start) {
-    Object.assign(this, start);
+  constructor(width, height, radius, initial) {
+    Object.assign(this, initial);
     this.halfX = width / 2 - radius;
     this.halfY = height / 2 - radius;
     this.square = (2 * radius) ** 2;
-    // When the last flight saw y1 = y2 or x1 = x2, from its start; −1 for not at all.
+    // When the last flight saw y1 = y2 or x1 = x2, from its beginning; −1 for not at all.
     this.vertical = -1;
     this.horizontal = -1;
     this.flight = 0;
@@ -173,9 +173,9 @@ const BINS = 40, REACH = 5;
 /** Below so many runs, or events, there is no honest error. */
 const ENOUGH = 100;
 
-/** Many runs of one scene, one after the other, each from a start of its own.
+/** Many runs of one scene, one after the other, each from an initial state of its own.
  *
- * The mean count of a run over its duration is the rate, without bias, for starts from the
+ * The mean count of a run over its duration is the rate, without bias, for initial states from the
  * invariant measure. Events of one run depend on each other, so errors come from the spread of the
  * counts between runs, which are independent: not from the square root of the number of events.
  *
@@ -186,7 +186,7 @@ class Runs {
   constructor(width, height, radius, seed) {
     this.scene = [width, height, radius];
     this.random = new Random(seed);
-    this.start = starter(width, height, radius);
+    this.draw = initialStates(width, height, radius);
     this.exact = exact(width, height, radius);
     this.done = 0;
     this.events = 0;
@@ -200,7 +200,7 @@ class Runs {
   }
 
   begin() {
-    this.current = this.start(this.random);
+    this.current = this.draw(this.random);
     this.pair = new Pair(...this.scene, this.current);
     this.time = 0;
     this.counts = new Float64Array(COUNTED.length);
@@ -264,7 +264,7 @@ class Runs {
     this.begin();
   }
 
-  /** {count, time, error, exact, z} of an event, by its place in COUNTED; null for what is not
+  /** {count, time, error, exact, z} of an event, by its index in COUNTED; null for what is not
    *  known. z is positive where the time is too long. */
   measured(i) {
     const n = this.done, count = this.sums[i], exact = this.exact.times[COUNTED[i]];

@@ -117,8 +117,8 @@ function changed() {
 
 // The drawing --------------------------------------------------------------------------------
 
-function show(start) {
-  const pair = new Pair(state.width, state.height, state.radius, start);
+function show(initial) {
+  const pair = new Pair(state.width, state.height, state.radius, initial);
   drawn = { pair, time: 0, trail: [[0, pair.x1, pair.y1, pair.x2, pair.y2]], flash: null };
 }
 
@@ -184,9 +184,9 @@ function draw() {
   context.textBaseline = "middle";
   context.fillStyle = "#000";
   context.font = "600 14px system-ui, sans-serif";
-  const place = (x, y) => [wide / 2 + scale * x, high / 2 - scale * y];
+  const pixels = (x, y) => [wide / 2 + scale * x, high / 2 - scale * y];
   if (scale * state.radius > 8) {
-    for (const [x, y, , name] of discs) context.fillText(name, ...place(x, y));
+    for (const [x, y, , name] of discs) context.fillText(name, ...pixels(x, y));
   }
   const age = flash ? time - flash.since : Infinity;
   if (age < 0.35) {
@@ -201,8 +201,8 @@ function draw() {
     context.lineWidth = 1.5;
     context.strokeStyle = "#000";
     context.beginPath();
-    context.moveTo(...place(...ends[0]));
-    context.lineTo(...place(...ends[1]));
+    context.moveTo(...pixels(...ends[0]));
+    context.lineTo(...pixels(...ends[1]));
     context.stroke();
     context.setLineDash([]);
     const above = high / 2 - (scale * state.height) / 2 + 16;
@@ -257,8 +257,8 @@ function exactCurves() {
   const edges = [0, ...ends, largestRadius(state.width, state.height)];
   const radii = edges.slice(1).flatMap((high, i) => Array.from({ length: DENSE }, (_, j) =>
     edges[i] + (high - edges[i]) * Math.sin((Math.PI / 2) * ((j + 0.5) / DENSE)) ** 2));
-  const found = radii.map((radius) => [radius, exact(state.width, state.height, radius)]);
-  const kept = found.filter(([, numbers]) => numbers !== null);
+  const computed = radii.map((radius) => [radius, exact(state.width, state.height, radius)]);
+  const kept = computed.filter(([, numbers]) => numbers !== null);
   return [
     kept.map(([radius]) => radius),
     ...COUNTED.map((event) => kept.map(([, { times }]) => times[event])),
@@ -400,9 +400,11 @@ function showIntervals() {
   const hop = Number(at("hop").value), event = COUNTED[hop];
   const { bins, mean, total } = runs.histograms[hop];
   const width = REACH / BINS;
-  const places = Array.from(bins, (_, i) => (i + 0.5) * width);
+  const centres = Array.from(bins, (_, i) => (i + 0.5) * width);
   const density = Array.from(bins, (count) => (count ? count / (total * width) : null));
-  intervalsPlot.setData([places, density, places.map((x) => (mean === null ? null : Math.exp(-x)))]);
+  intervalsPlot.setData([
+    centres, density, centres.map((x) => (mean === null ? null : Math.exp(-x))),
+  ]);
   at("said").textContent = mean === null
     ? `In this box discs of this radius make no ${NAMES[event]}.`
     : `Bars are ${whole(total)} intervals, drawn without errors; the dashed line is the exponential`

@@ -73,9 +73,9 @@ function measures({ A, B, sigma, float }) {
   let disc = 0;
   let right = a * beyondY ** 2;
   let top = b * beyondX ** 2;
-  for (const [t, rest, share] of RULE) {
+  for (const [t, rest, part] of RULE) {
     const after = t * turn, before = rest * turn;
-    const weight = share * turn * s;
+    const weight = part * turn * s;
     // The slacks A − σ cos θ and B − σ sin θ, each a sum of positive terms.
     const x = beyondX + 2 * s * Math.sin(after / 2) * Math.sin(beta + after / 2);
     const y = beyondY + 2 * s * Math.sin(before / 2) * Math.sin(alphaLeft + before / 2);

@@ -43,15 +43,15 @@ def by_monte_carlo(volumes, areas):
     shell are free samples, too: as if they were independent, the error is a little too large.
     """
     volume = {row["radius"]: row for row in volumes if row["stderr"] is not None}
-    found = {event: [] for event in COUNTED}
+    times = {event: [] for event in COUNTED}
     for row in areas:
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
-        if event in found and radius in volume and row["stderr"] is not None and row["exact"]:
+        if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
             whole, area = volume[radius], row["estimate"] - row["bias"]
             time = 1.5 * math.pi / DECLARED[event].sides * whole["estimate"] / area
             error = math.hypot(whole["stderr"] / whole["estimate"], row["stderr"] / area)
-            found[event].append([radius, time, time * error])
-    return found
+            times[event].append([radius, time, time * error])
+    return times
 
 
 def points(tables):
