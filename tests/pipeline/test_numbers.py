@@ -646,6 +646,12 @@ def passage_rows(exponent=0.4):
             for d, z in ((0.125, 0.5), (0.0625, -1.55))
             for method in ("hops", "states")
         ),
+        *(
+            row(quantity, d, value, 0.0123, "states", discs=discs)
+            for discs in (4, 8)
+            for d, value, rate in ((0.125, 0.97, 0.1), (0.0625, 0.8512, 0.0125))
+            for quantity, value in (("diffusion", value), ("rate", rate))
+        ),
         {"quantity": "single_file", "method": "lattice", "swap": 0.0, "estimate": 1.1}
         | {"stderr": 0.02},
         {"quantity": "diffusion", "method": "lattice", "swap": 1.0, "estimate": 0.49}
@@ -677,6 +683,10 @@ def test_passages_are_quoted_for_the_hop_that_is_blocked_first():
         "passages_ring_rough_last": "$1.062 (10)$",
         "passages_ring_first_distance": "$2^(-3)$",
         "passages_ring_last_distance": "$2^(-4)$",
+        "passages_files": "$0.85$ to $0.97$",
+        "passages_files_error": "$0.02$",
+        "passages_files_discs": "four and eight",
+        "passages_files_rates": "$8$",
         "passages_single_file": "$1.10 (2)$",
         "passages_lattice_first": "$0.490 (4)$",
         "passages_lattice_last": "$1.02 (5)$",

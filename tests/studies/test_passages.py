@@ -18,8 +18,9 @@ from twodiscs.dynamics.passages import cluster_sizes, initial_states
 from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
+from twodiscs.model.many import Gas
 from twodiscs.sampling.starts import state_in
-from twodiscs.studies.passages import exclusion, figure, measure
+from twodiscs.studies.passages import exclusion, figure, file, measure
 from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact
 
@@ -116,6 +117,43 @@ def test_bad_requests_are_refused(call, said):
 # The table and the figure -----------------------------------------------------------------------
 
 
+# A file of discs ----------------------------------------------------------------------------------
+
+
+def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
+    """Against the exact rate, and D by correlations of hops, which another kernel counts."""
+    scene = Box(1.5, 1.0, {"periodic": "x"}).scene(0.21875)
+    rows = list(measure.on_ring("ring", BOX, None, 2**18, 1))
+    due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
+    assert due["radius"] == scene.radius
+    moved, hops = file.diffusion(Gas(2, 1.5, 1.0, scene.radius, "x"), 64.0, 4096, 2)
+    assert abs(hops.value - exact.passing_rate(scene, HOP)) < 5 * hops.stderr
+    assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
+
+
+def test_hops_in_a_file_are_those_of_monte_carlo():
+    gas = Gas(3, 2.25, 1.0, 0.2, "x")
+    _, hops = file.diffusion(gas, 16.0, 2048, 3)
+    sampled = file.sampled_rate(gas, 10**5, 4)
+    assert sampled.stderr < 0.05 * sampled.value
+    assert abs(hops.value - sampled.value) < 5 * math.hypot(hops.stderr, sampled.stderr)
+
+
+def test_discs_that_cannot_pass_stay_in_their_file():
+    gas, replicas = Gas(3, 2.25, 1.0, 0.26, "x"), 64
+    states = file.initial.states(gas, replicas, 5)
+    squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
+    times = np.array([0.01, 1000.0])
+    file.follow(states, replicas, times, file.law_of(gas), squares, crossings)
+    assert not crossings.any()
+    # At the centre of mass, which rests, a file is no longer than the ring.
+    assert squares[:, 1].max() < gas.width**2
+    velocities = states[2 * gas.discs : 3 * gas.discs]
+    flown = (squares[:, 0] / times[0] ** 2) / np.mean(velocities**2, axis=0)
+    # Few have met anything by then.
+    assert np.median(flown) == pytest.approx(1, rel=1e-9)
+
+
 PARAMETERS = {"scenes": {"paper": BOX.parameters()}, "events": 2**18, "seed": 1}
 
 
@@ -125,6 +163,7 @@ def small(monkeypatch):
     for name, value in {
         "SMOOTH": range(5, 8), "ROUGH": range(4, 7), "RING": range(3, 4), "INERTIAS": (0.5, 1.0),
         "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
+        "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
 
@@ -146,6 +185,8 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small):
     with style.context():
         drawn = figure.draw(BOX, {"passages": rows})
     curves, powers, between, diffusion, residuals = drawn.axes
+    names = [text.get_text() for text in diffusion.get_legend().get_texts()]
+    assert "4 smooth discs on a ring" in names
     assert len(curves.lines) > 5
     tau = between.lines[0]
     limit = measure.thresholds(BOX)[HOP]

@@ -35,6 +35,9 @@ LOOKS = {
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
+#: Files of more than two discs.
+FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
+
 #: Boxes and hops of smooth discs after the first one.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
 
@@ -195,7 +198,7 @@ def _times(axes, box, hop, limit, rows):
 
 def _diffusion(axes, rows):
     """Draw D/(ν ℓ²) on the ring, by either method, and on the lattice."""
-    seen = _of(rows, quantity="diffusion")
+    seen = _of(rows, quantity="diffusion", discs=2)
     for inertia, name in ((None, "smooth discs"), (ONE_INERTIA, f"rough, $I={ONE_INERTIA:g}$")):
         for method, filled in (("hops", False), ("states", True)):
             own = _of(seen, method=method, moment_of_inertia=inertia)
@@ -203,7 +206,12 @@ def _diffusion(axes, rows):
                 x, y, error = _columns(own, "distance", "estimate", "stderr")
                 label = None if filled else f"{name} on a ring"
                 _points(axes, x, y, error, LOOKS[inertia], label, filled)
-    own = _of(seen, method="lattice")
+    for discs, look in FILES.items():
+        own = _of(rows, quantity="diffusion", discs=discs)
+        if own:
+            x, y, error = _columns(own, "distance", "estimate", "stderr")
+            _points(axes, x, y, error, look, f"{discs} smooth discs on a ring", True)
+    own = _of(rows, quantity="diffusion", method="lattice")
     x, y, error = _columns(own, "swap", "estimate", "stderr")
     _points(axes, x, y, error, (GREEN, "^"), "lattice, single file")
     axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
@@ -219,7 +227,7 @@ def _residuals(axes, rows):
     """Draw z of all that has an exact value, or another estimate."""
     looks = {
         "slope": (BLUE, "o", r"$\kappa'(0)$, exact"),
-        "rate": (GREEN, "^", r"rate on the ring, exact"),
+        "rate": (GREEN, "^", r"rate on the ring"),
         "plateau": (VERMILLION, "s", r"$\kappa$ by $\kappa(t)$ and by clusters"),
         "diffusion": (PURPLE, "D", "$D$ by displacements and by hops"),
     }

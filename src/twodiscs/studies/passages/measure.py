@@ -23,7 +23,8 @@ from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.checks import whole
 from twodiscs.model.events import HOPS
-from twodiscs.studies.passages import exclusion
+from twodiscs.model.many import Gas
+from twodiscs.studies.passages import exclusion, file
 from twodiscs.theory import exact, tails
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
@@ -48,6 +49,10 @@ FIRST = 0.01
 #: A ring: correlations of hops are summed up for so many times that a disc takes around it, and
 #: displacements for twice that time, or two mean times between hops, in so many replicas or more.
 AROUND, FEWEST = 16, 2**11
+
+#: Discs in a file on a ring; times, in mean times between the hops of a disc either way, that they
+#: are followed for; no more replicas and no fewer; samples of the rate of their hops.
+FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**20
 
 #: Probabilities of swaps on the lattice; rings of it where it takes long, and where it does not.
 SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
@@ -83,6 +88,7 @@ class _Hop:
             "height": scene.height,
             "periodic": scene.periodic or None,
             "event": hop,
+            "discs": 2,
             "radius": scene.radius,
             "distance": 2.0**-halvings,
             "exact_mean": self.mean,
@@ -232,6 +238,31 @@ def on_ring(name, box, inertia, events, seed):
         yield from _Hop(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
+def in_file(name, box, discs, events, seed):
+    """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
+    for n in RING:
+        scene = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
+        gas = Gas(discs, box.width * discs / 2, box.height, scene.radius, "x")
+        row = {
+            "scene": name, "width": gas.width, "height": gas.height, "periodic": "x",
+            "event": "horizontal_hop", "discs": discs, "radius": gas.radius,
+            "distance": 2.0**-n, "method": "states",
+        }  # fmt: skip
+        streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
+        sampled = file.sampled_rate(gas, FILE_SAMPLES, streams[0])
+        # A power of two: a time of its own would be rounded by the last digits of the rate.
+        time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
+        price = 2 * time * exact.event_rate(scene) * (discs / 2) ** 0.5
+        replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
+        moved, hops = file.diffusion(gas, time, replicas, streams[1])
+        z = (hops.value - sampled.value) / math.hypot(hops.stderr, sampled.stderr)
+        counted = {"estimate": hops.value, "stderr": hops.stderr, "z": z, "test": "normal"}
+        reference = {"reference": sampled.value, "reference_stderr": sampled.stderr}
+        row |= {"time": 2 * time, "replicas": moved.n}
+        yield row | counted | reference | {"quantity": "rate"}
+        yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
+
+
 def on_lattice(seed):
     """Yield the rows of the single file on a lattice."""
     start = {"event": "swap", "method": "lattice"}
@@ -273,4 +304,6 @@ def rows(scenes, events, seed):
         if index == 0 and box.fits(box.height / 4):
             for inertia in (None, ONE_INERTIA):
                 yield from on_ring(name, box, inertia, events, seed)
+            for discs in FILES:
+                yield from in_file(name, box, discs, 2 * events, seed)
     yield from on_lattice(seed)

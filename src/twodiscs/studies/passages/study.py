@@ -37,8 +37,9 @@ STUDY = Study(
             end) and mean time τ/κ between passages (symbols), with the powers fitted to all that
             is shown. (d) Coefficient D of diffusion of two discs on a ring, over that of a random
             walk with ν hops per time in either direction, each by ℓ, by correlations of hops
-            (open symbols) and by displacements (dots); and of a tagged particle of a single file
-            on a lattice, whose neighbours swap with the probability p. (e) Residuals z, in
+            (open symbols) and by displacements (dots); of discs in a file of four and of eight, by
+            displacements; and of a tagged particle of a single file on a lattice, whose neighbours
+            swap with the probability p. (e) Residuals z, in
             standard errors, against exact values or between two estimators. Error bars are one
             standard error.
             """,

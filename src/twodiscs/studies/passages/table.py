@@ -19,6 +19,8 @@ class Passages(Table):
     """axes without walls; empty for none"""
     event: TEXT
     """the hop; swap on the lattice"""
+    discs: COUNT
+    """number of discs; empty for the lattice"""
     radius: LENGTH
     distance: NUMBER
     """
@@ -37,8 +39,8 @@ class Passages(Table):
     clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
     1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
     the one before; passage_exponent: of the time between passages, over all distances; rate:
-    of hops; diffusion: D/(ν ℓ²) with ν hops per time in either direction, each by ℓ; single_file: F
-    of the mean square displacement F √t
+    of hops of two discs, or of each of more; diffusion: D/(ν ℓ²) with ν hops of a disc per time in
+    either direction, each by ℓ; single_file: F of the mean square displacement F √t
     """
     method: TEXT
     """
@@ -52,7 +54,9 @@ class Passages(Table):
     stderr: AS_ESTIMATE
     """its standard error"""
     reference: AS_ESTIMATE
-    """what it should come to: exact, or by the other method"""
+    """
+    what it should come to: exact, or by the other method; of more than two discs by Monte Carlo
+    """
     reference_stderr: AS_ESTIMATE
     """standard error of the reference; empty where that is exact"""
     z: NUMBER

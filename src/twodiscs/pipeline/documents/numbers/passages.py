@@ -7,7 +7,9 @@ from twodiscs.pipeline.documents.numbers.agreement import scores
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
     at_most,
+    in_words,
     significant,
+    span,
     whole,
     with_error,
 )
@@ -92,6 +94,17 @@ def passages(rows, scene):
                 "passages_ring_first_distance": _power_of_two(ring[0]["distance"]),
                 "passages_ring_last_distance": _power_of_two(ring[-1]["distance"]),
             }
+    files = [r for r in boxed if r["quantity"] == "diffusion" and (r["discs"] or 0) > 2]
+    if files:
+        numbers |= {
+            "passages_files": span([row["estimate"] for row in files]),
+            "passages_files_error": at_most([row["stderr"] for row in files], 1),
+            "passages_files_discs": Number(
+                None, " and ".join(in_words(n).text for n in sorted({r["discs"] for r in files}))
+            ),
+        }
+        rates = [row["estimate"] for row in boxed if row["quantity"] == "rate" and row["discs"] > 2]
+        numbers["passages_files_rates"] = significant(max(rates) / min(rates), 2)
     for row in rows:
         if row["method"] == "lattice" and row["quantity"] == "single_file":
             numbers["passages_single_file"] = _estimate(row)

@@ -1,0 +1,105 @@
+"""A file of N smooth discs on a ring: how far a tagged disc goes, and how often discs hop.
+
+The ring has the same length for each disc as that of two. In its frame, whose momentum is zero, a
+disc goes round only by hops: by ℓ, the length for a disc, at each of them. If they were
+uncorrelated, and ν the rate of its hops in either direction, it would have D = ν ℓ².
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.comparison.estimates import Estimate, mean_of
+from twodiscs.dynamics.ensemble import LANES
+from twodiscs.dynamics.many import N, advance, find_events, law_of, nearest
+from twodiscs.model.checks import ascending, whole
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.many import initial, measures
+from twodiscs.theory.weighted import constant
+
+
+@compiled
+def follow(states, lanes, times, law, squares, crossings):
+    """Follow initial ``states`` (4 N, replicas) on a ring to the ascending ``times``.
+
+    Fills ``squares`` (replicas, times), the mean over the discs of their squared displacement along
+    x, and ``crossings`` (replicas), how often two discs came to be level up to the last time.
+    ``replicas`` is a multiple of ``lanes``.
+    """
+    discs, replicas = states.shape[0] // 4, states.shape[1]
+    x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
+    moved, level = np.zeros((discs, lanes)), np.zeros(lanes)
+    remaining, flight = np.zeros(lanes), np.zeros(lanes)
+    codes, speeds, counts = np.zeros(lanes), np.zeros(lanes), np.zeros((N, lanes))
+    for first in range(0, replicas, lanes):
+        moved[:], level[:] = 0.0, 0.0
+        for i in range(discs):
+            x[i], y[i] = states[i, first : first + lanes], states[discs + i, first : first + lanes]
+            u[i] = states[2 * discs + i, first : first + lanes]
+            v[i] = states[3 * discs + i, first : first + lanes]
+        before = 0.0
+        for k in range(times.size):
+            remaining[:] = times[k] - before
+            before = times[k]
+            while np.max(remaining) > 0.0:
+                find_events(x, y, u, v, remaining, flight, codes, speeds, law)
+                for i in range(discs):
+                    for j in range(i):
+                        for l in range(lanes):
+                            # A flight is too short for two discs to meet around the ring.
+                            apart = nearest(x[i, l] - x[j, l], law.ring)
+                            then = apart + (u[i, l] - u[j, l]) * flight[l]
+                            level[l] += 1.0 if (apart > 0.0) != (then > 0.0) else 0.0
+                    for l in range(lanes):
+                        moved[i, l] += u[i, l] * flight[l]
+                advance(x, y, u, v, old_x, old_y, remaining, flight, codes, counts, law, None)
+            for l in range(lanes):
+                total = 0.0
+                for i in range(discs):
+                    total += moved[i, l] * moved[i, l]
+                squares[first + l, k] = total / discs
+        crossings[first : first + lanes] = level
+
+
+def diffusion(gas, time, replicas, seed):
+    """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Gas`` on a ring.
+
+    D is from what is displaced between ``time`` and twice that, ν from all hops until then, of
+    ``replicas`` independent initial states (rounded up to whole lanes). Raises ``InputError`` for
+    numbers out of range.
+    """
+    (time,) = ascending("time", [time])
+    replicas = -(-whole("replicas", replicas, 2) // LANES) * LANES
+    states = initial.states(gas, replicas, seed)
+    squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
+    follow(states, LANES, np.array([time, 2 * time]), law_of(gas), squares, crossings)
+    hops = mean_of(2 * crossings / (gas.discs * 2 * time))
+    per_disc = gas.width / gas.discs
+    moved = mean_of((squares[:, 1] - squares[:, 0]) / (2 * time) / per_disc**2)
+    ratio = moved.value / (hops.value / 2)
+    error = ratio * math.hypot(moved.stderr / moved.value, hops.stderr / hops.value)
+    return Estimate(ratio, error, replicas), hops
+
+
+def sampled_rate(gas, samples, seed):
+    """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo.
+
+    The rate of hops of all pairs is √2 c_D Σ ∫ δ(x_i − x_j)/V, see ``theory.many.rates``.
+    """
+    blocks = -(-whole("samples", samples) // measures.BLOCK)
+    sums, products = measures.run_blocks(gas, seed, 0, blocks)
+    level, volume = (measures.QUANTITIES.index(name) for name in ("hops_x", "volume"))
+    weight = float(sums[volume])
+    ratio = sums[level] / weight
+    # Σ (w_level − ratio w_volume)², over (Σ w_volume)².
+    squares = (
+        products[level, level]
+        - 2 * ratio * products[volume, level]
+        + ratio**2 * products[volume, volume]
+    )
+    variance = squares * measures.UNITS / weight**2
+    pairs = gas.discs * (gas.discs - 1) / 2 / gas.width
+    factor = 2 / gas.discs * math.sqrt(2) * constant(gas.velocity_components) * pairs
+    return Estimate(factor * ratio, factor * math.sqrt(variance), blocks * measures.BLOCK)
