@@ -6,8 +6,6 @@ python -m twodiscs.pipeline.results.verdict results/paper/check.csv … --output
 import sys
 from pathlib import Path
 
-from twodiscs.comparison import scores
-from twodiscs.comparison.check import judged
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.studies.catalogue import STUDY_TABLES
@@ -59,7 +57,9 @@ def verdict(tables, studies):
     ``tables`` are the check tables of scenes. ``studies`` have scores z without verdicts: each
     study fails by chance as seldom as a scene does, by Bonferroni's bound.
     """
-    studies = {name: judged(rows, scores.FALSE_ALARM) for name, rows in studies.items()}
+    from twodiscs.comparison import check, scores  # which need numpy and scipy
+
+    studies = {name: check.judged(rows, scores.FALSE_ALARM) for name, rows in studies.items()}
     failures = [
         sentence(name, row)
         for sentence, judgements in ((failure, tables), (study_failure, studies))
