@@ -25,7 +25,7 @@ def arrows():
     """Return {room: rooms that its modules import, without itself}, in the order of ``ROOMS``."""
     found = {room: set() for room in ROOMS}
     for module in modules():
-        if module:
+        if module and module != ("__main__",):  # which is the cli
             room = module[0]
             found[room] |= {target[0] for target in imports_of(module) if target} - {room}
     return {room: [other for other in ROOMS if other in found[room]] for room in ROOMS}

@@ -19,21 +19,36 @@ from __future__ import annotations
 # What an editor reads; the module typing would take as long to import as all else here.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from os import PathLike
+    from typing import TypedDict, Unpack
 
     import numpy as np
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from twodiscs.comparison.measurements import Intervals, Measurement, Measurements
-    from twodiscs.comparison.transmission import Transmission
+    from twodiscs.comparison.measured.measurements import Intervals, Measurement, Measurements
+    from twodiscs.comparison.measured.observe import Observed
+    from twodiscs.comparison.measured.scan import Scan
+    from twodiscs.comparison.measured.trajectory import Trajectory
+    from twodiscs.comparison.measured.transmission import Transmission
     from twodiscs.model.box import Box
     from twodiscs.model.checks import InputError
     from twodiscs.model.effects import EFFECTS
     from twodiscs.model.events import EVENTS
     from twodiscs.model.scene import Scene
     from twodiscs.theory.exact import areas, exact, mean_times, rate, volume
+
+    class Effects(TypedDict, total=False):
+        """The effects as keywords, each of which may be left out."""
+
+        depth: float | None
+        radius_ratio: float
+        mass_ratio: float
+        periodic: str | Sequence[str]
+        field: float
+        moment_of_inertia: float | None
+
 
 __version__ = "0.1.0"
 
@@ -43,11 +58,14 @@ _HOMES = {
     "EFFECTS": "model.effects",
     "EVENTS": "model.events",
     "InputError": "model.checks",
-    "Intervals": "comparison.measurements",
-    "Measurement": "comparison.measurements",
-    "Measurements": "comparison.measurements",
+    "Intervals": "comparison.measured.measurements",
+    "Measurement": "comparison.measured.measurements",
+    "Measurements": "comparison.measured.measurements",
+    "Observed": "comparison.measured.observe",
+    "Scan": "comparison.measured.scan",
     "Scene": "model.scene",
-    "Transmission": "comparison.transmission",
+    "Trajectory": "comparison.measured.trajectory",
+    "Transmission": "comparison.measured.transmission",
     "areas": "theory.exact",
     "exact": "theory.exact",
     "mean_times": "theory.exact",
@@ -56,9 +74,10 @@ _HOMES = {
 }
 
 __all__ = [
-    "EFFECTS", "EVENTS", "Box", "InputError", "Intervals", "Measurement", "Measurements", "Scene",
-    "Transmission", "animate", "areas", "exact", "exact_table", "intervals", "load", "mean_times",
-    "plot", "rate", "sample", "simulate", "starts", "trajectory", "transmission", "volume",
+    "EFFECTS", "EVENTS", "Box", "InputError", "Intervals", "Measurement", "Measurements",
+    "Observed", "Scan", "Scene", "Trajectory", "Transmission", "animate", "areas", "exact",
+    "exact_table", "intervals", "load", "load_result", "mean_times", "observe", "plot",
+    "rate", "sample", "scan", "simulate", "starts", "trajectory", "transmission", "volume",
 ]  # fmt: skip
 
 
@@ -75,13 +94,20 @@ def __dir__() -> list[str]:
     return [*__all__, "__version__"]
 
 
-def exact_table(width: float, height: float, radii: Iterable[float], **effects) -> pd.DataFrame:
+def exact_table(
+    width: float, height: float, radii: Iterable[float], **effects: Unpack[Effects]
+) -> pd.DataFrame:
     """Return the exact numbers of a box over ``radii``: a row a radius.
 
     Columns are regime, ergodic_components, volume, and <event>_area and <event>_time of every
-    event; a time is NaN where the event is impossible. ``effects`` are those of ``Scene``.
+    event; a time is NaN where the event is impossible. ``width``, ``height`` and ``effects`` are
+    those of ``Scene``. Raises ``InputError`` for a radius that does not fit, and for none at all.
+
+    Example:
+
+        td.exact_table(1.5, 1.0, [0.1, 0.2])["vertical_hop_time"]
     """
-    from twodiscs.comparison import measurements
+    from twodiscs.comparison.measured import measurements
 
     return measurements.exact_table(width, height, radii, effects)
 
@@ -93,17 +119,62 @@ def simulate(
     budget: float = 2e9,
     events: Sequence[str] | None = None,
     name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
 ) -> Measurements:
     """Measure mean times by molecular dynamics: {event: ``Measurement``}, in time.
 
     Trajectories from the invariant measure are followed until every relative standard error is
-    below ``error`` (one for all, or {event: error}), or ``budget`` wall and disc events are
-    simulated. ``events`` are those to watch, all that have a place in the scene if None. The first
-    call compiles for some seconds; compiled code is kept.
-    """
-    from twodiscs.comparison import measurements
+    below ``error``, between 0 and 1 (one for all, or {event: error}), or ``budget`` wall and disc
+    events are simulated. Work comes in whole blocks of 1024 trajectories, some 1e5 events each: the
+    smallest budget has one, and is then exceeded. ``events`` are those to watch, all that have a
+    place in the scene if None. ``seed`` is an integer ≥ 0.
 
-    return measurements.simulate(scene, error, seed, budget, events, name)
+    On any number of ``cores`` the numbers are the same. ``progress`` shows how far it is; None
+    means in a terminal or a notebook alone. The first call compiles for some seconds; compiled code
+    is kept. Ctrl-C stops at once. ``more(error=…)`` of the result goes on from it. Raises
+    ``InputError`` for an unknown event or a number out of range.
+
+    Example:
+
+        td.simulate(td.Scene(1.5, 1.0, 0.2), error=1e-2)["vertical_hop"].value
+    """
+    from twodiscs.comparison.measured import measurements
+
+    return measurements.simulate(scene, error, seed, budget, events, name, cores, progress)
+
+
+def scan(
+    width: float,
+    height: float,
+    radii: Iterable[float],
+    error: float | Mapping[str, float] = 1e-2,
+    seed: int = 1,
+    budget: float = 2e9,
+    events: Sequence[str] | None = None,
+    name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
+    **effects: Unpack[Effects],
+) -> Scan:
+    """Measure mean times by molecular dynamics at several ``radii`` of a box: a ``Scan``.
+
+    It is a sequence of the results of ``simulate`` in the order of radii, whose errors are
+    independent; ``plot`` draws it beside the exact curves, and ``frame()`` is a table. ``width``,
+    ``height`` and ``effects`` are those of ``Scene``, ``budget`` is that of each radius, and all
+    else is as in ``simulate``.
+
+    Example:
+
+        td.plot(td.scan(1.5, 1.0, [0.1, 0.2], error=0.05), figure="mean_wall_time")
+    """
+    from twodiscs.comparison.measured import scan
+
+    return scan.scan(
+        width, height, radii, error, seed, budget, events, name, cores, progress, effects
+    )
 
 
 def sample(
@@ -113,100 +184,230 @@ def sample(
     quantities: Sequence[str] | None = None,
     shell: float = 0.02,
     name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
 ) -> Measurements:
     """Measure volume and areas by Monte Carlo: {quantity: ``Measurement``}, in length⁴ and length³.
 
     ``quantities`` are some of "volume" and "<event>_area", all if None. ``samples`` configurations
-    are drawn, rounded up to whole blocks. Areas are those of shells, whose thickness is a share
-    ``shell`` of the radius or of the room that is left: z is against the exact expectation of that.
-    """
-    from twodiscs.comparison import measurements
+    are drawn, an integer that is rounded up to whole blocks. Areas are those of shells, whose
+    thickness is a fraction ``shell``, between 0 and 1, of the radius or of the room that is left: z
+    is against the exact expectation of that. For balls the units are length⁶ and length⁵.
 
-    return measurements.sample(scene, samples, seed, quantities, shell, name)
+    ``seed``, ``cores`` and ``progress`` are as in ``simulate``; ``more(samples=…)`` of the result
+    goes on from it. Raises ``InputError`` for an unknown quantity or a number out of range.
+
+    Example:
+
+        td.sample(td.Scene(1.5, 1.0, 0.2), 1e6)["volume"].stderr
+    """
+    from twodiscs.comparison.measured import measurements
+
+    return measurements.sample(scene, samples, seed, quantities, shell, name, cores, progress)
 
 
 def intervals(
-    scene: Scene, hop: str, number: float = 10**6, seed: int = 1, name: str | None = None
+    scene: Scene,
+    hop: str,
+    number: float = 10**6,
+    seed: int = 1,
+    name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
 ) -> Intervals:
     """Draw ``number`` intervals between hops of one kind: their mean, bins and density at 0.
 
-    ``hop`` is "vertical_hop" or "horizontal_hop". Numbers are rounded up to whole blocks of 2¹⁶.
-    """
-    from twodiscs.comparison import measurements
+    ``hop`` is "vertical_hop" or "horizontal_hop". Numbers are rounded up to whole blocks of 2¹⁶,
+    as far as 1e11 events allow. Times are in time, densities in 1/time. ``seed``, ``cores`` and
+    ``progress`` are as in ``simulate``; ``more(number=…)`` of the result goes on from it. Raises
+    ``InputError`` for a hop that is blocked, and for rough discs.
 
-    return measurements.intervals(scene, hop, number, seed, name)
+    Example:
+
+        td.intervals(td.Scene(1.5, 1.0, 0.2), "vertical_hop", 1e5).mean.value
+    """
+    from twodiscs.comparison.measured import measurements
+
+    return measurements.intervals(scene, hop, number, seed, name, cores, progress)
 
 
 def transmission(
-    scene: Scene, hop: str, hops: float = 2**17, seed: int = 1, name: str | None = None
+    scene: Scene,
+    hop: str,
+    hops: float = 2**17,
+    seed: int = 1,
+    name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
 ) -> Transmission:
     """Measure which hops of one kind are passages, that is, not soon undone.
 
     The ``Transmission`` has the coefficient κ, the fraction of hops that are passages, with its
     error; the mean time between passages; and the curve κ(t), in ``frame()``. ``hops``, an integer
     rounded up to whole blocks, are followed both ways in time for the one, and forwards for the
-    other. Raises ``InputError`` for a hop that is blocked or along a periodic axis.
+    other. ``seed``, ``cores`` and ``progress`` are as in ``simulate``; ``more(hops=…)`` of the
+    result goes on from it. Raises ``InputError`` for a hop that is blocked or along a periodic
+    axis.
+
+    Example:
+
+        td.transmission(td.Scene(1.5, 1.0, 0.246), "horizontal_hop", 2**14).coefficient
     """
-    from twodiscs.comparison import transmission
+    from twodiscs.comparison.measured import transmission
 
-    return transmission.transmission(scene, hop, hops, seed, name)
+    return transmission.transmission(scene, hop, hops, seed, name, cores, progress)
 
 
-def starts(scene: Scene, number: float, seed: int = 1, name: str | None = None) -> np.ndarray:
-    """Draw ``number`` states of the invariant measure: an array with named columns.
+def starts(
+    scene: Scene,
+    number: float,
+    seed: int = 1,
+    name: str | None = None,
+    *,
+    progress: bool | None = None,
+) -> np.ndarray:
+    """Draw ``number`` states of the invariant measure: an array (number,) with named columns.
 
     x1, y1, x2, y2 are the centres, from that of the box; u1, v1, u2, v2 the velocities. Balls have
-    z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their surfaces.
-    """
-    from twodiscs.comparison import measurements
+    z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their surfaces. ``number`` is an
+    integer up to 10⁸; ``seed`` and ``progress`` are as in ``simulate``. Raises ``InputError`` for
+    a number out of range, and where starts cannot be drawn.
 
-    return measurements.starts(scene, number, seed, name)
+    Example:
+
+        td.starts(td.Scene(1.5, 1.0, 0.2), 1000)["x1"].mean()
+    """
+    from twodiscs.comparison.measured import measurements
+
+    return measurements.starts(scene, number, seed, name, progress)
 
 
 def trajectory(
     scene: Scene,
     seed: int = 1,
-    start: Sequence[float] | None = None,
+    start: Sequence[float] | np.ndarray | np.void | None = None,
     duration: float | None = None,
     name: str | None = None,
-) -> pd.DataFrame:
-    """Follow one trajectory: a row an event, with its time, name, and the centres of the discs.
+    *,
+    progress: bool | None = None,
+) -> Trajectory:
+    """Follow one trajectory: a table with a row an event, its time, name, and the state after it.
 
     It starts where the first one of ``starts`` with this seed is, or at the state ``start``, whose
-    discs must be inside and apart, at an energy of 1/2. Without a ``duration`` it lasts some eight
-    mean times of the rarest open hop, or some 6000 events. Hops are events here. ``attrs["scene"]``
-    is the scene.
+    discs must be inside and apart, at an energy of 1/2. Without a ``duration``, a time, it lasts
+    some eight mean times of the rarest open hop, or some 6000 events. Hops are events here. On
+    periodic axes places go on beyond the cell.
+
+    The table is a pandas ``DataFrame``, with columns as in ``starts``; ``attrs["scene"]`` is the
+    scene, and ``states_at(times)`` has the states between the rows. Raises ``InputError`` for a
+    start that is no state, and a duration of more than 10⁷ events.
+
+    Example:
+
+        td.trajectory(td.Scene(1.5, 1.0, 0.2), duration=10).states_at([1, 2.5])["x1"]
     """
-    from twodiscs.comparison import measurements
+    from twodiscs.comparison.measured import trajectory
 
-    return measurements.trajectory(scene, seed, start, duration, name)
+    return trajectory.trajectory(scene, seed, start, duration, name, progress)
 
 
-def plot(result, path: str | PathLike | None = None, figure: str | None = None) -> Figure:
+def observe(
+    scene: Scene,
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    times: Iterable[float],
+    replicas: float = 2**16,
+    seed: int = 1,
+    name: str | None = None,
+    *,
+    cores: int = 1,
+    progress: bool | None = None,
+) -> Observed:
+    """Average what a function of yours sees of trajectories that start in the invariant measure.
+
+    ``function(start, now)`` takes two arrays of states, as those of ``starts``, at time 0 and at
+    one of the ascending ``times`` ≥ 0, and returns an array with a number, or an array, for each of
+    the states. On periodic axes places go on beyond the cell. ``replicas``, an integer, is rounded
+    up to whole blocks of 4096.
+
+    The ``Observed`` has ``mean`` and ``stderr`` at each time, from the spread between the replicas,
+    which are independent; those of different times belong to the same replicas. ``seed``,
+    ``cores`` and ``progress`` are as in ``simulate``. Raises ``InputError`` for times of more than
+    10⁷ events, and a function that returns anything else.
+
+    Example:
+
+        td.observe(td.Scene(1.5, 1.0, 0.2), lambda start, now: start["u1"] * now["u1"], [0, 1])
+    """
+    from twodiscs.comparison.measured import observe
+
+    return observe.observe(scene, function, times, replicas, seed, name, cores, progress)
+
+
+def plot(
+    result: object, path: str | PathLike[str] | None = None, figure: str | None = None
+) -> Figure:
     """Draw a result, and write it to ``path`` (.pdf, .png or .svg) if that is given.
 
-    ``result`` is a trajectory, a result of ``simulate``, ``sample`` or ``intervals``, or a list of
-    such results at several radii of one box, which are drawn beside the exact curves; a scene or
-    box is sketched. ``figure`` names one of several that suit, as the workflow does.
+    ``result`` is a trajectory, a ``Scan``, a result of ``simulate``, ``sample`` or ``intervals``, a
+    list of such results at several radii of one box, which are drawn beside the exact curves, or a
+    table of a scene that ``load`` returns; a scene or box is sketched. ``figure`` names one
+    of several that suit, as the workflow does. A notebook shows what is returned; at a plain prompt
+    a window does. Raises ``InputError`` for what no figure shows.
+
+    Example:
+
+        td.plot(td.Scene(1.5, 1.0, 0.2), "model.png")
     """
     from twodiscs.figures import plot
 
     return plot.plot(result, path, figure)
 
 
-def animate(trajectory: pd.DataFrame, path: str | PathLike) -> None:
-    """Write an animation of a hop of a trajectory to ``path``, a .gif or .png file."""
+def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
+    """Write an animation of a hop of a trajectory to ``path``, a .gif or .png file.
+
+    Raises ``InputError`` for anything but a trajectory of a scene without effects.
+
+    Example:
+
+        td.animate(td.trajectory(td.Scene(1.5, 1.0, 0.2)), "two.gif")
+    """
     from twodiscs.figures import plot
 
     plot.animate(trajectory, path)
 
 
-def load(folder: str | PathLike) -> dict[str, pd.DataFrame]:
+def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     """Read every table in a folder of results, "results/paper" say: {name: table}.
 
     ``attrs`` of a table hold its units and the meanings of its columns, and where it comes from:
-    path, sha256, and what the configuration said.
+    path, sha256, and what the configuration said. Raises ``InputError`` for a folder without
+    tables, and a table that is damaged.
+
+    Example:
+
+        td.plot(td.load("results/paper")["mean_times"], figure="mean_hop_time")
     """
     from twodiscs.pipeline.results import frames
 
     return frames.load(folder)
+
+
+def load_result(
+    path: str | PathLike[str],
+) -> Measurements | Intervals | Transmission | Scan:
+    """Read what ``save(path)`` of a result wrote: the same object, which can go on with ``more``.
+
+    A file is of use to the version of the package that wrote it. Raises ``InputError`` for another
+    version, and for anything that is no such file.
+
+    Example:
+
+        td.load_result("hops.json").more(error=1e-3)
+    """
+    from twodiscs.comparison.measured import result
+
+    return result.load_result(path)

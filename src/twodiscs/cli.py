@@ -2,7 +2,6 @@
 
 import csv
 import json
-import os
 import sys
 
 import twodiscs
@@ -23,13 +22,7 @@ def _main():
     if options.command is None:
         parser.print_help()
         return
-    scene = scene_of(options)
-    try:
-        options.work(scene, options)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        # Who reads has seen enough: what is left goes nowhere, in silence.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    options.work(scene_of(options), options)
 
 
 def _parser():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison import transmission
 from twodiscs.comparison.estimates import Estimate
+from twodiscs.comparison.measured import transmission
 from twodiscs.dynamics.passages import LARGEST, REPLICAS, SUMS
 
 

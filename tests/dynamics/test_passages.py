@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scalar_passages import replicas
 
-from twodiscs.comparison.transmission import by_clusters, by_time
+from twodiscs.comparison.measured.transmission import by_clusters, by_time
 from twodiscs.dynamics import passages
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.law import law_of

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -104,14 +105,42 @@ def test_sums_beyond_64_bits_are_exact():
 
 @pytest.mark.parametrize("budget", [1e12, 5e6])
 def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
-    reports = []
+    seen = []
     run, counts = fabricated(0.003, budget)
-    done = rounds.in_rounds(run, lambda text, left: reports.append(left))
+    done = rounds.in_rounds(run, lambda *given: seen.append(given))
     total = int(counts[: done.blocks].sum())
-    assert (int(done.sums[0][0]), len(reports)) == (total, done.rounds)
+    assert int(done.sums[0][0]) == total
     assert (done.excess[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
-    assert all(late < early for early, late in pairwise(reports))
+    # What is seen goes up to all that there is.
+    known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
+    assert known == sorted(known, key=lambda pair: pair[0])
+    assert known[-1][0] == done.blocks * run.block_work
+    assert known[-1][0] <= known[-1][1]
+
+
+@pytest.mark.parametrize("cores", [1, 3])
+@pytest.mark.parametrize("call", [1000, 7000, rounds.CALL])
+def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypatch, cores, call):
+    monkeypatch.setattr(rounds, "CALL", call)
+    kept = {}
+    for error in (0.1, 0.03, 0.01, 0.003, 0.02):
+        run, _ = fabricated(error, 1e12)
+        later, at_once = rounds.in_rounds(run, None, cores, kept), rounds.in_rounds(run)
+        assert later[1:3] == at_once[1:3]
+        assert later.sums[0].tolist() == at_once.sums[0].tolist()
+
+
+def test_what_is_kept_is_not_done_again():
+    run, _ = fabricated(0.01, 1e12)
+    done, work = [], run.work
+    run = replace(run, work=lambda *ends: done.append(ends) or work(*ends))
+    kept = {}
+    rounds.in_rounds(run, kept=kept)
+    once = len(done)
+    assert done == [(a, b) for a, b in pairwise([0, *sorted(kept)])]
+    rounds.in_rounds(run, kept=kept)
+    assert len(done) == once
 
 
 #: A wall and all of them: the kernel is the one that counts everything.

@@ -12,7 +12,7 @@ import pytest
 from fabricated import written
 
 from twodiscs.comparison.estimates import mean_of
-from twodiscs.comparison.transmission import by_clusters, plateau
+from twodiscs.comparison.measured.transmission import by_clusters, plateau
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.passages import cluster_sizes, initial_states
 from twodiscs.dynamics.trajectory import time_to_next

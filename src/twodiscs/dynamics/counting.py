@@ -35,7 +35,7 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import Scene, a_scene
-from twodiscs.sampling.blocks.rounds import SequentialRun, in_rounds, on_grid
+from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
 from twodiscs.sampling.streams import open_stream
@@ -288,13 +288,13 @@ def run_blocks(
     )  # fmt: skip
 
 
-def count_events(scene, target, budget, seed, report=None):
+def count_events(scene, target, budget, seed):
     """Count the events of a ``Scene`` in independent replicas until each is known well enough.
 
     ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
     blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
     events to simulate; a block of replicas is the least that is. Work goes in rounds: see
-    ``sampling.blocks.rounds``, also for ``report``.
+    ``sampling.blocks.rounds``.
 
     Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
     share the budget evenly with all the rest; what starts anywhere see of them is counted, too.
@@ -305,7 +305,7 @@ def count_events(scene, target, budget, seed, report=None):
     returns for each rare hop, and octaves of rough discs by event what ``sort_into_octaves`` does.
     Raises ``InputError`` for an unknown event or a number out of range.
     """
-    return CountingRun(scene, target, budget, seed).alone(report)
+    return CountingRun(scene, target, budget, seed).alone()
 
 
 @dataclass(frozen=True)
@@ -415,9 +415,9 @@ class CountingRun:
             "strips": strips,
         } | ({"octaves": by_octave} if by_octave else {})
 
-    def alone(self, report=None):
-        """Return the dict for a JSON file, all done in this process, in rounds."""
-        return self.point({name: in_rounds(run, report) for name, run in self.parts.items()})
+    def alone(self, watch=None, cores=1, kept=None):
+        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        return self.point(all_in_rounds(self.parts, watch, cores, kept))
 
 
 def work_per_event(scene):

@@ -25,7 +25,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene, a_scene
-from twodiscs.sampling.blocks.rounds import all_at_once, fixed
+from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
 from twodiscs.sampling.streams import open_stream
@@ -57,7 +57,20 @@ def wide_edges(bins=BINS):
 
 @compiled
 def record_returns(
-    seed, first, stop, chains, lanes, returns, law, draw, prism, horizontal, width, wide, sums
+    seed,
+    first,
+    stop,
+    chains,
+    lanes,
+    returns,
+    law,
+    draw,
+    prism,
+    horizontal,
+    width,
+    wide,
+    sums,
+    going,
 ):
     """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
 
@@ -108,7 +121,7 @@ def record_returns(
             left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
             started += 1
             running += 1
-        if running == 0:
+        if running == 0 or not going[0]:
             return totals
 
         for _ in range(PASSES):
@@ -136,10 +149,10 @@ def record_returns(
                 counts[lane_of[k], wide[index]] += 1
 
 
-def recorded(scene, event, blocks, chains, returns, seed, first=0):
+def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     """Return (times of the chains, sums) as ``record_returns`` finds them.
 
-    There are so many ``blocks``, from the ``first`` one on.
+    There are so many ``blocks``, from the ``first`` one on; ``going`` is an array to stop it with.
     """
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
@@ -156,6 +169,7 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0):
     totals = record_returns(
         np.uint64(seed), first, first + blocks, chains, LANES, returns, law_of(upright),
         *origins(upright), horizontal, _width(scene, event), wide, sums,
+        np.ones(1, np.bool_) if going is None else going,
     )  # fmt: skip
     return totals, sums
 
@@ -220,6 +234,11 @@ class IntervalRun:
         return _width(self.scene, self.event) * 2.0**-52
 
     @cached_property
+    def _going(self):
+        """What a kernel looks at that may run for long: false once nobody waits for it."""
+        return np.ones(1, np.bool_)
+
+    @cached_property
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
@@ -228,7 +247,7 @@ class IntervalRun:
 
         def work(first, stop):
             totals, sums = recorded(
-                self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first
+                self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first, self._going
             )
             times = [int(time) for time in totals / self._grain]
             return sums, np.array([sum(times), sum(time * time for time in times)], object)
@@ -244,9 +263,13 @@ class IntervalRun:
         mean, stderr = total / n * unit, math.sqrt(variance) * unit
         return _summary(self.scene, self.event, sums, n, mean, stderr)
 
-    def alone(self, report=None):
-        """Return the dict for a JSON file, all done in this process."""
-        return self.point({"all": all_at_once(self.parts["all"])})
+    def alone(self, watch=None, cores=1, kept=None):
+        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        try:
+            return self.point(all_in_rounds(self.parts, watch, cores, kept))
+        except BaseException:
+            self._going[0] = False
+            raise
 
 
 def _width(scene, event):

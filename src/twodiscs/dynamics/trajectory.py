@@ -1,8 +1,9 @@
 """One trajectory, event by event: for people to look at, and for what is asked of one."""
 
 import math
+from itertools import islice, repeat
 
-from twodiscs.dynamics.ensemble import across, nearest_power_of_two
+from twodiscs.dynamics.ensemble import across, nearest_power_of_two, put_state, state_at
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -24,7 +25,8 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.checks import InputError, length, whole
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import ENERGY, a_scene
-from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.starts import components, states
 from twodiscs.theory import exact
 
@@ -33,6 +35,9 @@ LONGEST_TRAJECTORY = 6000
 
 #: Events that one may ask for: all of its rows are kept.
 MOST_EVENTS = 1e7
+
+#: Rows that are made at a time: some hundredths of a second.
+ROWS = 1000
 
 #: What a row of a trajectory holds.
 COLUMNS = ("time", "x1", "y1", "x2", "y2", "event", "z1", "z2")
@@ -81,21 +86,56 @@ def time_to_next(state, law, hop, longest):
     return elapsed
 
 
-def _row(time, event, state, scene):
-    """Return (time, x1, y1, x2, y2, event, z1, z2), None for z in the plane."""
-    return (time, *state[:4], event, *((None, None) if scene.depth is None else state[8:10]))
+@optional(lambda state, present: 0.0)
+def deep_separation(state, present):
+    """Return z1 − z2, or 0 in the plane."""
+    return state[8] - state[9]
 
 
-def follow(scene, state, duration):
-    """Yield the ``COLUMNS`` of all that happens within ``duration``.
+@compiled
+def advance_all(states, wraps, time, law):
+    """Advance the columns of ``states`` (``COMPONENTS``, n) by a ``time`` > 0.
 
-    ``state`` of the ``Scene`` is as in ``law``; z1 and z2 are None in the plane. Hops are events
-    here, reported where they occur in a flight; walls are named by disc and axis, and the places
-    after a jump of a periodic separation follow the name of its axis; the first row is the start,
-    the last one the end.
+    Jumps of a periodic separation along x, y, z are added to ``wraps`` (3, n), with the sign of the
+    separation before.
+    """
+    for i in range(states.shape[1]):
+        state, left, code = state_at(states, i, law), time, 1.0
+        while code != END_OF_TIME:
+            flight, code = next_event(state, left, law)
+            state = after_event(state, flight, code, law)
+            left -= flight
+            if code == WRAP_X:
+                wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
+            elif code == WRAP_Y:
+                wraps[1, i] -= math.copysign(1.0, state[1] - state[3])
+            elif code == WRAP_Z:
+                wraps[2, i] -= math.copysign(1.0, deep_separation(state, law.depth))
+        put_state(states, i, state, law)
+
+
+def unwrapped(scene, columns, wraps):
+    """Add to places what jumps of a periodic separation took from them, so that paths go on.
+
+    ``columns`` are arrays by name, ``wraps`` those of ``advance_all``.
+    """
+    law = law_of(scene)
+    for k, axis in enumerate("xyz"):
+        if axis in scene.periodic:
+            _, first, second = getattr(law, f"wrap_{axis}")
+            columns[f"{axis}1"] += first * wraps[k]
+            columns[f"{axis}2"] -= second * wraps[k]
+
+
+def events_of(scene, state, duration):
+    """Yield (time, event, state) of all that happens within ``duration``.
+
+    ``state`` of the ``Scene`` is as in ``law``. Hops are events here, reported where they occur in
+    a flight; walls are named by disc and axis, and the places after a jump of a periodic separation
+    follow the name of its axis; the first row is the start, the last one the end.
     """
     law, time = law_of(scene), 0.0
-    yield _row(time, "start", state, scene)
+    yield time, "start", state
     while True:
         flight, code = next_event(state, duration - time, law)
         after = after_event(state, flight, code, law)
@@ -106,11 +146,22 @@ def follow(scene, state, duration):
             if name in scene.events and passed:
                 hops.append((crossing_time(before, rising), name))
         for until, name in sorted(hops):
-            yield _row(time + until, name, after_event(state, until, END_OF_TIME, law), scene)
+            yield time + until, name, after_event(state, until, END_OF_TIME, law)
         time, state = time + flight, after
-        yield _row(time, _NAMES[code], state, scene)
+        yield time, _NAMES[code], state
         if code == END_OF_TIME:
             return
+
+
+def _row(scene, time, event, state):
+    """Return ``COLUMNS``: (time, x1, y1, x2, y2, event, z1, z2), None for z in the plane."""
+    return (time, *state[:4], event, *((None, None) if scene.depth is None else state[8:10]))
+
+
+def follow(scene, state, duration):
+    """Yield the rows of ``COLUMNS`` of ``events_of``, with the same arguments."""
+    for time, event, now in events_of(scene, state, duration):
+        yield _row(scene, time, event, now)
 
 
 def state_of(scene, start):
@@ -170,12 +221,21 @@ def _energy(scene, state):
 def trajectory(scene, seed, start=None, duration=None):
     """Return one trajectory of a ``Scene``, as rows of ``follow``.
 
+    Arguments and errors are those of ``followed``.
+    """
+    return [_row(scene, *row) for row in followed(scene, seed, start, duration)]
+
+
+def followed(scene, seed, start=None, duration=None, watch=None):
+    """Return one trajectory of a ``Scene``, as a list of (time, event, state), of ``events_of``.
+
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``state_of``). Without a ``duration`` it lasts some eight mean times of the rarest
     hop that is open, but no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
     Raises ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer
     ≥ 0, for a start that is no state, and for a duration that is no length or takes
-    ``MOST_EVENTS``.
+    ``MOST_EVENTS``. ``watch``, if given, is called now and then with the time that it has reached,
+    and the ``duration``.
     """
     seed, rate = whole("seed", seed, 0), exact.event_rate(a_scene(scene))
     rate *= exact.work_per_event(scene)
@@ -192,4 +252,10 @@ def trajectory(scene, seed, start=None, duration=None):
         start = map(float, states(scene, 1, seed)[: len(components(scene)), 0])
     else:
         start = state_of(scene, start)
-    return list(follow(scene, tuple(start), float(duration)))
+    events, rows = events_of(scene, tuple(start), float(duration)), []
+    for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
+        rows += some
+        if watch is not None:
+            watch(rows[-1][0], float(duration))
+        if len(some) < ROWS:
+            return rows

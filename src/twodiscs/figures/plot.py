@@ -1,23 +1,25 @@
 """Figures and animations of what the face returns; what is drawn is what the workflow draws."""
 
+import sys
 from importlib import import_module
 from operator import attrgetter
 
-from twodiscs.comparison.measurements import Intervals, Measurements, the_scene
+from twodiscs.comparison.measured.measurements import Intervals, Measurements, the_scene
+from twodiscs.comparison.measured.scan import Scan
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of
 
 #: What can be drawn.
-DRAWN = "a scene, a trajectory, or results of simulate, sample or intervals"
+DRAWN = "a scene, a trajectory, results of simulate, scan, sample or intervals, or a loaded table"
 
 
 def plot(result, path, figure):
     """Return the figure that shows ``result`` (see the face)."""
     box, tables, fitting, options = _what(result)
     if not fitting:
-        raise InputError(f"found must be {DRAWN}, of what a figure shows, not {result!r:.80}")
+        raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
     name = one_of("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
     if box.effects and not entry.needs:
@@ -29,7 +31,19 @@ def plot(result, path, figure):
             style.save(drawn, path)
     # A notebook shows it with the same settings.
     drawn._repr_png_ = lambda: _png(drawn)
+    if hasattr(sys, "ps1") and "IPython" not in sys.modules:
+        _show(drawn)
     return drawn
+
+
+def _show(figure):
+    """Show a ``figure`` in a window, if matplotlib has any here."""
+    import matplotlib
+    from matplotlib.backends import backend_registry
+
+    backend = backend_registry.load_backend_module(matplotlib.get_backend())
+    if backend.FigureCanvas.required_interactive_framework is not None:
+        backend.FigureCanvas.new_manager(figure, 1).show()
 
 
 def _png(figure):
@@ -46,16 +60,24 @@ def _what(result):
     scene = the_scene(result)
     if isinstance(result, Box) or result is scene is not None:
         return result if isinstance(result, Box) else Box.of(scene), [], _drawings(), {}
-    results = [*result] if isinstance(result, list | tuple) else [result]
+    results = [*result] if isinstance(result, list | tuple | Scan) else [result]
     for kind in (Measurements, Intervals):
         if results and all(isinstance(item, kind) for item in results):
             boxes = {Box.of(item.scene) for item in results}
             if len(boxes) > 1:
-                raise InputError("found must be of one box, with the same effects")
+                raise InputError("result must be of one box, with the same effects")
             results = sorted(results, key=attrgetter("scene.radius"))
             rows = [row for item in results for row in item.rows]
             return boxes.pop(), rows, _figures_of(rows), {}
-    if scene is not None and hasattr(result, "to_dict"):
+    attributes = getattr(result, "attrs", {})
+    if isinstance(attributes, dict) and isinstance(attributes.get("box"), Box):
+        # A table that was loaded; what is absent is None in rows.
+        rows = result.astype(object).where(result.notna(), None).to_dict("records")
+        table = attributes.get("table")
+        fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
+        if rows and fitting:
+            return attributes["box"], rows, fitting, {}
+    if scene is not None and hasattr(result, "iterrows"):
         return Box.of(scene), rows_of(result), ["hopping_trajectory"], {"radius": scene.radius}
     return None, [], [], {}
 
@@ -88,7 +110,7 @@ def animate(trajectory, path):
     from twodiscs.figures.motion import animation
 
     scene = the_scene(trajectory)
-    if scene is None or not hasattr(trajectory, "to_dict"):
+    if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be what trajectory() returns, not {trajectory!r:.80}")
     if scene.has_effects:
         raise InputError(f"scene must be plain to be animated, not {scene}")

@@ -13,6 +13,7 @@ from twodiscs.model.checks import InputError, length, one_of, shown, whole
 #: The stochastic stages, each with random streams of its own.
 METHODS = (
     "monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip", "passages",
+    "observe",
 )  # fmt: skip
 
 #: No grid has more points.

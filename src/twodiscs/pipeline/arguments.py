@@ -137,10 +137,12 @@ def _option(name):
 
 
 def print_progress():
-    """Return a reporter that prints what is done and the time that is left.
+    """Return what prints what is done and the time that is left; None where nobody watches.
 
-    It takes a text and the work that is left, over the work that is done.
+    It takes a text and the work that is left, over the work that is done. Logs are kept clean.
     """
+    if not sys.stderr.isatty():
+        return None
     start = time.process_time()
 
     def report(done, left):
@@ -160,11 +162,9 @@ def end_with_workflow():
     """End this process as soon as the workflow that started it is gone, however that ended.
 
     The workflow's process is the one in the variable TWODISCS_WORKFLOW; without it nothing happens.
-    Ctrl-C ends it at once, too: a kernel that runs does not hear of Python's own handler.
     """
     pid = os.environ.get("TWODISCS_WORKFLOW", "")
     if pid.isdecimal():
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
         threading.Thread(target=_end_after, args=(int(pid),), daemon=True).start()
 
 
@@ -187,13 +187,22 @@ def run(main):
     """Call ``main()`` and exit with the status that it returns (None means 0).
 
     What a user got wrong, an ``InputError`` or a file that cannot be read, becomes one sentence on
-    standard error and exit status 2. Any other exception keeps its traceback.
+    standard error and exit status 2. Any other exception keeps its traceback. Ctrl-C ends the
+    process at once: a kernel that runs does not hear of Python's own handler. Who reads what it
+    prints may stop, as ``head`` does: what is left goes nowhere, in silence.
     """
     end_with_workflow()
+    usual = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         status = main()
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 0
     except OSError as error:
         fail(f"{error.filename}: {error.strerror}" if error.filename else error)
     except (InputError, UnicodeDecodeError) as error:
         fail(error)
+    finally:
+        signal.signal(signal.SIGINT, usual)
     raise SystemExit(status)

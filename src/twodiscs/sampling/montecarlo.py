@@ -33,7 +33,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.scene import Scene, a_scene
-from twodiscs.sampling.blocks.rounds import all_at_once, fixed
+from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
 from twodiscs.sampling.separations import draw_constants, propose_separation
@@ -603,6 +603,6 @@ class SamplingRun:
         (counts,), blocks = progress["all"][:2]
         return self._sampler.point(blocks * self._sampler.block, counts)
 
-    def alone(self, report=None):
-        """Return the dict for a JSON file, all done in this process."""
-        return self.point({"all": all_at_once(self.parts["all"])})
+    def alone(self, watch=None, cores=1, kept=None):
+        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        return self.point(all_in_rounds(self.parts, watch, cores, kept))

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from twodiscs.model.checks import InputError
+from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
     draw_in_prism,
@@ -26,6 +27,9 @@ from twodiscs.sampling.separations import (
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
+
+#: Starts that one call of a kernel draws at most: a tenth of a second without effects.
+CALL = 2**18
 
 #: Rows of an array of starts.
 COMPONENTS = 12
@@ -175,23 +179,42 @@ def start_on_surface(state, draw, surface, start, prism):
     fill_start(state, prism, surface, start, 0)
 
 
-def states(scene, number, seed, block=0, sides=(0, 0)):
+def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
     They are the first ones of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
     ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
-    ``draw_configuration``).
+    ``draw_configuration``). ``watch``, if given, is called now and then with how many are drawn,
+    and ``number``.
     """
     require_room(scene)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
-    draw_any_starts(open_stream(np.uint64(seed), block), draw, sides, filled, prism)
+    state = open_stream(np.uint64(seed), block)
+
+    def fill(first, stop):
+        # The kernel takes whole arrays, and goes on with the stream.
+        some = np.zeros((COMPONENTS, stop - first))
+        draw_any_starts(state, draw, sides, some, prism)
+        filled[:, first:stop] = some
+        return stop
+
+    step = CALL if prism is None else max(1, int(CALL * exact.free_fraction(scene)))
+    calls = ((first, min(first + step, number)) for first in range(0, number, step))
+    for done in in_threads(fill, calls, waiting=lambda: watch and watch(None, number)):
+        if watch is not None:
+            watch(done, number)
     return filled
 
 
-def records(scene, number, seed):
+def records(scene, number, seed, watch=None):
     """Return ``states`` as an array of ``number`` records, with a field for each component."""
-    names, filled = components(scene), states(scene, number, seed)
+    return as_records(scene, states(scene, number, seed, watch=watch))
+
+
+def as_records(scene, filled):
+    """Return ``states`` of a ``Scene`` as an array with a named field for each component."""
+    names, number = components(scene), filled.shape[1]
     columns = np.empty(number, [(name, float) for name in names])
     for name, row in zip(names, filled, strict=False):
         columns[name] = row

@@ -16,7 +16,6 @@ from twodiscs.pipeline.arguments import (
     add_scene,
     assignment,
     number,
-    print_progress,
     run,
     scene_of,
     whole_number,
@@ -107,7 +106,7 @@ def main():
     elif options.shards:
         content = joined(work, options.shards)
     else:
-        content = work.alone(print_progress())
+        content = work.alone()
     write_json(options.output, content)
 
 

@@ -31,6 +31,7 @@ def read(path, table):
     """Return the file of a ``Table`` as a ``DataFrame``, with what is in it in ``attrs``."""
     columns = table.columns()
     kinds = {name: KINDS[column.kind] for name, column in columns.items()}
+    configuration = _configuration(path)
     # Floats with all their digits: pandas' own parser may be off in the last one.
     frame = pd.DataFrame(table.read(path), columns=list(columns)).astype(kinds)
     frame.attrs = {
@@ -40,9 +41,22 @@ def read(path, table):
         "units": {name: column.unit for name, column in columns.items()},
         "path": str(path),
         "sha256": digest(path),
-        "configuration": _configuration(path),
+        "configuration": configuration,
     }
+    if (box := _box(configuration)) is not None:
+        frame.attrs["box"] = box
     return frame
+
+
+def _box(configuration):
+    """Return the ``Box`` of the only scene of a configuration; None if there is none."""
+    from twodiscs.pipeline.configuration.load import load
+
+    scenes = configuration.get("scenes", []) if isinstance(configuration, Mapping) else []
+    try:
+        return load({"scenes": scenes}).scenes[0].box if len(scenes) == 1 else None
+    except InputError:
+        return None
 
 
 def _configuration(path):

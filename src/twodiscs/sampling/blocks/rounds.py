@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError
+from twodiscs.sampling.blocks.threads import in_threads
 
 #: Blocks of the first round, and how many times the work done so far a round may be: an error seen
 #: in few events predicts badly.
@@ -22,6 +23,10 @@ GROWTH = 8.0
 
 #: A round is this much longer than it seems to need, so that it need not come back for a little.
 MARGIN = 1.05
+
+#: Events of the plain ensemble that one call of a kernel does, about, unless a block has more: some
+#: tenths of a second. So who waits sees how far it is, and can stop it.
+CALL = 2**24
 
 #: Steps of the grid of planned blocks while their number doubles.
 STEPS = 16
@@ -35,8 +40,8 @@ class SequentialRun:
     ``excess_of(sums, blocks)`` their errors over those asked for, an array, which is empty where
     there is nothing to wait for; ``events_of(sums)`` the events simulated. ``block_events`` is
     about what a block has, ``budget`` the most of them there may be. ``planned`` is the number of
-    blocks for many processes, known before anything runs, and ``cost_ratio`` the time of an event
-    over that of one of the plain ensemble.
+    blocks for many processes, known before anything runs, ``cost_ratio`` the time of an event over
+    that of one of the plain ensemble, and ``first_round`` the blocks of the first round.
     """
 
     work: Callable
@@ -46,6 +51,12 @@ class SequentialRun:
     budget: float
     planned: int
     cost_ratio: float = 1.0
+    first_round: int = FIRST_ROUND
+
+    @property
+    def block_work(self):
+        """What a block takes, in events of the plain ensemble."""
+        return self.block_events * self.cost_ratio
 
 
 class Progress(NamedTuple):
@@ -61,7 +72,7 @@ def fixed(work, blocks, block_events, cost_ratio=1.0):
     """Return the ``SequentialRun`` of exactly so many ``blocks``."""
     return SequentialRun(
         work, lambda sums, done: np.array([]), lambda sums: 1, block_events, math.inf, blocks,
-        cost_ratio,
+        cost_ratio, blocks,
     )  # fmt: skip
 
 
@@ -69,39 +80,82 @@ def _added(sums, part):
     return list(part) if sums is None else [a + b for a, b in zip(sums, part, strict=True)]
 
 
+def _sums(run, stop, kept, cores, watch):
+    """Return the sums of the blocks 0 … ``stop`` − 1, from those in ``kept`` that come nearest.
+
+    ``kept`` is {blocks: their sums}; these are added to it. Threads do some blocks a call.
+    """
+    first = max((blocks for blocks in kept if blocks <= stop), default=0)
+    sums = kept.get(first)
+    step = max(1, int(CALL / run.block_work))
+    calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
+    for done, part in enumerate(in_threads(run.work, calls, cores, lambda: watch(None)), 1):
+        sums = _added(sums, part)
+        watch(min(first + done * step, stop))
+    kept[stop] = sums
+    return sums
+
+
 def all_at_once(run):
     """Return the ``Progress`` when the planned blocks of a run are done, in this process."""
-    sums = list(run.work(0, run.planned))
+    sums = _sums(run, run.planned, {}, 1, lambda blocks: None)
     return Progress(sums, run.planned, 1, run.excess_of(sums, run.planned))
 
 
-def in_rounds(run, report=None):
+def in_rounds(run, watch=None, cores=1, kept=None):
     """Return the ``Progress`` when all is known well enough or the budget is spent.
 
     The first round is small, no more than the budget affords or one block, the next ones as long as
-    the errors seen so far predict; without anything to wait for it is the only one. ``report``, if
-    given, is called after each round with a text on what is done and the work that is left, over
-    that done.
+    the errors seen so far predict; without anything to wait for it is the only one. ``watch``, if
+    given, is called now and then with the work that is done and about how much it will be, in
+    events of the plain ensemble.
+
+    ``kept``, {blocks: sums} of the rounds of an earlier run to another error, saves what it has:
+    the result is the same without. The rounds of this one are added.
     """
-    blocks = max(1, min(FIRST_ROUND, int(run.budget / run.block_events)))
-    sums, done, rounds = None, 0, 0
+    kept = {} if kept is None else kept
+    blocks = int(max(1, min(run.first_round, run.budget / run.block_events)))
+    last, done, rounds = max(blocks, min(run.planned, run.budget / run.block_events)), 0, 0
+
+    def seen(number):
+        if watch is not None:
+            watch(number if number is None else number * run.block_work, last * run.block_work)
+
     while True:
-        sums = _added(sums, run.work(done, done + blocks))
         done, rounds = done + blocks, rounds + 1
+        sums = _sums(run, done, kept, cores, seen)
         excess, simulated = run.excess_of(sums, done), run.events_of(sums)
         if not excess.size:
             break
         worst = float(np.max(excess))
         # In units of the work done so far: what the error asks for, and what the budget allows.
         missing, affordable = MARGIN * worst * worst - 1.0, run.budget / simulated - 1.0
-        if report is not None:
-            done_so_far = f"{simulated:.3g} events, error {worst:.2f} of the target"
-            report(done_so_far, max(0.0, min(missing, affordable)))
+        last = done * (1 + max(0.0, min(missing, affordable)))
+        seen(done)
         if worst <= 1.0 or affordable * done < 1.0:
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
         blocks = min(blocks, math.floor(affordable * done))
     return Progress(sums, done, rounds, excess)
+
+
+def all_in_rounds(parts, watch=None, cores=1, kept=None):
+    """Return {name: ``Progress``} of the runs in ``parts``, {name: run}, one after the other.
+
+    ``watch`` sees the work of all of them; ``kept`` holds that of ``in_rounds`` by name.
+    """
+    kept = {} if kept is None else kept
+    reached, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
+
+    def seen(done, expected):
+        work[name] = expected
+        if watch is not None:
+            before = sum(work[earlier] for earlier in reached)
+            watch(done if done is None else before + done, sum(work.values()))
+
+    for name, run in parts.items():
+        reached[name] = in_rounds(run, seen, cores, kept.setdefault(name, {}))
+    return reached
 
 
 # Pieces ------------------------------------------------------------------------------------------

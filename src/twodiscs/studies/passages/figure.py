@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twodiscs.comparison.transmission import box_time
+from twodiscs.comparison.measured.transmission import box_time
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.limits import QUARTERS
 from twodiscs.figures.kit.looks import name_of

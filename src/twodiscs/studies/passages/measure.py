@@ -9,8 +9,7 @@ import math
 from itertools import pairwise
 
 from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
-from twodiscs.comparison.scores import student_deviate
-from twodiscs.comparison.transmission import (
+from twodiscs.comparison.measured.transmission import (
     TIMES,
     box_time,
     by_clusters,
@@ -19,6 +18,7 @@ from twodiscs.comparison.transmission import (
     quiet_time,
     seed_of,
 )
+from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.checks import whole

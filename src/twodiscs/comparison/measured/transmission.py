@@ -1,17 +1,28 @@
 """The transmission coefficient of a hop: how many of the hops are passages, with its error."""
 
+from __future__ import annotations
+
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from twodiscs.comparison.estimates import Estimate
+from twodiscs.comparison.measured.result import Result
+from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, count, shown
 from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from twodiscs.model.scene import Scene
 
 #: A cluster ends where no hop comes for so many times that a disc of speed 1 takes along the box.
 QUIET = 6
@@ -52,8 +63,12 @@ def by_time(sums):
 
     Between walls C is ±1 in every replica, and the error that of a binomial law.
     """
-    replicas = sums.shape[0] * REPLICAS
-    net, square = sums[:, :2].sum(axis=0) / replicas
+    return by_total(sums.sum(axis=0), sums.shape[0] * REPLICAS)
+
+
+def by_total(sums, replicas):
+    """Return what ``by_time`` does, given the ``sums`` over all blocks and the ``replicas``."""
+    net, square = sums[:2] / replicas
     errors = 2 * np.sqrt((square - net**2) / replicas)
     return [
         Estimate(1 + 2 * float(n), float(e), replicas) for n, e in zip(net, errors, strict=True)
@@ -81,8 +96,8 @@ def seed_of(scene, hop, name, seed, what):
     return stream_seed(seed, f"{name} {hop} {what}", "passages", key(scene.radius))
 
 
-@dataclass(frozen=True)
-class Transmission:
+@dataclass(frozen=True, repr=False)
+class Transmission(Result):
     """Which hops of one kind are passages, in one ``scene``.
 
     ``coefficient`` is κ as an ``Estimate``, None where hops are so frequent that there is no
@@ -91,31 +106,45 @@ class Transmission:
     ``curve``, a list of ``Estimate``, are κ(t).
     """
 
-    scene: object
+    scene: Scene
     hop: str
     coefficient: Estimate | None
     gap: float
-    clusters: dict
+    clusters: dict[int, int]
     exact_mean: float
-    times: tuple
-    curve: list
+    times: tuple[float, ...]
+    curve: list[Estimate]
+    settings: dict[str, object] = field(default_factory=dict)
+    kept: dict[str, dict[int, list]] = field(default_factory=dict, compare=False)
+
+    kind = "transmission"
+
+    def more(
+        self, hops: float | None = None, cores: int = 1, progress: bool | None = None
+    ) -> Transmission:
+        """Return the same from more ``hops``, these among them: as if asked for at once."""
+        return self._again({"hops": hops}, cores, progress)
+
+    def _repr_html_(self) -> str:
+        lines = [line.rpartition("  ") for line in str(self).splitlines()[2:]]
+        return self._html(("quantity", "value"), [(name, value) for name, _, value in lines])
 
     @property
-    def passage_time(self):
+    def passage_time(self) -> Estimate | None:
         """The mean time between passages τ/κ as an ``Estimate``, None without a coefficient."""
         if self.coefficient is None:
             return None
         value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
         return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
 
-    def frame(self):
+    def frame(self) -> pd.DataFrame:
         """Return κ(t) as a pandas ``DataFrame`` by time: value and standard error."""
         import pandas as pd
 
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
         return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
 
-    def __str__(self):
+    def __str__(self) -> str:
         name = self.hop.replace("_", " ")
         if self.coefficient is None:
             return (
@@ -133,7 +162,26 @@ class Transmission:
     __repr__ = __str__
 
 
-def transmission(scene, hop, hops, seed, name):
+def parts_of(scene, hop, gap, times, blocks, name, seed):
+    """Return the runs {"clusters": …, "times": …} of so many ``blocks``."""
+    seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
+
+    def clusters(first, stop):
+        sizes, _ = cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
+        return (sizes,)
+
+    def curve(first, stop):
+        sums, _ = hop_sums(scene, hop, times, stop - first, seeds["times"], first)
+        return (sums.sum(axis=0),)
+
+    events = REPLICAS * exact.event_rate(scene)
+    return {
+        "clusters": fixed(clusters, blocks, 2 * gap * events, exact.work_per_event(scene)),
+        "times": fixed(curve, blocks, times[-1] * events, exact.work_per_event(scene)),
+    }
+
+
+def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
     require_passing(scene, hop)
     if AXIS[hop] in scene.periodic:
@@ -144,11 +192,17 @@ def transmission(scene, hop, hops, seed, name):
     blocks = -(-count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be that of a scene, not {shown(name)}")
-    name = repr(Box.of(scene).parameters()) if name is None else name
+    named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
-    sizes, _ = cluster_sizes(scene, hop, gap, blocks, seed_of(scene, hop, name, seed, "clusters"))
     times = tuple(box_time(scene, hop) * time for time in TIMES)
-    sums, _ = hop_sums(scene, hop, times, blocks, seed_of(scene, hop, name, seed, "times"))
+    parts, kept = (
+        parts_of(scene, hop, gap, times, blocks, named, seed),
+        {} if kept is None else kept,
+    )
+    settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
+    with watched(progress, f"transmission r = {scene.radius:g}") as watch:
+        reached = all_in_rounds(parts, watch, cores, kept)
+    (sizes,), (sums,) = reached["clusters"].sums, reached["times"].sums
     clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-    kappa = plateau(by_clusters(sizes), gap, mean)
-    return Transmission(scene, hop, kappa, gap, clusters, mean, times, by_time(sums))
+    kappa, curve = plateau(by_clusters(sizes), gap, mean), by_total(sums, blocks * REPLICAS)
+    return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept)

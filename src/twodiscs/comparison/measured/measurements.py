@@ -3,27 +3,33 @@
 Their numbers are those of the rows of the tables, made by the same functions.
 """
 
+from __future__ import annotations
+
 import math
-import sys
-import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from twodiscs.comparison.estimates import (
     MIN_EVENTS,
     density_of_chains_at_zero,
     normal_quantile,
 )
+from twodiscs.comparison.measured.result import Result
+from twodiscs.comparison.measured.watching import watched
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, count, one_of, proportion
+from twodiscs.model.checks import InputError, count, one_of, proportion, shown
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.theory import tails
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: The columns that people read, and how wide they are.
 COLUMNS = {
@@ -56,18 +62,18 @@ class Measurement:
     bound: float | None = None
 
     @property
-    def relative_stderr(self):
+    def relative_stderr(self) -> float | None:
         """The standard error over the size of the value, or None."""
         return self.stderr / abs(self.value) if self.stderr and self.value else None
 
-    def interval(self, confidence=0.95):
+    def interval(self, confidence: float = 0.95) -> tuple[float, float] | None:
         """Return the normal confidence interval (low, high), or None without an honest error."""
         half = normal_quantile(confidence)
         if self.stderr is None or self.value is None:
             return None
         return self.value - half * self.stderr, self.value + half * self.stderr
 
-    def cells(self):
+    def cells(self) -> tuple[str, ...]:
         """Return what people read of it, a text for each of ``COLUMNS``."""
         value, error = _with_error(self.value, self.stderr)
         if self.value is None and self.bound is not None:
@@ -76,7 +82,7 @@ class Measurement:
         z = "" if self.z is None else f"{self.z:+.2f}"
         return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
 
-    def __str__(self):
+    def __str__(self) -> str:
         _, value, error, exact, unit, z, number, status = self.cells()
         compared = f", exact {exact}" + (f", z = {z}" if z else "")
         error = f" ± {error}" if error else ""
@@ -105,32 +111,55 @@ def aligned(lines, widths):
     )
 
 
-class Measurements(Mapping):
+class Measurements(Result, Mapping[str, Measurement]):
     """{quantity or event: ``Measurement``} of one ``scene``; prints as a table.
 
-    ``rows`` are those of the table of its kind, as the pipeline writes it.
+    ``rows`` are those of the table of its kind, as the pipeline writes it. How it was made is in
+    ``kind``, ``settings`` (with the seed, and the error asked for) and ``version``.
     """
 
-    def __init__(self, scene, rows):
-        self.scene, self.rows = scene, rows
+    def __init__(self, kind, scene, rows, settings, kept):
+        self.kind, self.scene, self.rows = kind, scene, rows
+        self.settings, self.kept = settings, kept
         self._measurements = {
             row.get("event") or row["quantity"]: _measurement(scene, row) for row in rows
         }
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._measurements)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._measurements)
 
-    def frame(self):
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+    def more(
+        self,
+        error: float | Mapping[str, float] | None = None,
+        budget: float | None = None,
+        samples: float | None = None,
+        cores: int = 1,
+        progress: bool | None = None,
+    ) -> Measurements:
+        """Return a result with a smaller ``error``, a larger ``budget``, or more ``samples``.
+
+        It goes on from this one, and is the same, bit for bit, as one asked for at once.
+        """
+        changes = {"error": error, "budget": budget, "samples": samples}
+        return self._again(changes, cores, progress)
+
+    def _repr_html_(self) -> str:
+        return self._html(COLUMNS, [measurement.cells() for measurement in self.values()])
+
+    def frame(self) -> pd.DataFrame:
         """Return the rows as a pandas ``DataFrame`` by event or quantity."""
         return _frame(self.rows, index="event" if "event" in self.rows[0] else "quantity")
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [COLUMNS, *(measurement.cells() for measurement in self.values())]
         return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
 
@@ -153,7 +182,7 @@ def _frame(rows, index):
     return pd.DataFrame(rows).set_index(index)
 
 
-class Intervals:
+class Intervals(Result):
     """How the intervals between hops of one kind are distributed.
 
     ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
@@ -163,8 +192,19 @@ class Intervals:
     correlated, so that all errors are those of the spread between chains.
     """
 
-    def __init__(self, scene, point):
+    hop: str
+    intervals: int
+    overflow: int
+    edges: list[float]
+    counts: list[int]
+    mean: Measurement
+    at_zero: Measurement
+
+    kind = "intervals"
+
+    def __init__(self, scene, point, settings, kept):
         self.scene, self.hop = scene, point["event"]
+        self.settings, self.kept = settings, kept
         self.intervals, self.overflow = point["intervals"], point["overflow"]
         self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
         self.edges = [row["left"] for row in self.rows] + [self.rows[-1]["right"]]
@@ -187,17 +227,26 @@ class Intervals:
             at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
         )  # fmt: skip
 
+    def more(
+        self, number: float | None = None, cores: int = 1, progress: bool | None = None
+    ) -> Intervals:
+        """Return ``number`` intervals, these among them: the same as if asked for at once."""
+        return self._again({"number": number}, cores, progress)
+
+    def _repr_html_(self) -> str:
+        return self._html(COLUMNS, [self.mean.cells(), self.at_zero.cells()])
+
     @property
-    def density(self):
+    def density(self) -> list[float]:
         """The density of each bin, in 1/time."""
         return [row["density"] for row in self.rows]
 
-    def frame(self):
+    def frame(self) -> pd.DataFrame:
         """Return the bins as a pandas ``DataFrame``: left, right, count, density and its error."""
         names = "left", "right", "count", "density", "stderr"
         return _frame([{n: row[n] for n in names} for row in self.rows], index="left")
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [COLUMNS, self.mean.cells(), self.at_zero.cells()]
         return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
 
@@ -234,56 +283,56 @@ def _named(key, what, names, allowed):
     return [name for name in allowed if name in names]
 
 
-def _progress():
-    """Return what shows progress on one line of a terminal, None where there is none."""
-    if not sys.stderr.isatty():
-        return None
-    start = time.process_time()
-
-    def report(done, left):
-        seconds = left * (time.process_time() - start)
-        end = "\n" if not left else ""
-        print(f"\r\x1b[K{done}, about {seconds:.0f} s left", end=end, file=sys.stderr, flush=True)
-
-    return report
-
-
-def simulate(scene, error, seed, budget, events, name):
+def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
     possible = a_scene(scene).events
     if not isinstance(error, Mapping):
-        error = dict.fromkeys(possible, error)
+        errors = dict.fromkeys(possible, error)
     elif events is None:
-        events = error
-    events = _named("events", "event", events, possible)
-    if missing := [event for event in events if event not in error]:
+        errors = events = error
+    else:
+        errors = error
+    watched_events = _named("events", "event", events, possible)
+    if missing := [event for event in watched_events if event not in errors]:
         raise InputError(f"error must hold every event, but has none for {missing[0]}")
-    target = {event: proportion("error", error[event]) for event in events}
-    budget, seed = count("budget", budget), seed_of(scene, "dynamics", seed, name)
-    from twodiscs.dynamics.counting import count_events
+    target = {event: proportion("error", errors[event]) for event in watched_events}
+    budget, stream = count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    settings = {
+        "error": target if isinstance(error, Mapping) else float(error),
+        "seed": int(seed), "budget": budget, "events": watched_events, "name": name,
+    }  # fmt: skip
+    from twodiscs.dynamics.counting import CountingRun
 
-    point = count_events(scene, target, budget, seed, _progress())
+    kept, run = {} if kept is None else kept, CountingRun(scene, target, budget, stream)
+    with watched(progress, f"simulate r = {scene.radius:g}") as watch:
+        point = run.alone(watch, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
-    return Measurements(scene, rows)
+    return Measurements("simulate", scene, rows, settings, kept)
 
 
-def sample(scene, samples, seed, quantities, shell, name):
+def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
     allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
     quantities = _named("quantities", "quantity", quantities, allowed)
     samples = count("samples", samples)
-    shell, seed = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
-    from twodiscs.sampling.montecarlo import better_point
+    shell, stream = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
+    settings = {
+        "samples": samples, "seed": int(seed), "quantities": quantities, "shell": shell,
+        "name": name,
+    }  # fmt: skip
+    from twodiscs.sampling.montecarlo import SamplingRun
     from twodiscs.sampling.starts import require_free_fraction
 
     require_free_fraction(scene)
-    points = {"monte_carlo": [better_point(scene, quantities, samples, shell, seed)]}
+    kept, run = {} if kept is None else kept, SamplingRun(scene, quantities, samples, shell, stream)
+    with watched(progress, f"sample r = {scene.radius:g}") as watch:
+        points = {"monte_carlo": [run.alone(watch, cores, kept)]}
     theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
-    return Measurements(scene, rows)
+    return Measurements("sample", scene, rows, settings, kept)
 
 
-def intervals(scene, hop, number, seed, name):
+def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Intervals`` between hops (see the face)."""
     one_of("hop", hop, HOPS)
     if a_scene(scene).moment_of_inertia is not None:
@@ -291,33 +340,24 @@ def intervals(scene, hop, number, seed, name):
             "scene must have smooth discs, for rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, seed = count("number", number), seed_of(scene, "intervals", seed, name)
-    from twodiscs.dynamics.intervals import hop_intervals
+    number, stream = count("number", number), seed_of(scene, "intervals", seed, name)
+    settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
+    from twodiscs.dynamics.intervals import IntervalRun
 
-    return Intervals(scene, hop_intervals(scene, hop, number, seed))
+    kept, run = {} if kept is None else kept, IntervalRun(scene, hop, number, stream)
+    with watched(progress, f"intervals r = {scene.radius:g}") as watch:
+        point = run.alone(watch, cores, kept)
+    return Intervals(scene, point, settings, kept)
 
 
-def starts(scene, number, seed, name):
+def starts(scene, number, seed, name, progress=None):
     """Return states of the invariant measure, an array with named columns (see the face)."""
     number = count("number", number, most=10**8)
     seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.sampling.starts import records
 
-    return records(scene, number, seed)
-
-
-def trajectory(scene, seed, start, duration, name):
-    """Return one trajectory as a ``DataFrame`` (see the face)."""
-    import pandas as pd
-
-    seed = seed_of(scene, "trajectory", seed, name)
-    from twodiscs.dynamics.trajectory import COLUMNS, trajectory
-
-    frame = pd.DataFrame(trajectory(scene, seed, start, duration), columns=COLUMNS)
-    if scene.depth is None:
-        frame = frame.drop(columns=["z1", "z2"])
-    frame.attrs["scene"] = scene
-    return frame
+    with watched(progress, f"starts r = {scene.radius:g}") as watch:
+        return records(scene, number, seed, watch)
 
 
 def exact_table(width, height, radii, effects):
@@ -325,11 +365,7 @@ def exact_table(width, height, radii, effects):
     import pandas as pd
 
     box = Box(width, height, effects)
-    if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
-        raise InputError(f"radii must be a list of numbers, not {radii!r}")
-    scenes = [box.scene(radius) for radius in radii]
-    if not scenes:
-        raise InputError("radii must hold one radius at least, not none")
+    scenes = scenes_of(box, radii)
     rows = [
         {
             "radius": scene.radius,
@@ -344,6 +380,16 @@ def exact_table(width, height, radii, effects):
     frame[times] = frame[times].astype(float)
     frame.attrs["box"] = box
     return frame
+
+
+def scenes_of(box, radii):
+    """Return the scenes of a ``Box`` at some ``radii``."""
+    if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
+        raise InputError(f"radii must be a list of numbers, not {shown(radii)}")
+    scenes = [box.scene(radius) for radius in radii]
+    if not scenes:
+        raise InputError("radii must hold one radius at least, not none")
+    return scenes
 
 
 def the_scene(result):

@@ -1,0 +1,127 @@
+"""Averages over the invariant measure of what a user's own function sees, with their errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from twodiscs.comparison.measured.measurements import seed_of
+from twodiscs.comparison.measured.watching import watched
+from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
+from twodiscs.model.checks import InputError, count, shown
+from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.starts import as_records, states
+from twodiscs.theory import exact
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from twodiscs.model.scene import Scene
+
+#: Replicas that share a random stream.
+BLOCK = 4096
+
+
+@dataclass(frozen=True)
+class Observed:
+    """Averages over independent replicas of the invariant measure of one ``scene``.
+
+    ``mean`` and ``stderr``, the standard error, are arrays with an entry for each of the ``times``:
+    numbers, or arrays of what the function returns for a replica. ``replicas`` is how many there
+    are, ``settings`` has the seed.
+    """
+
+    scene: Scene
+    times: np.ndarray
+    mean: np.ndarray
+    stderr: np.ndarray
+    replicas: int
+    settings: dict[str, object]
+
+    def frame(self) -> pd.DataFrame:
+        """Return a pandas ``DataFrame`` by time: mean and stderr, numbered if there are several."""
+        import pandas as pd
+
+        columns = {}
+        for name, values in (("mean", self.mean), ("stderr", self.stderr)):
+            flat = values.reshape(len(values), -1)
+            several = flat.shape[1] > 1
+            columns |= {f"{name}_{k}" if several else name: c for k, c in enumerate(flat.T)}
+        return pd.DataFrame(columns, index=pd.Index(self.times, name="time"))
+
+    def __str__(self) -> str:
+        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame()}"
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return self.frame().to_html()
+
+
+def _times(times):
+    try:
+        checked = np.atleast_1d(np.asarray(times, float))
+        ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
+        if ascending and checked[0] >= 0 and np.isfinite(checked[-1]):
+            return checked
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"times must be ascending numbers from 0 on, not {shown(times)}")
+
+
+def _seen(function, start, now):
+    """Return what the ``function`` sees of the replicas, an array with a row for each."""
+    seen = np.asarray(function(start, now), float)
+    if seen.shape[:1] != start.shape:
+        raise InputError(
+            f"function must return a number, or as many of them, for each of the {start.size} "
+            f"replicas, not an array of shape {seen.shape}"
+        )
+    return seen
+
+
+def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
+    """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
+    stream, times = seed_of(scene, "observe", seed, name), _times(times)
+    if not callable(function):
+        raise InputError(f"function must be one of two arrays of states, not {shown(function)}")
+    blocks = -(-count("replicas", replicas, most=10**9) // BLOCK)
+    if blocks * BLOCK < 2 or times[-1] * exact.event_rate(scene) > MOST_EVENTS:
+        raise InputError(
+            f"times must be below {MOST_EVENTS / exact.event_rate(scene):.3g}, where "
+            f"{MOST_EVENTS:g} events are due, not {shown(times[-1])}"
+        )
+    law = law_of(scene)
+
+    def snapshots(block):
+        """Return the states of a block at time 0, and at all times."""
+        filled, wraps = states(scene, BLOCK, stream, block), np.zeros((3, BLOCK))
+        yield as_records(scene, filled)
+        for step in np.diff(times, prepend=0.0):
+            if step:
+                advance_all(filled, wraps, step, law)
+            now = as_records(scene, filled)
+            unwrapped(scene, now, wraps)
+            yield now
+
+    total = mean = square = None
+    with watched(progress, f"observe r = {scene.radius:g}") as watch:
+        every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
+        for done, (start, *later) in enumerate(every, 1):
+            seen = np.stack([_seen(function, start, now) for now in later], axis=1)
+            own, spread = seen.mean(axis=0), ((seen - seen.mean(axis=0)) ** 2).sum(axis=0)
+            if mean is None:
+                total, mean, square = BLOCK, own, spread
+            else:
+                # The mean and the sum of squares of two samples together (Chan et al., 1979).
+                n, apart = total + BLOCK, own - mean
+                square = square + spread + apart**2 * (total * BLOCK / n)
+                mean, total = mean + apart * (BLOCK / n), n
+            if watch is not None:
+                watch(done, blocks)
+    stderr = np.sqrt(square / (total - 1) / total)
+    settings = {"replicas": total, "seed": int(seed), "name": name}
+    return Observed(scene, times, mean, stderr, total, settings)

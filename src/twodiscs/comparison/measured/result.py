@@ -1,0 +1,134 @@
+"""A result that knows how it was made: it is saved, read again, and goes on to a smaller error."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from html import escape
+from importlib import import_module
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Self
+
+import numpy as np
+
+import twodiscs
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, shown
+
+if TYPE_CHECKING:
+    from twodiscs.model.scene import Scene
+
+#: Where the function is that makes a result of each kind, and is called by its name.
+MAKERS = {
+    "simulate": "measurements",
+    "sample": "measurements",
+    "intervals": "measurements",
+    "transmission": "transmission",
+    "scan": "scan",
+}
+
+
+class Result:
+    """What was measured, and how: ``kind`` is the function of the face that made it.
+
+    ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error
+    asked for; ``version`` is that of the package. ``kept`` holds the sums of the blocks of work
+    behind it, {part: {blocks: sums}}, from which it goes on.
+    """
+
+    kind: ClassVar[str]
+    scene: Scene
+    settings: dict[str, object]
+    kept: dict[str, dict[int, list]]
+    version: str = twodiscs.__version__
+
+    def _again(self, changes, cores, progress) -> Self:
+        """Return the result of other settings, which takes over what it can of this one."""
+        changes = {name: value for name, value in changes.items() if value is not None}
+        if unknown := [name for name in changes if name not in self.settings]:
+            raise InputError(
+                f"{unknown[0]} must be left out for a result of {self.kind}, which goes on to "
+                f"another {' or '.join(n for n in self.settings if n in MORE)}"
+            )
+        kept = {part: dict(sums) for part, sums in self.kept.items()}
+        given = self.settings | changes
+        return made(self.kind, self.scene, given, kept, cores=cores, progress=progress)
+
+    def to_dict(self) -> dict[str, object]:
+        """Return what ``save`` writes: numbers, texts, lists and dicts."""
+        return {
+            "twodiscs": self.version,
+            "kind": self.kind,
+            "scene": Box.of(self.scene).parameters() | {"radius": self.scene.radius},
+            "settings": self.settings,
+            "kept": {
+                part: {str(n): [np.asarray(s).tolist() for s in sums] for n, sums in some.items()}
+                for part, some in self.kept.items()
+            },
+        }
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the result to ``path``, a JSON file that ``load_result`` reads."""
+        Path(path).write_text(json.dumps(self.to_dict(), allow_nan=False) + "\n", encoding="utf-8")
+
+    def _html(self, header, lines):
+        """Return an HTML table with the scene above it."""
+        rows = "".join(
+            f"<tr>{''.join(f'<td>{escape(str(text))}</td>' for text in line)}</tr>"
+            for line in lines
+        )
+        head = "".join(f"<th>{escape(name)}</th>" for name in header)
+        return f"<p>{escape(str(self.scene))}</p><table><tr>{head}</tr>{rows}</table>"
+
+
+#: Settings by which a result goes on.
+MORE = ("error", "budget", "samples", "number", "hops")
+
+
+def made(kind, scene, settings, kept, **options):
+    """Return the result of a ``kind`` with these ``settings``, given the sums in ``kept``."""
+    module = import_module(f"{__package__}.{MAKERS[kind]}")
+    return getattr(module, kind)(scene, **settings, **options, kept=kept)
+
+
+def _sums(value):
+    try:
+        return np.array(value, np.int64)
+    except OverflowError:
+        return np.array(value, object)
+
+
+def from_dict(content):
+    """Return the result that ``to_dict`` describes, made again from its sums."""
+    version = content["twodiscs"]
+    if version != twodiscs.__version__:
+        raise InputError(
+            f"the result must be of version {twodiscs.__version__}, to have the same numbers, not "
+            f"{shown(version)}"
+        )
+    if "results" in content:
+        module = import_module(f"{__package__}.{MAKERS[content['kind']]}")
+        return module.joined([from_dict(result) for result in content["results"]])
+    scene = dict(content["scene"])
+    radius = scene.pop("radius")
+    kept = {
+        part: {int(n): [_sums(s) for s in sums] for n, sums in some.items()}
+        for part, some in content["kept"].items()
+    }
+    return made(content["kind"], Box(**scene).scene(radius), content["settings"], kept)
+
+
+def load_result(path):
+    """Return the result in a file that its ``save`` wrote (see the face)."""
+    if not isinstance(path, str | PathLike):
+        raise InputError(f"path must be that of a file, not {shown(path)}")
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        if not isinstance(content, Mapping):
+            raise TypeError
+        return from_dict(content)
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError, UnicodeDecodeError):
+        raise InputError(f"path must be a file that save() wrote, not {str(path)!r}") from None
+    except OSError as error:
+        raise InputError(f"path must be a file to read, not {str(path)!r}: {error}") from None

@@ -1,0 +1,94 @@
+"""One trajectory as a table, which knows the states between its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from twodiscs.comparison.measured.measurements import seed_of
+from twodiscs.comparison.measured.watching import watched
+from twodiscs.dynamics.trajectory import followed, unwrapped
+from twodiscs.model.checks import InputError, shown
+from twodiscs.sampling.starts import components
+
+if TYPE_CHECKING:
+    from twodiscs.model.scene import Scene
+
+#: The velocity that belongs to a place.
+VELOCITIES = {
+    "x1": "u1", "y1": "v1", "x2": "u2", "y2": "v2", "z1": "w1", "z2": "w2",
+}  # fmt: skip
+
+
+class Trajectory(pd.DataFrame):
+    """A trajectory: a row an event, with its time, its name, and the state right after it.
+
+    Columns are time, x1, y1, x2, y2 (the centres, from that of the box), event, and u1, v1, u2, v2
+    (velocities). Balls have z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their
+    surfaces. On periodic axes places go on beyond the cell.
+    """
+
+    @property
+    def _constructor(self):
+        return Trajectory
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, which ``attrs`` holds."""
+        return self.attrs["scene"]
+
+    def states_at(self, times: Iterable[float]) -> np.ndarray:
+        """Return the states at ``times``, exactly: an array with the named columns of ``starts``.
+
+        ``times`` are numbers in any order, from the first to the last one of the trajectory.
+        Raises ``InputError`` for others.
+        """
+        known = self["time"].to_numpy()
+        try:
+            at = np.atleast_1d(np.asarray(times, float))
+        except (TypeError, ValueError):
+            raise InputError(f"times must be a list of numbers, not {shown(times)}") from None
+        if at.ndim > 1 or not np.all((at >= known[0]) & (at <= known[-1])):
+            raise InputError(
+                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {shown(times)}"
+            )
+        row = np.searchsorted(known, at, side="right") - 1
+        since, names, field = at - known[row], components(self.scene), self.scene.field
+        states = np.empty(at.size, [(name, float) for name in names])
+        for name in names:
+            states[name] = self[name].to_numpy()[row]
+        for place, velocity in VELOCITIES.items():
+            if place in names:
+                falling = field if place[0] == "y" else 0.0
+                states[place] += (states[velocity] - falling * since / 2) * since
+                states[velocity] -= falling * since
+        return states
+
+
+def trajectory(scene, seed, start, duration, name, progress=None):
+    """Return one ``Trajectory`` (see the face)."""
+    seed = seed_of(scene, "trajectory", seed, name)
+    with watched(progress, f"trajectory r = {scene.radius:g}") as watch:
+        rows = followed(scene, seed, start, duration, watch)
+    times, events, states = zip(*rows, strict=True)
+    names = components(scene)
+    columns = dict(zip(names, np.array(states).T, strict=True))
+    if scene.periodic:
+        wraps = np.zeros((3, len(rows)))
+        for k, axis in enumerate("xyz"):
+            if axis in scene.periodic:
+                jumped = np.array(events) == f"wrap_{axis}"
+                apart = columns[f"{axis}1"] - columns[f"{axis}2"]
+                wraps[k] = np.cumsum(np.where(jumped, -np.sign(apart), 0.0))
+        unwrapped(scene, columns, wraps)
+    first = [n for n in ("x1", "y1", "x2", "y2") if n in columns]
+    last = sorted((n for n in names if n not in first), key=lambda name: name[0] != "z")
+    columns = {"time": times, **{n: columns[n] for n in first}, "event": events} | {
+        n: columns[n] for n in last
+    }
+    frame = Trajectory(columns)
+    frame.attrs["scene"] = scene
+    return frame

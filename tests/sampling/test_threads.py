@@ -1,0 +1,54 @@
+"""Work in threads: in order, no more than is asked for, and errors are those of the work."""
+
+import threading
+import time
+
+import pytest
+
+from twodiscs.model.checks import InputError
+from twodiscs.sampling.blocks.threads import in_threads
+
+
+@pytest.mark.parametrize("cores", [1, 4])
+def test_results_come_in_order_from_other_threads(cores):
+    def work(number):
+        time.sleep(0.002 * (number % 3))
+        return number, threading.current_thread()
+
+    found = [*in_threads(work, ((i,) for i in range(20)), cores)]
+    assert [number for number, _ in found] == [*range(20)]
+    threads = {thread for _, thread in found}
+    assert threading.main_thread() not in threads
+    assert len(threads) <= cores
+
+
+def test_only_some_calls_are_begun_ahead():
+    begun = []
+    results = in_threads(lambda i: begun.append(i), ((i,) for i in range(100)), 2)
+    next(results)
+    results.close()
+    assert len(begun) <= 6
+
+
+def test_errors_come_out_and_end_the_work():
+    begun = []
+
+    def work(number):
+        begun.append(number)
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        list(in_threads(work, ((i,) for i in range(100))))
+    assert len(begun) <= 2
+
+
+def test_who_waits_is_told_that_time_goes_by():
+    told = []
+    list(in_threads(time.sleep, [(0.5,)], waiting=lambda: told.append(True)))
+    assert told
+
+
+@pytest.mark.parametrize("cores", [0, -1, 1.5, True, "2", None, 10**6])
+def test_cores_are_a_number_of_them(cores):
+    with pytest.raises(InputError, match="cores must be an integer"):
+        list(in_threads(len, [("a",)], cores))

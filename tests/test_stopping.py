@@ -1,0 +1,82 @@
+"""Ctrl-C, and the stop button of a notebook, which sends the same signal: what runs, stops.
+
+Each call would take most of an hour, but for starts and a trajectory, which are bounded: minutes. A
+machine that is busy may take its time to answer, so the bound on that is five seconds where the
+answer takes a few tenths; what matters is that it is no matter of the work that is left.
+"""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+#: What a child process runs: a small call, for which everything is compiled, then a long one.
+CHILD = """
+import twodiscs as td
+
+scene = td.Scene(1.5, 1.0, 0.2)
+field = td.Scene(1.5, 1.0, 0.2, field=0.3)
+rare = td.Scene(1.5, 1.0, 0.2495)
+
+def call(large):
+    {call}
+
+call(False)
+print("ready", flush=True)
+try:
+    call(True)
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+"""
+
+CALLS = {
+    "simulate": "td.simulate(scene, 1e-7 if large else 0.5, budget=1e13 if large else 1)",
+    "simulate with effects": "td.simulate(field, 1e-7 if large else 0.5, budget=1e13)",
+    "simulate on two cores": "td.simulate(scene, 1e-7 if large else 0.5, budget=1e13, cores=2)",
+    "sample": "td.sample(scene, 1e13 if large else 1)",
+    "intervals": "td.intervals(scene, 'vertical_hop', 1e12 if large else 1)",
+    "intervals of rare hops": "td.intervals(rare if large else scene, 'horizontal_hop', 1)",
+    "starts": "td.starts(td.Scene(1.5, 1.0, 0.34, field=0.1), 10**8 if large else 1)",
+    "trajectory": "td.trajectory(scene, duration=2.5e6 if large else 3)",
+    "transmission": "td.transmission(rare, 'horizontal_hop', 1e9 if large else 1)",
+    "scan": "td.scan(1.5, 1.0, [0.1, 0.2], 1e-7 if large else 0.5, budget=1e13)",
+    "observe": "td.observe(scene, lambda a, b: a['x1'], [0, 1], 1e9 if large else 1)",
+}
+
+
+def answer(child):
+    """Send the signal of Ctrl-C to a ``child``; return the seconds that it takes to end."""
+    assert child.stdout.readline() == "ready\n"
+    time.sleep(1)
+    asked = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    child.wait(60)
+    return time.monotonic() - asked
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_call_stops_at_once(name):
+    code = CHILD.format(call=CALLS[name])
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        seconds = answer(child)
+        assert (child.stdout.read(), child.stderr.read()) == ("stopped\n", "")
+    assert seconds < 5
+
+
+@pytest.mark.parametrize("words", ["simulate --error 1e-7 --budget 1e13", "sample --samples 1e13"])
+def test_a_command_stops_at_once(words):
+    code = (
+        "import sys; from twodiscs import cli; print('ready', flush=True); sys.argv[1:] = "
+        f"{[*words.split(), '--width', '1.5', '--height', '1', '--radius', '0.2']!r}; cli.main()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        seconds = answer(child)
+        assert child.returncode == -signal.SIGINT
+        assert child.stderr.read() == ""
+    assert seconds < 5
