@@ -172,7 +172,7 @@ def test_python_runs(name, tmp_path):
     if program:
         (tmp_path / "page.py").write_text(program, encoding="utf-8")
         done = subprocess.run(
-            [sys.executable, tmp_path / "page.py"], capture_output=True, text=True, check=False
+            [sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True, check=False
         )
         assert done.returncode == 0, done.stderr
 

@@ -114,7 +114,7 @@ def exact_table(
 
 def simulate(
     scene: Scene,
-    error: float | Mapping[str, float] = 1e-3,
+    error: float | str | Mapping[str, float | str] = 1e-3,
     seed: int = 1,
     budget: float = 2e9,
     events: Sequence[str] | None = None,
@@ -126,10 +126,11 @@ def simulate(
     """Measure mean times by molecular dynamics: {event: ``Measurement``}, in time.
 
     Trajectories from the invariant measure are followed until every relative standard error is
-    below ``error``, between 0 and 1 (one for all, or {event: error}), or ``budget`` wall and disc
-    events are simulated. Work comes in whole blocks of 1024 trajectories, some 1e5 events each: the
-    smallest budget has one, and is then exceeded. ``events`` are those to watch, all that have a
-    place in the scene if None. ``seed`` is an integer ≥ 0.
+    below ``error``, or ``budget`` wall and disc events are simulated. An error is above 0 and at
+    most 1, or "draft" (1e-2), "paper" (3e-4) or "reference" (1e-4), as in a configuration: one for
+    all, or {event: error}. Work comes in whole blocks of 1024 trajectories, some 1e5 events: so a
+    ``budget`` of 10 spends one of them. ``events`` are those to watch, all that have a place in the
+    scene if None. ``seed`` is an integer ≥ 0.
 
     On any number of ``cores`` the numbers are the same. ``progress`` shows how far it is; None
     means in a terminal or a notebook alone. The first call compiles for some seconds; compiled code
@@ -138,7 +139,7 @@ def simulate(
 
     Example:
 
-        td.simulate(td.Scene(1.5, 1.0, 0.2), error=1e-2)["vertical_hop"].value
+        td.simulate(scene, error=1e-2).save("hops.json")
     """
     from twodiscs.comparison.measured import measurements
 
@@ -149,7 +150,7 @@ def scan(
     width: float,
     height: float,
     radii: Iterable[float],
-    error: float | Mapping[str, float] = 1e-2,
+    error: float | str | Mapping[str, float | str] = 1e-2,
     seed: int = 1,
     budget: float = 2e9,
     events: Sequence[str] | None = None,
@@ -200,7 +201,7 @@ def sample(
 
     Example:
 
-        td.sample(td.Scene(1.5, 1.0, 0.2), 1e6)["volume"].stderr
+        td.sample(scene, 1e6)["volume"].stderr
     """
     from twodiscs.comparison.measured import measurements
 
@@ -226,7 +227,7 @@ def intervals(
 
     Example:
 
-        td.intervals(td.Scene(1.5, 1.0, 0.2), "vertical_hop", 1e5).mean.value
+        td.intervals(scene, "vertical_hop", 1e5).mean.value
     """
     from twodiscs.comparison.measured import measurements
 
@@ -278,7 +279,7 @@ def starts(
 
     Example:
 
-        td.starts(td.Scene(1.5, 1.0, 0.2), 1000)["x1"].mean()
+        td.starts(scene, 1000)["x1"].mean()
     """
     from twodiscs.comparison.measured import measurements
 
@@ -307,7 +308,7 @@ def trajectory(
 
     Example:
 
-        td.trajectory(td.Scene(1.5, 1.0, 0.2), duration=10).states_at([1, 2.5])["x1"]
+        td.trajectory(scene, duration=10).states_at([1, 2.5])["x1"]
     """
     from twodiscs.comparison.measured import trajectory
 
@@ -339,7 +340,7 @@ def observe(
 
     Example:
 
-        td.observe(td.Scene(1.5, 1.0, 0.2), lambda start, now: start["u1"] * now["u1"], [0, 1])
+        td.observe(scene, lambda start, now: start["u1"] * now["u1"], [0, 1])
     """
     from twodiscs.comparison.measured import observe
 
@@ -359,7 +360,7 @@ def plot(
 
     Example:
 
-        td.plot(td.Scene(1.5, 1.0, 0.2), "model.png")
+        td.plot(scene, "model.png")
     """
     from twodiscs.figures import plot
 
@@ -373,7 +374,7 @@ def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
 
     Example:
 
-        td.animate(td.trajectory(td.Scene(1.5, 1.0, 0.2)), "two.gif")
+        td.animate(td.trajectory(scene, duration=20), "two.gif")
     """
     from twodiscs.figures import plot
 
@@ -385,11 +386,8 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
 
     ``attrs`` of a table hold its units and the meanings of its columns, and where it comes from:
     path, sha256, and what the configuration said. Raises ``InputError`` for a folder without
-    tables, and a table that is damaged.
-
-    Example:
-
-        td.plot(td.load("results/paper")["mean_times"], figure="mean_hop_time")
+    tables, and a table that is damaged. After a build
+    ``td.plot(td.load("results/paper")["mean_times"])`` draws one of them.
     """
     from twodiscs.pipeline.results import frames
 
@@ -406,7 +404,7 @@ def load_result(
 
     Example:
 
-        td.load_result("hops.json").more(error=1e-3)
+        td.load_result("hops.json").more(error=5e-3)["vertical_hop"].z
     """
     from twodiscs.comparison.measured import result
 

@@ -5,6 +5,7 @@ import json
 import sys
 
 import twodiscs
+from twodiscs.model.checks import PRESETS
 from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
 
 #: What the examples of ``--help`` are about.
@@ -48,20 +49,31 @@ def _parser():
 
     command("exact", _exact, "exact volume, areas and mean times of one scene")
     some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
-    some.add_argument("--error", type=number, default=1e-3, help="relative, of every time (1e-3)")
+    some.add_argument("--error", type=error, default=1e-3, help="relative, or a preset (1e-3)")
     some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
     some.add_argument("--events", nargs="+", metavar="EVENT", help="what to watch (all)")
     _seed(some)
+    _cores(some)
     some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
     some.add_argument("--samples", type=whole_number, default=10**7, help="at least (1e7)")
     some.add_argument("--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area")
-    some.add_argument("--shell", type=number, default=0.02, help="thickness, a share (0.02)")
+    some.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
     _seed(some)
+    _cores(some)
     some = command("trajectory", _trajectory, "one trajectory, event by event")
     some.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
     some.add_argument("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
     _seed(some)
     return parser
+
+
+def error(text):
+    """Return ``text`` as a number, or as it is if it is a preset, for ``type=`` of an argument."""
+    return text if text in PRESETS else number(text)
+
+
+def _cores(command):
+    command.add_argument("--cores", type=whole_number, default=1, help="to work on (1)")
 
 
 def _seed(command):
@@ -85,7 +97,13 @@ def _exact(scene, options):
 def _simulate(scene, options):
     _print_measured(
         twodiscs.simulate(
-            scene, options.error, options.seed, options.budget, options.events, options.name
+            scene,
+            options.error,
+            options.seed,
+            options.budget,
+            options.events,
+            options.name,
+            cores=options.cores,
         ),
         options,
     )
@@ -94,7 +112,13 @@ def _simulate(scene, options):
 def _sample(scene, options):
     _print_measured(
         twodiscs.sample(
-            scene, options.samples, options.seed, options.quantities, options.shell, options.name
+            scene,
+            options.samples,
+            options.seed,
+            options.quantities,
+            options.shell,
+            options.name,
+            cores=options.cores,
         ),
         options,
     )

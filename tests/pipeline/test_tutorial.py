@@ -13,8 +13,10 @@ PAGE, NOTEBOOK = REPOSITORY / "docs" / "python.md", REPOSITORY / "docs" / "tutor
 
 
 @pytest.fixture(scope="module")
-def made():
-    return tutorial.tutorial(PAGE.read_text(encoding="utf-8"))
+def made(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("tutorial"))
+        return tutorial.tutorial(PAGE.read_text(encoding="utf-8"))
 
 
 def words(text):

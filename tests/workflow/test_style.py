@@ -9,6 +9,7 @@ import pytest
 import yaml
 from checkout import REPOSITORY
 
+import twodiscs
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.studies.catalogue import STUDIES
 
@@ -30,11 +31,20 @@ def test_every_rule_keeps_a_log_and_a_benchmark():
 
 
 @pytest.mark.parametrize(
-    "page", ["results/README.md", "config/README.md", "config/schema.json", "README.md"]
+    "page",
+    [
+        *("results/README.md", "config/README.md", "config/schema.json", "README.md"),
+        "docs/reference.md",
+    ],
 )
 def test_pages_made_from_declarations_are_up_to_date(page):
     text = (REPOSITORY / page).read_text(encoding="utf-8")
     assert text == pages.pages(REPOSITORY)[page], f"python -m {pages.__name__}"
+
+
+def test_the_reference_has_every_public_name():
+    described = [name for names in pages.REFERENCE.values() for name in names]
+    assert sorted(described) == sorted(twodiscs.__all__)
 
 
 CONFIGURATIONS = [*REPOSITORY.glob("config/**/*.yaml"), *REPOSITORY.glob("tests/**/*.yaml")]

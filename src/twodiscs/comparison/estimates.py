@@ -70,16 +70,16 @@ class Estimate:
         object.__setattr__(self, "n", whole("n", self.n, 1))
 
     @property
-    def relative_stderr(self):
+    def relative_stderr(self) -> float:
         """The standard error over the size of the value; infinite when the value is zero."""
         return self.stderr / abs(self.value) if self.value else math.inf
 
-    def interval(self, confidence=0.95):
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """Return the normal confidence interval (low, high)."""
         half = normal_quantile(confidence) * self.stderr
         return self.value - half, self.value + half
 
-    def covers(self, exact, confidence=0.95):
+    def covers(self, exact: float, confidence: float = 0.95) -> bool:
         """Say whether the confidence interval contains ``exact``."""
         low, high = self.interval(confidence)
         return low <= exact <= high

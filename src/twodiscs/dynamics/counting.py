@@ -32,7 +32,7 @@ from twodiscs.dynamics.law import (
     crosses,
     law_of,
 )
-from twodiscs.model.checks import InputError, one_of, proportion, whole
+from twodiscs.model.checks import InputError, accuracy, one_of, whole
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
 from twodiscs.model.scene import Scene, a_scene
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
@@ -291,7 +291,7 @@ def run_blocks(
 def count_events(scene, target, budget, seed):
     """Count the events of a ``Scene`` in independent replicas until each is known well enough.
 
-    ``target`` maps each watched event to the relative standard error asked for (0 < target < 1);
+    ``target`` maps each watched event to the relative standard error asked for (0 < target ≤ 1);
     blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
     events to simulate; a block of replicas is the least that is. Work goes in rounds: see
     ``sampling.blocks.rounds``.
@@ -324,7 +324,7 @@ class CountingRun:
                 f"target must name at least one event, with its error, not {self.target!r}"
             )
         for event, target in self.target.items():
-            proportion(f"target of {one_of('event', event, EVENTS)}", target)
+            accuracy(f"target of {one_of('event', event, EVENTS)}", target)
         whole("budget", self.budget)
         whole("seed", self.seed, 0)
         require_room(self.scene)

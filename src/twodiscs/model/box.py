@@ -1,5 +1,7 @@
 """A box and its effects: a scene without its radius, and the radii at which something ends."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -18,11 +20,15 @@ class Box:
 
     Effects that have the value of their absence are left out. Raises ``InputError`` for a side that
     is no length, for an unknown effect, and for effects that do not go together.
+
+    Example:
+
+        td.Box(1.5, 1.0).largest_radius
     """
 
     width: float
     height: float
-    effects: dict = field(default_factory=dict)
+    effects: dict[str, object] = field(default_factory=dict)
 
     def __post_init__(self):
         for name in ("width", "height"):
@@ -41,11 +47,11 @@ class Box:
         return hash((self.width, self.height, *self.effects.items()))
 
     @classmethod
-    def of(cls, scene):
+    def of(cls, scene: Scene) -> Box:
         """Return the box of a ``Scene``."""
         return cls(scene.width, scene.height, scene.effects)
 
-    def parameters(self):
+    def parameters(self) -> dict[str, object]:
         """Return {"effects": …, "height": …, "width": …}: plain values, without absent effects.
 
         ``Box(**parameters)`` is this box again. So the parameters of a job in a plain box, and with
@@ -54,11 +60,11 @@ class Box:
         box = {"height": self.height, "width": self.width}
         return {"effects": dict(self.effects)} | box if self.effects else box
 
-    def scene(self, radius):
+    def scene(self, radius: float) -> Scene:
         """Return the ``Scene`` at a ``radius``; raise ``InputError`` where there is none."""
         return Scene(self.width, self.height, radius, **self.effects)
 
-    def fits(self, radius):
+    def fits(self, radius: float) -> bool:
         """Say whether there is a scene at this ``radius``, a length."""
         radius = length("radius", radius)
         try:
@@ -68,22 +74,22 @@ class Box:
         return True
 
     @cached_property
-    def tiny(self):
+    def tiny(self) -> Scene:
         """A scene of tiny discs: what does not depend on the radius can be asked of it."""
         radius = TINY * self.shortest / max(1.0, self.effects.get("radius_ratio", 1.0))
         return self.scene(max(radius, SHORTEST))
 
     @property
-    def sides(self):
+    def sides(self) -> tuple[float, ...]:
         """The sides of the box: width, height and maybe depth."""
         return self.width, self.height, *(self.effects[n] for n in ("depth",) if n in self.effects)
 
     @property
-    def shortest(self):
+    def shortest(self) -> float:
         """The shortest side."""
         return min(self.sides)
 
-    def turned(self):
+    def turned(self) -> Box:
         """Return the box turned by a quarter; raise ``InputError`` if it has effects."""
         if self.effects:
             raise InputError(
@@ -92,12 +98,12 @@ class Box:
         return replace(self, width=self.height, height=self.width)
 
     @cached_property
-    def largest_radius(self):
+    def largest_radius(self) -> float:
         """The radius at which the discs have no room left; a field may stop them before."""
         return self.tiny.largest_radius
 
     @cached_property
-    def last_radius(self):
+    def last_radius(self) -> float:
         """The radius from which on there is no scene: ``largest_radius``, or less in a field."""
         return self.end(lambda scene: True) if self.effects else self.largest_radius
 
@@ -117,7 +123,7 @@ class Box:
             low, high = (middle, high) if fits else (low, middle)
         return high
 
-    def threshold(self, event):
+    def threshold(self, event: str) -> float | None:
         """Return the radius from which on ``event`` is impossible; None if it always is.
 
         For hops of equal discs that is w/4 (vertical) or h/4 (horizontal), unless the discs jam
@@ -140,7 +146,7 @@ class Box:
         return (self.width if AXIS[hop] == "y" else self.height) / 4
 
     @cached_property
-    def thresholds(self):
+    def thresholds(self) -> tuple[float, ...]:
         """The radii below the last one at which a hop becomes blocked, ascending, without repeats.
 
         Those of h/4 and w/4 that fit, where there are no effects.

@@ -10,6 +10,9 @@ SHORTEST, LONGEST = 1e-60, 1e60
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
 
+#: Relative errors that have a name.
+PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
+
 #: Letters of the longest sentence: what it quotes may be of any length.
 LONGEST_SENTENCE = 1000
 
@@ -80,6 +83,22 @@ def proportion(name, value):
         raise InputError(f"{name} must be a number between 0 and 1, not {shown(value)}")
     if not 0 < value < 1:
         raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {shown(value)}")
+    return float(value)
+
+
+def accuracy(name, value):
+    """Return a relative error as a float: a number above 0 and at most 1, or one of ``PRESETS``.
+
+    Raises ``InputError`` for anything else.
+    """
+    real = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    if not real and isinstance(value, str) and value in PRESETS:
+        return PRESETS[value]
+    if not real or not 0 < value <= 1:
+        raise InputError(
+            f"{name} must be a number above 0 and at most 1, or one of {', '.join(PRESETS)}, not "
+            f"{shown(value)}"
+        )
     return float(value)
 
 

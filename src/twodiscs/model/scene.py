@@ -9,7 +9,10 @@ or masses, periodic axes, a uniform field along −y, rough discs, a third dimen
 are balls). What a scene does not call for is neither simulated nor compiled.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
@@ -46,6 +49,10 @@ class Scene:
 
     Raises ``InputError`` for a value that is not of its kind, for a radius that leaves the discs no
     room or no motion at total energy 1/2, and for effects that do not go together.
+
+    Example:
+
+        td.Scene(1.5, 1.0, 0.2, mass_ratio=2, periodic="x").regime
     """
 
     width: float
@@ -54,7 +61,7 @@ class Scene:
     depth: float | None = None
     radius_ratio: float = 1.0
     mass_ratio: float = 1.0
-    periodic: str = ""
+    periodic: str | Sequence[str] = ""
     field: float = 0.0
     moment_of_inertia: float | None = None
 
@@ -140,18 +147,18 @@ class Scene:
     def _box(self):
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
 
-    def unit(self, quantity):
+    def unit(self, quantity: str) -> str:
         """Return the unit of a "volume", an "area" or anything that is a "time"."""
         powers = {"volume": "⁴⁶", "area": "³⁵"}
         kind = quantity.rpartition("_")[2]
         return f"length{powers[kind][self.depth is not None]}" if kind in powers else "time"
 
-    def with_radius(self, radius):
+    def with_radius(self, radius: float) -> Scene:
         """Return the same scene with another radius of disc 1."""
         return replace(self, radius=radius)
 
     @property
-    def effects(self):
+    def effects(self) -> dict[str, object]:
         """The effects that the scene calls for, {name: value} in the order of the fields."""
         return {
             name: getattr(self, name)
@@ -160,22 +167,22 @@ class Scene:
         }
 
     @property
-    def has_effects(self):
+    def has_effects(self) -> bool:
         """Whether the scene calls for any effect."""
         return bool(self.effects)
 
     @cached_property
-    def axes(self):
+    def axes(self) -> tuple[str, ...]:
         """The names of the axes: x, y and, for balls, z."""
         return ("x", "y") if self.depth is None else ("x", "y", "z")
 
     @cached_property
-    def walled(self):
+    def walled(self) -> tuple[str, ...]:
         """The axes with walls."""
         return tuple(axis for axis in self.axes if axis not in self.periodic)
 
     @cached_property
-    def conserved(self):
+    def conserved(self) -> tuple[str, ...]:
         """The axes along which the total momentum is conserved; the ensemble has it at 0.
 
         Those are the periodic ones, unless there are rough walls, which push discs along them.
@@ -183,18 +190,18 @@ class Scene:
         return tuple(self.periodic) if self.moment_of_inertia is None else ()
 
     @cached_property
-    def velocity_components(self):
+    def velocity_components(self) -> int:
         """D: the components of velocities and spins, less the momenta that are conserved."""
         spins = 0 if self.moment_of_inertia is None else 2
         return 2 * len(self.axes) + spins - len(self.conserved)
 
     @cached_property
-    def radii(self):
+    def radii(self) -> tuple[float, float]:
         """The radii of disc 1 and disc 2."""
         return self.radius, self.radius * self.radius_ratio
 
     @cached_property
-    def masses(self):
+    def masses(self) -> tuple[float, float]:
         """The masses of disc 1 and disc 2."""
         return 1.0, self.mass_ratio
 
@@ -213,7 +220,7 @@ class Scene:
         return self.height - sum(self.radii)
 
     @cached_property
-    def contact_distance(self):
+    def contact_distance(self) -> float:
         """σ: the distance of the centres when the discs touch, twice the radius if equal."""
         return sum(self.radii)
 
@@ -250,7 +257,7 @@ class Scene:
         return self._spread() > self.exact_contact**2
 
     @cached_property
-    def largest_radius(self):
+    def largest_radius(self) -> float:
         """The radius of disc 1 at which the discs have no room left."""
         if not self.has_effects:
             return _largest_radius(self.width, self.height)
@@ -340,7 +347,7 @@ class Scene:
         return "x" in self._passed
 
     @cached_property
-    def regime(self):
+    def regime(self) -> str:
         """One of ``REGIMES``; on a periodic axis there are no hops."""
         if self.vertical_hops and self.horizontal_hops:
             return "all-hops"
@@ -349,7 +356,7 @@ class Scene:
         return "horizontal-hops" if self.horizontal_hops else "no-hops"
 
     @cached_property
-    def ergodic_components(self):
+    def ergodic_components(self) -> int:
         """The number of disjoint parts of configuration space.
 
         Each hop that is blocked between walls doubles it. A periodic axis has a way around.
@@ -404,7 +411,7 @@ class Scene:
         return round((1 + mirrored) * (1 + self.identical) * self.share(event))
 
     @cached_property
-    def events(self):
+    def events(self) -> tuple[str, ...]:
         """Those of ``EVENTS`` that have a place in the scene, whether or not they are possible."""
         return tuple(event.name for event in DECLARED.values() if self._has_place(event))
 
@@ -413,7 +420,7 @@ class Scene:
             return event.axis in self.walled
         return event.kind == "collision" or bool(self.walled)
 
-    def is_possible(self, event):
+    def is_possible(self, event: str) -> bool:
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
         if one_of("event", event, EVENTS) not in self.events:
             return False

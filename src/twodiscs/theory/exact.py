@@ -6,6 +6,8 @@ ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is cros
 weights: they are handed over to ``weighted``, which needs NumPy and is imported only then.
 """
 
+from __future__ import annotations
+
 import math
 from functools import lru_cache
 
@@ -13,6 +15,23 @@ from twodiscs.model.checks import InputError, length, one_of
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory import plain
+
+TYPE_CHECKING = False  # what reads types takes it for true; the module typing is not for free
+if TYPE_CHECKING:
+    from typing import TypedDict
+
+    from twodiscs.model.scene import Scene
+
+    class Exact(TypedDict):
+        """All exact numbers of a scene."""
+
+        regime: str
+        ergodic_components: int
+        largest_radius: float
+        volume: float
+        areas: dict[str, float]
+        mean_times: dict[str, float | None]
+
 
 #: The least share of the prism, in which both centres keep to their ranges, that must be free of
 #: overlaps in a scene with effects: starts are drawn from the prism by rejection.
@@ -32,34 +51,46 @@ def measures(scene):
     return plain.exact(scene)
 
 
-def volume(scene):
+def volume(scene: Scene) -> float:
     """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
     Within a few roundings of the exact value for every box and radius. In a field it is weighted
     with the invariant density (see ``weighted``). Raises ``InputError`` for anything that is not a
     ``Scene``.
+
+    Example:
+
+        td.volume(scene)
     """
     return measures(a_scene(scene))[0]
 
 
-def areas(scene):
+def areas(scene: Scene) -> dict[str, float]:
     """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
 
     Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
     or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
     balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``weighted``). Accuracy
     and errors as for ``volume``.
+
+    Example:
+
+        td.areas(scene)["disc_collision"]
     """
     return dict(measures(a_scene(scene))[1])
 
 
-def rate(scene, event):
+def rate(scene: Scene, event: str) -> float:
     """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
 
     This is the mean over the whole configuration space. Where disc 1 reaches the right (top) wall
     from its own side of disc 2 only, a trajectory that can reach it hits it twice as often:
     ``mean_times``. Raises ``InputError`` for anything that is not a ``Scene`` or one of
     ``EVENTS``.
+
+    Example:
+
+        td.rate(scene, "any_wall")
     """
     volume, areas = measures(a_scene(scene))
     sides = DECLARED[one_of("event", event, EVENTS)].sides
@@ -110,7 +141,7 @@ def events_per_interval(scene, hop):
     return mean_times(scene)[hop] * event_rate(scene) * work_per_event(scene)
 
 
-def mean_times(scene):
+def mean_times(scene: Scene) -> dict[str, float | None]:
     """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
 
     Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the
@@ -118,6 +149,10 @@ def mean_times(scene):
     half of configuration space where ``Scene.confined``. Where a larger disc 1 keeps its side and
     still reaches both walls, the time is one over the mean of its two rates. Accuracy and errors
     as for ``volume``.
+
+    Example:
+
+        td.mean_times(scene)["vertical_hop"]
     """
     return {
         event: scene.share(event) / rate(scene, event) if area else None
@@ -125,11 +160,15 @@ def mean_times(scene):
     }
 
 
-def exact(scene):
+def exact(scene: Scene) -> Exact:
     """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
 
     Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Raises
     ``InputError`` for anything that is not a ``Scene``.
+
+    Example:
+
+        td.exact(scene)["regime"]
     """
     return {
         "regime": a_scene(scene).regime,

@@ -22,7 +22,7 @@ from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, count, one_of, proportion, shown
+from twodiscs.model.checks import InputError, accuracy, count, one_of, proportion, shown
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, a_scene
@@ -139,7 +139,7 @@ class Measurements(Result, Mapping[str, Measurement]):
 
     def more(
         self,
-        error: float | Mapping[str, float] | None = None,
+        error: float | str | Mapping[str, float | str] | None = None,
         budget: float | None = None,
         samples: float | None = None,
         cores: int = 1,
@@ -295,10 +295,10 @@ def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, k
     watched_events = _named("events", "event", events, possible)
     if missing := [event for event in watched_events if event not in errors]:
         raise InputError(f"error must hold every event, but has none for {missing[0]}")
-    target = {event: proportion("error", errors[event]) for event in watched_events}
+    target = {event: accuracy("error", errors[event]) for event in watched_events}
     budget, stream = count("budget", budget), seed_of(scene, "dynamics", seed, name)
     settings = {
-        "error": target if isinstance(error, Mapping) else float(error),
+        "error": target if isinstance(error, Mapping) else accuracy("error", error),
         "seed": int(seed), "budget": budget, "events": watched_events, "name": name,
     }  # fmt: skip
     from twodiscs.dynamics.counting import CountingRun

@@ -45,7 +45,7 @@ class Scan(Result, Sequence[Measurements]):
 
     def more(
         self,
-        error: float | Mapping[str, float] | None = None,
+        error: float | str | Mapping[str, float | str] | None = None,
         budget: float | None = None,
         cores: int = 1,
         progress: bool | None = None,

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import PRESETS, InputError
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
@@ -20,9 +20,6 @@ from twodiscs.pipeline.configuration.request import Configuration, SceneRequest,
 from twodiscs.pipeline.configuration.schema import schema
 from twodiscs.studies.catalogue import STUDIES
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
-
-#: Relative standard errors of the mean times, by name.
-PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
 
 #: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
 HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)

@@ -1,0 +1,300 @@
+"""Results: how they were made, kept in files, carried on, shown; states, and averages over them."""
+
+import ast
+import json
+import math
+import os
+import subprocess
+import sys
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import twodiscs as td
+from twodiscs.comparison.measured import watching
+from twodiscs.model.checks import PRESETS
+from twodiscs.model.effects import EFFECTS
+
+SCENE = td.Scene(1.5, 1.0, 0.2)
+NARROW = td.Scene(1.5, 1.0, 0.249)
+CHANNEL = td.Scene(1.5, 1.0, 0.2, periodic="x", field=0.3)
+
+#: {name: (less, more of it, what says more)}; the hop of ``NARROW`` is counted from strips as well.
+MADE = {
+    "simulate": (lambda **o: td.simulate(NARROW, 0.3, seed=5, **o), "error", 0.02),
+    "sample": (lambda **o: td.sample(SCENE, 1e6, seed=5, **o), "samples", 5e6),
+    "intervals": (
+        lambda **o: td.intervals(SCENE, "vertical_hop", 1e5, seed=5, **o), "number", 4e5,
+    ),
+    "transmission": (
+        lambda **o: td.transmission(NARROW, "horizontal_hop", 2**12, seed=5, **o), "hops", 2**14,
+    ),
+    "scan": (lambda **o: td.scan(1.5, 1.0, [0.2, 0.1], 0.3, seed=5, **o), "error", 0.05),
+}  # fmt: skip
+
+
+def bits(result):
+    """Return all that is in a result, as text."""
+    return result.frame().to_csv() + str(result)
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_results_go_on_and_come_back(name, tmp_path):
+    make, setting, value = MADE[name]
+    less = make()
+    path = tmp_path / "result.json"
+    less.save(path)
+    read = td.load_result(path)
+    assert type(read) is type(less)
+    assert bits(read) == bits(less)
+    assert (read.kind, read.version) == (name, td.__version__)
+    assert read.settings == less.settings
+    assert read.settings["seed"] == 5
+    more = less.more(**{setting: value})
+    assert bits(more) == bits(read.more(**{setting: value}, cores=2))
+    assert bits(more) != bits(less)
+    assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
+
+
+def test_more_is_what_is_asked_for_at_once():
+    for scene in (SCENE, NARROW):
+        step = td.simulate(scene, 0.3, seed=5)
+        for error in (0.1, 0.02):
+            step = step.more(error=error)
+            assert step.rows == td.simulate(scene, error, seed=5).rows
+            assert step.rows == td.simulate(scene, error, seed=5, cores=3).rows
+    assert td.sample(SCENE, 1e6).more(samples=4e6).rows == td.sample(SCENE, 4e6, cores=2).rows
+    less, more = (td.intervals(SCENE, "vertical_hop", number) for number in (1e5, 3e5))
+    assert less.more(3e5).rows == more.rows
+    assert less.more(3e5).mean == more.mean
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("", "path must be a file that save() wrote"),
+        ("[1]", "path must be a file that save() wrote"),
+        ('{"twodiscs": "0"}', "the result must be of version"),
+        (json.dumps({"twodiscs": td.__version__, "kind": "x"}), "path must be a file that save"),
+    ],
+)  # fmt: skip
+def test_files_of_something_else_are_refused(content, said, tmp_path):
+    path = tmp_path / "result.json"
+    path.write_text(content)
+    with pytest.raises(td.InputError) as caught:
+        td.load_result(path)
+    assert said in str(caught.value)
+    with pytest.raises(td.InputError, match="path must be a file to read"):
+        td.load_result(tmp_path / "absent.json")
+
+
+def test_a_result_goes_on_by_its_own_settings_alone():
+    with pytest.raises(td.InputError, match="samples must be left out for a result of simulate"):
+        td.simulate(SCENE, 0.5, budget=1).more(samples=10)
+
+
+def test_presets_are_those_of_a_configuration():
+    found = td.simulate(SCENE, "draft", events=["any_wall"])
+    assert found.settings["error"] == PRESETS["draft"]
+    assert td.simulate(SCENE, 1, budget=1)["any_wall"].status == "reached"
+
+
+# Shown --------------------------------------------------------------------------------------------
+
+
+def test_notebooks_show_tables_and_complete_keys():
+    found = td.simulate(SCENE, 0.5, budget=1)
+    assert found._ipython_key_completions_() == [*td.EVENTS]
+    html = found._repr_html_()
+    assert html.count("<tr>") == 1 + len(td.EVENTS)
+    assert "<td>vertical_hop_time</td>" in html
+    assert "<table>" in td.intervals(SCENE, "vertical_hop", 1)._repr_html_()
+
+
+def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
+    scan = td.scan(1.5, 1.0, [0.2, 0.1], 0.3, events=["any_wall"], mass_ratio=2)
+    assert scan.radii == [0.1, 0.2]
+    assert scan[1].rows == td.simulate(scan[1].scene, 0.3, events=["any_wall"]).rows
+    assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, mass_ratio=2)
+    assert scan.frame().loc[(0.1, "any_wall"), "estimate"] == scan[0]["any_wall"].value
+    td.plot(scan, tmp_path / "scan.png")
+    assert (tmp_path / "scan.png").stat().st_size > 5000
+    with pytest.raises(td.InputError, match="radii must hold one radius at least"):
+        td.scan(1.5, 1.0, [])
+
+
+def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
+    from matplotlib import backend_bases
+
+    shown = []
+
+    class Window(backend_bases.FigureManagerBase):
+        def show(self):
+            shown.append(self.canvas.figure)
+
+    class Canvas(backend_bases.FigureCanvasBase):
+        required_interactive_framework = "windows"
+        manager_class = Window
+
+    windows = ModuleType("windows")
+    windows.FigureCanvas = Canvas
+    monkeypatch.setitem(sys.modules, "windows", windows)
+    monkeypatch.setattr("matplotlib.get_backend", lambda: "module://windows")
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    td.plot(SCENE)
+    assert shown == []
+    monkeypatch.setattr(sys, "ps1", ">>> ", raising=False)
+    figure = td.plot(SCENE)
+    assert shown == [figure]
+    monkeypatch.setattr("matplotlib.get_backend", lambda: "agg")  # no window there
+    td.plot(SCENE)
+    assert shown == [figure]
+
+
+@pytest.mark.parametrize("progress", [None, True, False])
+def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
+    pytest.importorskip("tqdm", reason="tqdm shows progress")
+    monkeypatch.setattr(watching, "PATIENCE", 0.0)
+    td.simulate(SCENE, 0.02, progress=progress)
+    td.starts(SCENE, 10, progress=progress)
+    td.trajectory(SCENE, duration=1, progress=progress)
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert ("simulate r = 0.2" in said.err) == (progress is True)
+    assert ("trajectory r = 0.2" in said.err) == (progress is True)
+
+
+def test_progress_is_true_or_false():
+    with pytest.raises(td.InputError, match="progress must be True, False or None, not 1"):
+        td.simulate(SCENE, 0.5, progress=1)
+
+
+def test_jobs_of_the_pipeline_do_not_import_what_shows_progress(tmp_path):
+    code = (
+        "import sys; from twodiscs.pipeline.jobs import point; sys.argv[1:] = 'dynamics --width 1.5"
+        f" --height 1 --radius 0.2 --target any_wall=0.5 --budget 1 --seed 1 --output {tmp_path}/p'"
+        ".split(); point.main(); assert not {'tqdm', 'pandas'} & {*sys.modules}"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout, run.stderr) == (0, "", "")
+
+
+# States -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scene", [SCENE, CHANNEL, td.Scene(1.5, 1.0, 0.2, depth=0.8)])
+def test_states_between_rows_lead_from_one_to_the_next(scene):
+    path = td.trajectory(scene, seed=2, duration=30)
+    names = [name for name in path.columns if name not in ("time", "event")]
+    assert tuple(sorted(names)) == tuple(sorted(td.starts(scene, 1).dtype.names))
+    times = path["time"].to_numpy()
+    states = path.states_at(times)
+    ends = path.states_at(np.nextafter(times[1:], 0))
+    for name in names:
+        assert np.array_equal(states[name][:-1][np.diff(times) > 0],
+                              path[name].to_numpy()[:-1][np.diff(times) > 0])  # fmt: skip
+        if name[0] in "xyz":
+            # No place jumps, on periodic axes neither.
+            assert np.allclose(ends[name], path[name][1:], rtol=0, atol=1e-9)
+    with pytest.raises(td.InputError, match=r"times must be numbers from 0\.0 to 30\.0, not"):
+        path.states_at([31])
+
+
+def test_averages_over_states_have_honest_errors():
+    """Five standard errors each: energy is kept, ⟨u²⟩ of four components is 1/4, and t u at first.
+
+    A velocity and a place at once are an array for each replica.
+    """
+
+    def seen(start, now):
+        energy = sum(now[name] ** 2 for name in ("u1", "v1", "u2", "v2"))
+        return np.stack([energy, start["u1"] * now["u1"], now["x1"] - start["x1"]], axis=1)
+
+    found = td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3)
+    assert found.mean.shape == found.stderr.shape == (3, 3)
+    assert found.replicas == 20480
+    assert np.allclose(found.mean[:, 0], 1, rtol=0, atol=1e-12)
+    assert abs(found.mean[0, 1] - 0.25) < 5 * found.stderr[0, 1]
+    assert np.all(np.abs(found.mean[:, 2]) <= 5 * found.stderr[:, 2])
+    # ⟨u⁴⟩ = 1/8 on the sphere in four dimensions.
+    assert math.isclose(found.stderr[0, 1], math.sqrt((1 / 8 - 1 / 16) / 20480), rel_tol=0.05)
+    again = td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3, cores=2)
+    assert np.array_equal(again.mean, found.mean)
+    assert np.array_equal(again.stderr, found.stderr)
+    assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
+
+
+def test_what_is_observed_is_a_trajectory():
+    """The states of a replica are those of the trajectory from its start, beyond the cell too."""
+    kept = []
+
+    def seen(start, now):
+        kept.append((start[:3].copy(), now[:3].copy()))
+        return now["x1"]
+
+    times = [2.0, 11.0]
+    td.observe(CHANNEL, seen, times, 10)
+    for k, time in enumerate(times):
+        for start, now in zip(*kept[k], strict=True):
+            path = td.trajectory(CHANNEL, start=start, duration=12.0)
+            (state,) = path.states_at([time])
+            assert np.allclose([*state], [*now], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"times": [1, 1]}, "times must be ascending numbers from 0 on, not [1, 1]"),
+        ({"times": [-1]}, "times must be ascending numbers from 0 on, not [-1]"),
+        ({"times": [1e9]}, "times must be below "),
+        ({"function": 1}, "function must be one of two arrays of states, not 1"),
+        ({"function": lambda start, now: 1.0}, "function must return a number, or as many of them"),
+        ({"replicas": 0}, "replicas must be an integer"),
+    ],
+)
+def test_what_cannot_be_observed_is_refused(given, said):
+    with pytest.raises(td.InputError) as caught:
+        td.observe(**{"scene": SCENE, "function": lambda a, b: a["x1"], "times": [1]} | given)
+    assert said in str(caught.value)
+
+
+# Types and pipes ----------------------------------------------------------------------------------
+
+
+def test_every_argument_has_a_type():
+    """What an editor or a checker of types reads; none of them gives up by Any."""
+    with open(td.__file__, encoding="utf-8") as file:
+        tree = ast.parse(file.read())
+    for part in tree.body:
+        if isinstance(part, ast.FunctionDef) and part.name[0] != "_":
+            arguments = [*part.args.args, *part.args.kwonlyargs, part.args.kwarg]
+            texts = [ast.unparse(a.annotation) for a in arguments if a] + [
+                ast.unparse(part.returns)
+            ]
+            assert "Any" not in " ".join(texts)
+    (block,) = (n for n in tree.body if isinstance(n, ast.If))
+    (effects,) = (n for n in block.body if isinstance(n, ast.ClassDef))
+    assert [part.target.id for part in effects.body[1:]] == [*EFFECTS]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["-m", "twodiscs", "exact", "--width", "1.5", "--height", "1", "--radius", "0.2"],
+        ["-m", "twodiscs", "--version"],
+        ["-m", "twodiscs.pipeline.results.spent", "results"],
+    ],
+)
+def test_who_reads_may_stop_reading(words, tmp_path):
+    folder = tmp_path / "results" / "benchmarks"
+    folder.mkdir(parents=True)
+    (folder / "check.tsv").write_text("s\th:m:s\tmax_rss\tcpu_time\n1.0\t0:00:01\t9\t1.0\n")
+    reader, writer = os.pipe()
+    os.close(reader)
+    run = subprocess.run(
+        [sys.executable, *words], stdout=writer, stderr=subprocess.PIPE, text=True, cwd=tmp_path,
+        check=False,
+    )  # fmt: skip
+    os.close(writer)
+    assert run.stderr == ""
