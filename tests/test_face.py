@@ -186,6 +186,8 @@ def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
     assert math.isclose(zero.exact, 3 * math.sqrt(2) / 16 / 0.6)
     assert sum(intervals.counts) + intervals.overflow == intervals.intervals
     assert len(intervals.density) == len(intervals.edges) - 1 == len(intervals.frame())
+    assert [*intervals.frame()["count"]] == intervals.counts
+    assert intervals.frame().index.is_unique
     assert "density_at_zero" in str(intervals)
 
 

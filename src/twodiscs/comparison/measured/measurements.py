@@ -207,8 +207,10 @@ class Intervals(Result):
         self.settings, self.kept = settings, kept
         self.intervals, self.overflow = point["intervals"], point["overflow"]
         self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
-        self.edges = [row["left"] for row in self.rows] + [self.rows[-1]["right"]]
         self.counts = point["counts"]
+        # Wide bins, which hold the same intervals once more, come after the equal ones.
+        self._bins = self.rows[: len(self.counts)]
+        self.edges = [row["left"] for row in self._bins] + [self._bins[-1]["right"]]
         first, z = self.rows[0], self.rows[0]["z"]
         status = "sampled" if first["mean_stderr"] else "too-few"
         self.mean = Measurement(
@@ -239,12 +241,12 @@ class Intervals(Result):
     @property
     def density(self) -> list[float]:
         """The density of each bin, in 1/time."""
-        return [row["density"] for row in self.rows]
+        return [row["density"] for row in self._bins]
 
     def frame(self) -> pd.DataFrame:
         """Return the bins as a pandas ``DataFrame``: left, right, count, density and its error."""
         names = "left", "right", "count", "density", "stderr"
-        return _frame([{n: row[n] for n in names} for row in self.rows], index="left")
+        return _frame([{n: row[n] for n in names} for row in self._bins], index="left")
 
     def __str__(self) -> str:
         lines = [COLUMNS, self.mean.cells(), self.at_zero.cells()]
