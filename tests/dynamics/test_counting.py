@@ -197,16 +197,14 @@ def test_accuracy_is_reached_or_the_budget_is_spent():
     assert spent == counting.count_events(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
 
 
-def test_a_report_says_what_is_done_and_what_is_left():
-    said = []
-    point = counting.count_events(
-        PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1, lambda *words: said.append(words)
-    )
-    assert len(said) == point["rounds"] > 1
-    assert all("events, error" in text for text, _ in said)
-    # Work that is left over work that is done: more than as much at first, next to none at last.
-    lefts = [left for _, left in said]
-    assert lefts[0] > 1 > 0.02 > lefts[-1] >= 0
+def test_who_watches_sees_what_is_done_and_how_much_there_is():
+    seen = []
+    run = counting.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
+    point = run.alone(lambda *given: seen.append(given))
+    done, everything = zip(*(pair for pair in seen if pair[0] is not None), strict=True)
+    assert list(done) == sorted(done)
+    assert done[-1] == pytest.approx(point["events"], rel=0.05)
+    assert done[-1] <= everything[-1] <= 1.05 * 2 * 10**7
 
 
 def test_relative_errors_are_those_of_the_replicas():

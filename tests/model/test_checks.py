@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, ascending, length, number, one_of, proportion, whole
+from twodiscs.model.checks import (
+    InputError,
+    accuracy,
+    ascending,
+    length,
+    number,
+    one_of,
+    proportion,
+    whole,
+)
 from twodiscs.model.effects import ABSENT
 from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
@@ -46,6 +55,15 @@ def test_what_is_allowed_is_returned_in_its_plain_type():
         *(
             (proportion, (bad,), f"x must lie between 0 and 1, ends excluded, not {bad!r}")
             for bad in (0, 1.0, -0.5, math.nan, math.inf)
+        ),
+        *(
+            (
+                accuracy,
+                (bad,),
+                "x must be a number above 0 and at most 1, or one of draft, paper, reference, not "
+                f"{bad!r}",
+            )
+            for bad in (0, 1.1, -0.5, True, "rough", None, [1])
         ),
         (one_of, ("c", ("a", "b")), "x must be one of a, b, not 'c'"),
         (ascending, ("12",), "x must be a sequence of numbers, not '12'"),

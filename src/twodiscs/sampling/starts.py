@@ -31,6 +31,9 @@ from twodiscs.theory import exact
 #: Starts that one call of a kernel draws at most: a tenth of a second without effects.
 CALL = 2**18
 
+#: Starts that are drawn into an array which stays in the cache.
+PIECE = 2**13
+
 #: Rows of an array of starts.
 COMPONENTS = 12
 
@@ -192,11 +195,15 @@ def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
     draw, prism = origins(scene)
     state = open_stream(np.uint64(seed), block)
 
+    # The kernel takes whole arrays, goes on with the stream, and has no use for some of the rows.
+    used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))
+
     def fill(first, stop):
-        # The kernel takes whole arrays, and goes on with the stream.
-        some = np.zeros((COMPONENTS, stop - first))
-        draw_any_starts(state, draw, sides, some, prism)
-        filled[:, first:stop] = some
+        for start in range(first, stop, PIECE):
+            end = min(start + PIECE, stop)
+            some = buffer if end - start == buffer.shape[1] else np.zeros((COMPONENTS, end - start))
+            draw_any_starts(state, draw, sides, some, prism)
+            filled[:used, start:end] = some[:used]
         return stop
 
     step = CALL if prism is None else max(1, int(CALL * exact.free_fraction(scene)))
