@@ -92,7 +92,13 @@ EFFECTS = [
     "field", {"gravity": 1}, {1: 2}, {"field": -1.0}, {"periodic": "xx"}, {"radius_ratio": 1e9},
     {"field": 1.0, "periodic": "y"}, {"periodic": "xy", "moment_of_inertia": 0.4},
 ]  # fmt: skip
-TARGET = [{}, "any_wall", {"hop": 0.1}, {None: 0.1}, *({"any_wall": p} for p in PART if p != 1)]
+TARGET = [
+    {},
+    "any_wall",
+    {"hop": 0.1},
+    {None: 0.1},
+    *({"any_wall": p} for p in PART if repr(p) != "1.0"),
+]
 NUMBERS = [[], [NAN], ["1"], [None]]
 WRONG = (
     dict.fromkeys(("width", "height", "value", "epsilon"), LENGTH)
