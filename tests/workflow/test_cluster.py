@@ -1,8 +1,12 @@
 """The same bytes whichever engine runs the jobs: this machine, a queue of scripts, a real Slurm."""
 
+import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from importlib.util import find_spec
+from itertools import accumulate
 
+import psutil
 import pytest
 import yaml
 from checkout import REPOSITORY, Checkout
@@ -67,15 +71,76 @@ def profile(home, name, **other):
     return "--profile", str(folder)
 
 
-@needs_queue
-def test_a_queue_of_scripts(local, unbuilt, tmp_path):
-    place = place_at(tmp_path / "queue", unbuilt)
-    submit = tmp_path / "submit.sh"
-    submit.write_text(f'echo "$1" >> {tmp_path}/submitted; sh "$1"')
+def queue(home):
+    """Return the arguments for the profile of a queue of this machine."""
+    script = REPOSITORY / "profiles" / "queue" / "queue.sh"
     settings = {"latency-wait": 5, "seconds-between-status-checks": 1}
-    settings["cluster-generic-submit-cmd"] = f"sh {submit}"
-    assert build(place, *profile(tmp_path, "queue", **settings)) == local
-    assert len((tmp_path / "submitted").read_text().splitlines()) == counted(unbuilt, tmp_path)
+    settings |= {f"cluster-generic-{do}-cmd": f"sh {script} {do}" for do in ("submit", "status")}
+    return profile(home, "queue", **settings)
+
+
+def kill_a_job(jobs):
+    """Kill the first job below the folder ``jobs`` that counts events, and all that started it."""
+    ends = time.monotonic() + 120
+    while time.monotonic() < ends:
+        for file in jobs.glob("*/process"):
+            with suppress(psutil.NoSuchProcess, ValueError):
+                job = psutil.Process(int(file.read_text()))
+                processes = [job, *job.children(recursive=True)]
+                if any("twodiscs.pipeline.jobs.point" in one.cmdline() for one in processes):
+                    for one in processes:
+                        with suppress(psutil.NoSuchProcess):
+                            one.kill()
+                    return
+        time.sleep(0.05)
+    raise AssertionError("no job counted events")
+
+
+@needs_queue
+def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
+    """A job of it that is killed is submitted once more."""
+    jobs = tmp_path / "jobs"
+    jobs.mkdir()
+    monkeypatch.setenv("TMPDIR", str(jobs))
+    with ThreadPoolExecutor() as threads:
+        killed = threads.submit(kill_a_job, jobs)
+        assert build(place_at(tmp_path / "queue", unbuilt), *queue(tmp_path)) == local
+        killed.result()
+    assert len([*jobs.glob("*/process")]) == counted(unbuilt, tmp_path) + 1
+
+
+SHORT = """
+rule all:
+    input:
+        expand("{n}.txt", n=range(4)),
+    localrule: True
+
+
+rule short:
+    output:
+        "{n}.txt",
+    localrule: True
+    shell:
+        "date +%s.%N > {output}; sleep 1; date +%s.%N >> {output}"
+"""
+
+
+@needs_queue
+@pytest.mark.parametrize("name", ["queue", "slurm"])
+def test_two_short_jobs_at_once_run_where_one_logs_in(tmp_path, name):
+    if name == "slurm" and find_spec("snakemake_executor_plugin_slurm") is None:
+        pytest.skip("the extra `cluster` is not installed")
+    place = Checkout(tmp_path / "place")
+    place.path.mkdir()
+    (place.path / "Snakefile").write_text(SHORT)
+    here = {"executor": "cluster-generic", "cluster-generic-submit-cmd": "sh"}
+    place.snakemake(*profile(tmp_path, name, **here))
+    times = []
+    for file in place.path.glob("*.txt"):
+        begin, end = map(float, file.read_text().split())
+        times += [(begin, 1), (end, -1)]
+    running = [*accumulate(change for _, change in sorted(times))]
+    assert (len(times), max(running)) == (8, 2)
 
 
 @pytest.fixture
