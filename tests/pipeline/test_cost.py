@@ -21,14 +21,37 @@ def scene(**keys):
 def test_a_limit_is_above_the_price(stage):
     request = scene(accuracy=1e-5, event_budget=1e12)
     for radius in request.keys[stage].values():
-        assert 60 * cost.minutes(request, stage) > cost.seconds(request, stage, radius)
+        jobs = max(1, len(cost.shards(request, stage, radius)))
+        assert 60 * cost.minutes(request, stage) > cost.seconds(request, stage, radius) / jobs
 
 
-def test_ten_times_the_accuracy_takes_a_hundred_times_the_events():
+@pytest.mark.parametrize("radius", [0.24, 0.24999975, 0.3])
+def test_a_limit_is_above_the_price_of_a_job_whose_budget_ends_it(radius):
+    """Of one that waits for hops in a strip alone, too, whose events are dear."""
+    for budget in (1e8, 1e9, 5e9, 2e10, 9e10):
+        for watched in (["horizontal_hop"], ["horizontal_hop", "top_wall"]):
+            request = scene(accuracy=1e-8, event_budget=budget, watch={"mean_times": watched})
+            if not cost.shards(request, "dynamics", radius):
+                limit = 60 * cost.minutes(request, "dynamics")
+                assert limit > 2 * cost.seconds(request, "dynamics", radius)
+
+
+def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
     coarse, fine = (scene(accuracy=error, event_budget=1e15) for error in (1e-3, 1e-4))
-    ratio = cost.events(fine, "dynamics", 0.3) / cost.events(coarse, "dynamics", 0.3)
-    assert ratio == pytest.approx(100, rel=1e-9)
-    assert cost.events(scene(event_budget=1000), "dynamics", 0.3) == 1000
+    ratio = cost.seconds(fine, "dynamics", 0.3) / cost.seconds(coarse, "dynamics", 0.3)
+    assert ratio == pytest.approx(100, rel=0.1)
+    budget = cost.seconds(scene(accuracy=1e-5, event_budget=1e9), "dynamics", 0.3)
+    assert budget == pytest.approx(10, rel=0.1)
+
+
+def test_the_price_of_a_point_is_that_of_its_shards():
+    request = scene(shard_events=1e8, accuracy=1e-4, event_budget=1e12)
+    parts = cost.run_of(request, "dynamics", 0.24).parts
+    work = sum(
+        (stop - first) * parts[name].block_events * parts[name].cost_ratio
+        for name, first, stop in cost.shards(request, "dynamics", 0.24)
+    )
+    assert cost.seconds(request, "dynamics", 0.24) == pytest.approx(work / 1e8)
 
 
 def test_days_are_those_of_the_jobs():

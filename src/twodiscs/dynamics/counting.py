@@ -297,7 +297,8 @@ def count_events(scene, target, budget, seed):
     ``sampling.blocks.rounds``.
 
     Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
-    share the budget evenly with all the rest; what starts anywhere see of them is counted, too.
+    get of the budget what their errors take of all events; what starts anywhere see of them is
+    counted, too.
 
     Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
     events simulated, and for each watched event its count ΣN, its target and status (reached,
@@ -345,19 +346,23 @@ class CountingRun:
     def parts(self):
         """Runs by name, ``SequentialRun``: "all" and the rare hops.
 
-        Rounds share the budget evenly. Planned blocks follow the errors asked for, and all of them
-        are fewer where their events are more than the budget.
+        The budget is shared as the errors asked for take events: so the same part of what each of
+        them takes is missing where it does not allow for all of them.
         """
-        scene, work = self.scene, work_per_event(self.scene)
-        budget = max(1, int(self.budget / work))
-        runs = {"all": self._everything(budget // (1 + len(self._rare)))}
+        scene, budget = self.scene, max(1, int(self.budget / work_per_event(self.scene)))
+        runs = {"all": self._everything(budget)}
         for hop in self._rare:
-            runs[hop] = strip.run_of(scene, hop, self.target[hop], runs["all"].budget, self.seed)
-        most = budget / sum(run.planned * run.block_events for run in runs.values())
-        if most >= 1:
-            return runs
+            runs[hop] = strip.run_of(scene, hop, self.target[hop], budget, self.seed)
+        events = {name: run.planned * run.block_events for name, run in runs.items()}
+        total = sum(events.values())
+        most = min(1.0, budget / total)
         return {
-            name: replace(run, planned=on_grid(run.planned * most)) for name, run in runs.items()
+            name: replace(
+                run,
+                budget=run.budget * events[name] / total,
+                planned=on_grid(run.planned * most),
+            )
+            for name, run in runs.items()
         }
 
     def _everything(self, budget):

@@ -1,21 +1,22 @@
-"""What a job will take, asked in one place: events, seconds of a usual core, limits, shards.
+"""What a job will take, asked in one place: its work, seconds of a usual core, limits, shards.
 
-The events that an error takes follow from the exact rates: a relative error ε of events that come
-in clusters of K takes K/ε² of them. Rare hops are counted from strips, at a price of their own
-(``dynamics.strip``).
+The work of a job is that of the blocks that are planned for it: they follow from the exact rates
+and the errors asked for, and their price from what they are made of. It is counted in events of
+the plain ensemble, and the shards of a point are those blocks. A job that does not run in shards
+stops when its errors are reached, mostly earlier.
 """
 
 import math
 
 from twodiscs.pipeline.jobs.point import STAGES
-from twodiscs.theory import exact
 
 #: What a core does in a second: events and configurations that are drawn, and how many times slower
 #: effects make it, at most.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
 
-#: Counts that a relative error of one takes, and events of a strip: rounded up from what jobs took.
-CLUSTER, STRIP = 2.0, 4.0
+#: What an event of a budget takes at most, as events of the plain ensemble: one from a strip with
+#: its draws.
+DEAREST = 16.0
 
 #: The limit of a job is so many times its price, and so many minutes more to start it.
 PATIENCE, MINUTES = 4.0, 10.0
@@ -26,48 +27,38 @@ SOME = 100
 DAY = 86400.0
 
 
-def events(scene, stage, radius):
-    """Return the events of dynamics, samples or intervals of the job at a ``radius``, roughly.
+def run_of(scene, stage, radius):
+    """Return what the job of a ``SceneRequest`` at a ``radius`` runs.
 
-    ``scene`` is a ``SceneRequest``, ``stage`` monte_carlo, dynamics or intervals.
+    ``stage`` is monte_carlo, dynamics or intervals.
     """
-    here = scene.box.scene(radius)
-    if stage == "monte_carlo":
-        return float(scene.monte_carlo["samples"])
-    if stage == "intervals":
-        each = exact.events_per_interval(here, scene.histogram["event"])
-        return min(scene.histogram["intervals"], scene.histogram["event_budget"] / each)
-    from twodiscs.dynamics.strip import rare_hops
+    return STAGES[stage](scene.box.scene(radius), **scene.arguments(stage, radius))
 
-    total, times, rare = exact.event_rate(here), exact.mean_times(here), rare_hops(here)
-    strips = sum(STRIP / scene.target[hop] ** 2 for hop in rare if hop in scene.target)
-    others = (
-        CLUSTER * total * times[event] / here.multiplicity(event) / error**2
-        for event, error in scene.target.items()
-        if times[event] is not None and event not in rare
-    )
-    return min(scene.event_budget, max(others, default=0.0) + strips)
+
+def _work(run):
+    """Return the work of a run by its parts."""
+    return {
+        name: part.planned * part.block_events * part.cost_ratio
+        for name, part in run.parts.items()
+    }
 
 
 def seconds(scene, stage, radius):
-    """Return the processor time of the job at a ``radius``, roughly, without its start."""
-    number = events(scene, stage, radius)
-    if stage == "intervals":
-        number *= exact.events_per_interval(scene.box.scene(radius), scene.histogram["event"])
-    return _seconds(scene, stage, number)
+    """Return the processor time of a point, its shards included, roughly, without any start."""
+    return _seconds(scene, stage, sum(_work(run_of(scene, stage, radius)).values()))
 
 
-def _seconds(scene, stage, number):
-    """Return the seconds that so many samples or events take."""
+def _seconds(scene, stage, work):
+    """Return the seconds that so much work takes."""
     speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
-    return number / speed * (SLOWER if scene.effects else 1.0)
+    return work / speed * (SLOWER if scene.effects else 1.0)
 
 
 def _most(scene, stage):
-    """Return the samples or events that the job of one radius may take, by the budgets alone."""
+    """Return the work that one radius may take, by the budgets alone."""
     return {
         "monte_carlo": scene.monte_carlo["samples"],
-        "dynamics": scene.event_budget,
+        "dynamics": DEAREST * scene.event_budget,
         "intervals": scene.histogram["event_budget"],
     }[stage]
 
@@ -114,11 +105,6 @@ def _days(scene):
     return total
 
 
-def run_of(scene, stage, radius):
-    """Return what the job of a ``SceneRequest`` at a ``radius`` runs."""
-    return STAGES[stage](scene.box.scene(radius), **scene.arguments(stage, radius))
-
-
 def shards(scene, stage, radius):
     """Return the shards (part, first, stop) of a point, blocks ``first`` … ``stop`` − 1 of a part.
 
@@ -129,14 +115,17 @@ def shards(scene, stage, radius):
         return []
     from twodiscs.sampling.blocks.rounds import pieces
 
-    parts = run_of(scene, stage, radius).parts
-    work = {name: run.block_events * run.cost_ratio for name, run in parts.items()}
-    if sum(work[name] * run.planned for name, run in parts.items()) <= scene.shard_events:
+    run = run_of(scene, stage, radius)
+    if sum(_work(run).values()) <= scene.shard_events:
         return []
     return [
         (name, *piece)
-        for name, run in parts.items()
-        for piece in pieces(
-            run.planned, 1 << max(0, math.floor(math.log2(scene.shard_events / work[name])))
-        )
+        for name, part in run.parts.items()
+        for piece in pieces(part.planned, _per_shard(scene, part))
     ]
+
+
+def _per_shard(scene, part):
+    """Return how many blocks of a part a shard has: a power of two, so that shards stay."""
+    most = scene.shard_events / (part.block_events * part.cost_ratio)
+    return 1 << max(0, math.floor(math.log2(most)))

@@ -1,9 +1,9 @@
 """What a configuration is going to take, before it is paid for.
 
 A pilot at each radius does the first blocks of a job: it says how fast this machine is, with as
-many pilots at once as there will be jobs, and how many more blocks the errors asked for take. What
-a job takes besides, to start Python and to load compiled code, is seen by running one that does
-nothing.
+many pilots at once as there will be jobs, and how many more blocks the errors asked for take. A
+point in shards takes all the blocks that are planned. What a job takes besides, to start Python and
+to load compiled code, is seen by running one that does nothing.
 """
 
 import subprocess
@@ -56,8 +56,8 @@ class Pilot(NamedTuple):
     seconds: float
 
 
-def pilot(work):
-    """Return the ``Pilot`` of a job, given what it runs (see ``jobs.point``)."""
+def pilot(work, in_shards=False):
+    """Return the ``Pilot`` of a point, given what it runs (see ``jobs.point``)."""
     from twodiscs.sampling.blocks.rounds import FIRST_ROUND, MARGIN
 
     events = seconds = 0.0
@@ -69,7 +69,7 @@ def pilot(work):
         sums = part.work(0, blocks)
         taken = time.process_time() - start
         excess = part.excess_of(sums, blocks)
-        if len(excess):
+        if len(excess) and not in_shards:
             needed = max(FIRST_ROUND / blocks, MARGIN * max(excess) ** 2)
             times = max(1.0, min(needed, affordable / blocks))
         else:
@@ -80,7 +80,7 @@ def pilot(work):
 
 
 def _run_pilot(job):
-    return pilot(cost.run_of(*job))
+    return pilot(cost.run_of(*job), in_shards=bool(cost.shards(*job)))
 
 
 def run_pilots(jobs, cores):
