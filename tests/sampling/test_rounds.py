@@ -27,7 +27,7 @@ def done_in_pieces(run, per_piece):
         {
             "first": first,
             "stop": stop,
-            "sums": [np.asarray(s).tolist() for s in run.work(first, stop)],
+            "sums": [entry.tolist() for entry in run.work(first, stop)],
         }
         for first, stop in rounds.pieces(run.planned, per_piece)
     ]

@@ -279,8 +279,13 @@ def run_of(scene, hop, target, budget, seed):
     margin = MARGIN_OF_ROUGH if scene.moment_of_inertia else MARGIN_OF_COUNTS
     events = max(1.0, LASTING * expected_events(scene, hop, strip))
     proposals = 1 / acceptance(scene, hop, strip) / events
+
+    def work(first, stop):
+        sums, events = run_blocks(scene, hop, strip, seed, first, stop)
+        return sums, np.array(events)
+
     return SequentialRun(
-        lambda first, stop: run_blocks(scene, hop, strip, seed, first, stop),
+        work,
         lambda sums, blocks: np.array([relative_error(fractions, sums[0]) / target]),
         lambda sums: int(sums[1]),
         REPLICAS * events,
