@@ -1,7 +1,8 @@
-# The pipeline with the packages of requirements.lock: an image for clusters whose nodes have no Python of their own.
+# The pipeline with the packages of requirements.lock. In a clone:
 #
 #     docker build --tag twodiscs .
 #     docker run --rm --volume "$PWD/results:/twodiscs/results" twodiscs --cores 2
+#     apptainer build twodiscs.sif docker-daemon:twodiscs:latest    # for the jobs of a cluster
 FROM docker.io/library/python:3.11-slim
 WORKDIR /twodiscs
 COPY requirements.lock .

@@ -66,22 +66,29 @@ def test_undamaged_results_pass(results, monkeypatch, capsys):
     "name",
     ["small/volume.csv", "small/check.csv", "errata.csv", "small/points/monte_carlo/0.1.json"],
 )
-@pytest.mark.parametrize("harm", ["edited", "cut short", "deleted"])
+@pytest.mark.parametrize("harm", ["edited", "cut short", "deleted", "linked", "a folder"])
 def test_damage_is_named(results, monkeypatch, capsys, name, harm):
     path = results / name
     if harm == "edited":
         path.write_text("x" + path.read_text()[1:])
     elif harm == "cut short":
         path.write_bytes(path.read_bytes()[:-2])
+    elif harm == "linked":
+        path.rename(results / "elsewhere")
+        (results / "elsewhere").write_text("x" + (results / "elsewhere").read_text()[1:])
+        path.symlink_to(results / "elsewhere")
     else:
         path.unlink()
+        if harm == "a folder":
+            path.mkdir()
     status = run(monkeypatch)
     said = capsys.readouterr().out
     if harm == "deleted" and "points" in name:
         assert status == 0  # the next build makes it again
         return
     assert status == 1
-    assert f"{path} {'is missing' if harm == 'deleted' else 'is not what its job wrote'}" in said
+    gone = harm == "deleted" or (harm == "a folder" and "points" not in name)
+    assert f"{path} {'is missing' if gone else 'is not what its job wrote'}" in said
 
 
 def test_a_table_that_was_edited_before_the_manifest_was_written_is_named(

@@ -76,9 +76,33 @@ def test_no_shard_is_done_twice(unbuilt, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_damaged_shard_is_named_and_made_again_once_it_is_deleted(unbuilt, tmp_path):
+    place = Checkout(tmp_path, unbuilt)
+    change(place)
+    table = build(place)
+    point = place.path / "results/tiny/points/dynamics/0.24.json"
+    log = place.path / "results/logs/tiny/dynamics/0.24.log"
+    damaged, *_ = shards(place)
+    written = damaged.read_bytes()
+    for damage in (written.replace(b"0", b"1", 1), b"", None):
+        point.unlink()
+        (place.path / TABLE).unlink()
+        if damage is not None:
+            damaged.write_bytes(damage)
+            run = place.snakemake("--cores", "2", "--", TABLE, passes=False)
+            assert run.returncode != 0
+            assert log.read_text().endswith(
+                f"{damaged.name} is not what its job wrote; delete it, and it is made again\n"
+            )
+        damaged.unlink()
+        assert build(place) == table
+        assert damaged.read_bytes() == written
+
+
+@pytest.mark.slow
 def test_the_size_of_shards_is_of_no_consequence(unbuilt, tmp_path):
     tables = []
-    for size in (1e7, 3e7, 1e8):
+    for size in (1e7, 2e7, 3e7):
         place = Checkout(tmp_path / f"{size:g}", unbuilt)
         place.path.mkdir()
         change(place, shard_events=size)

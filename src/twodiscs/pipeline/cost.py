@@ -38,8 +38,7 @@ def run_of(scene, stage, radius):
 def _work(run):
     """Return the work of a run by its parts."""
     return {
-        name: part.planned * part.block_events * part.cost_ratio
-        for name, part in run.parts.items()
+        name: part.planned * part.block_events * part.cost_ratio for name, part in run.parts.items()
     }
 
 

@@ -40,7 +40,7 @@ def of_points(folder):
         for file in sorted(folder.glob(f"**/{kind}/**/*.json")):
             try:
                 read_json(file)
-            except InputError:
+            except (InputError, OSError):
                 yield file, EDITED
             else:
                 yield file, None
