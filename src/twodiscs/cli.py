@@ -153,8 +153,16 @@ def _print_csv(rows):
     table.writerows(rows)
 
 
+def _known(value):
+    """Return the text of an exact number, None where none is known."""
+    return "not known" if value is None else repr(value)
+
+
 def _table(scene, numbers):
-    times = {e: "impossible" if t is None else repr(t) for e, t in numbers["mean_times"].items()}
+    times = {
+        event: "impossible" if not scene.is_possible(event) else _known(time)
+        for event, time in numbers["mean_times"].items()
+    }
     effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.effects.items()]
     if effects:
         effects.append(f"{'velocity components':<20}{scene.velocity_components}")
@@ -169,10 +177,10 @@ def _table(scene, numbers):
             f"{'regime':<20}{numbers['regime']}",
             f"{'ergodic components':<20}{numbers['ergodic_components']}",
             f"{'largest radius':<20}{numbers['largest_radius']!r:<24}length",
-            f"{'volume':<20}{numbers['volume']!r:<24}{volume}",
+            f"{'volume':<20}{_known(numbers['volume']):<24}{volume}",
             "",
             f"{'event':<20}{f'area ({area})':<24}mean time (time)",
-            *(f"{event:<20}{area!r:<24}{times[event]}" for event, area in numbers["areas"].items()),
+            *(f"{event:<20}{_known(area):<24}{times[event]}" for event, area in numbers["areas"].items()),
         ]
     )
 

@@ -291,6 +291,19 @@ def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
     assert (row["status"], row["z"], row["count"]) == ("impossible", -math.inf, 1)
 
 
+def test_where_no_exact_value_is_known_what_is_seen_stands():
+    """That is another state than impossible: nothing is compared, and nothing is wrong."""
+    row = time_row(exact=None, **counted(2000, 3000))
+    assert row["status"] == "budget"
+    assert row["estimate"] == pytest.approx(2048 * 10.0 / 2000)
+    assert row["stderr"] > 0
+    assert row["exact"] is row["z"] is row["test"] is None
+    assert time_row(exact=None)["status"] == "none-seen"
+    row = part_row(500, 1000, expectation=None, exact=None)
+    assert (row["status"], row["z"], row["bias"]) == ("sampled", None, None)
+    assert row["estimate"] > 0
+
+
 # Histogram ------------------------------------------------------------------------------------
 
 

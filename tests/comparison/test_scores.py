@@ -131,8 +131,13 @@ def test_union_never_rejects_more_often_than_it_says():
 
 
 def test_an_impossible_event_must_not_be_seen():
-    assert scores.mean_time_z(0, 0, 10, 1.0, None) == (0.0, "certain")
-    assert scores.mean_time_z(1, 1, 10, 1.0, None) == (-math.inf, "certain")
+    assert scores.impossible_z(0) == (0.0, "certain")
+    assert scores.impossible_z(1) == (-math.inf, "certain")
+
+
+def test_without_an_exact_value_nothing_is_compared():
+    assert scores.mean_time_z(0, 0, 10, 1.0, None) == (None, None)
+    assert scores.mean_time_z(10**6, 10**8, 10**5, 1.0, None) == (None, None)
 
 
 def law_of_total(replica_law, replicas):

@@ -119,6 +119,11 @@ def union_z(parts, sign):
     return _signed(_deviate(log_p), sign)
 
 
+def impossible_z(total):
+    """Return (z, test) of the count ``total`` ≥ 0 of an impossible event: any at all gives −∞."""
+    return (-math.inf if whole("total", total, 0) else 0.0), "certain"
+
+
 def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     """Return (z, test) of a measured mean time against the ``exact`` one.
 
@@ -132,12 +137,14 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
       h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds where a replica that sees
       the event sees at most K; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be false,
       for hops come in clusters.
-    - "certain" for an impossible event, ``exact`` = None: any count at all gives −∞.
+
+    Where no exact value is known, ``exact`` = None, both are None: an event that is impossible has
+    ``impossible_z`` instead.
     """
     total, squares, replicas = moments_of(total, squares, replicas)
     duration = real("duration", duration)
     if exact is None:
-        return (-math.inf if total else 0.0), "certain"
+        return None, None
     expected = duration / real("exact", exact)
     if replicas >= MIN_EVENTS and effective_count(total, squares, replicas) >= NORMAL:
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas

@@ -43,8 +43,8 @@ class Measurement:
     """An estimate of one quantity, beside its exact value.
 
     ``stderr`` is the standard error; it is None where there is too little for an honest one, and
-    ``value`` is None where nothing was seen. ``exact`` is None where the event is impossible. ``z``
-    is the standard normal deviate of the estimate from what it is an estimate of: the exact value
+    ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
+    and where the ``status`` is impossible. ``z`` is None without an exact value, and else it is the standard normal deviate of the estimate from what it is an estimate of: the exact value
     or, for an area, the exact ``expectation`` of its shell. ``count`` is how many events, or hits,
     are behind it; ``status`` is as in the tables, and ``bound`` a lower bound on the mean time
     where none was seen.
@@ -78,7 +78,10 @@ class Measurement:
         value, error = _with_error(self.value, self.stderr)
         if self.value is None and self.bound is not None:
             value = f"> {self.bound:.4g}"
-        exact = "–" if self.exact is None else _with_error(self.exact, self.stderr)[0]
+        if self.exact is None:
+            exact = "–" if self.status == "impossible" else "not known"
+        else:
+            exact = _with_error(self.exact, self.stderr)[0]
         z = "" if self.z is None else f"{self.z:+.2f}"
         return self.quantity, value, error, exact, self.unit, z, str(self.count), self.status
 

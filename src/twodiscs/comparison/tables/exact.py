@@ -36,7 +36,10 @@ class Theory(Table):
     quantity: TEXT
     """volume, <event>_area or <event>_time"""
     exact: Column(float, "length⁴, length³ or time")
-    """exact value; no time where the event is impossible"""
+    """
+    exact value, empty where none is known; where the event is impossible the area is 0, and there
+    is no time
+    """
 
     @staticmethod
     def rows(box, radii):

@@ -16,7 +16,7 @@ class MeanTimes(Table):
     event: TEXT
     """the event"""
     exact: TIME
-    """exact mean time; empty where the event is impossible"""
+    """exact mean time; empty where the event is impossible, and where no exact value is known"""
     estimate: TIME
     """
     copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip with its mean over strata of the
@@ -119,7 +119,8 @@ def _row(scene, event, point, exact, strip=None):
     whole = duration * copies / strip["share"]
     estimate = bound = None
     z, test = scores.mean_time_z(count, squares, replicas, whole, exact, mean)
-    if exact is None:
+    if not scene.is_possible(event):
+        z, test = scores.impossible_z(count)
         status = "impossible"
     elif not count:
         status, bound = "none-seen", estimates.mean_time_bound(replicas, whole / copies)

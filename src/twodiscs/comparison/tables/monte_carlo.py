@@ -123,7 +123,9 @@ def _sampled_row(point, quantity, exact, expectation):
     part, samples = point["quantities"][quantity], point["samples"]
     hits, measure = part["hits"], part["measure"]
     estimate = estimates.binomial_estimate(hits, samples, measure)
-    z, test = scores.binomial_z(hits, samples, min(expectation / measure, 1.0))
+    z = test = None
+    if expectation is not None:
+        z, test = scores.binomial_z(hits, samples, min(expectation / measure, 1.0))
     if exact == 0:
         status = "impossible"
     elif estimate is None:
@@ -143,7 +145,7 @@ def _sampled_row(point, quantity, exact, expectation):
         "hits": hits,
         "epsilon": part["epsilon"],
         "expectation": expectation,
-        "bias": expectation - exact,
+        "bias": None if exact is None else expectation - exact,
         "status": status,
         "test": test,
     }
