@@ -13,8 +13,8 @@ NUMBERS = {name: effect for name, effect in EFFECTS.items() if effect.is_number}
 
 
 def test_effects_are_the_fields_of_a_scene_after_its_radius():
-    _, _, radius, *rest = fields(Scene)
-    assert radius.name == "radius"
+    _, _, radius, *rest, discs = fields(Scene)
+    assert (radius.name, discs.name, discs.default) == ("radius", "discs", 2)
     assert {field.name: field.default for field in rest} == ABSENT
     # The parameters of a scene are in the order of the declarations.
     assert [field.name for field in rest] == list(EFFECTS)

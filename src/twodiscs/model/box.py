@@ -1,4 +1,4 @@
-"""A box and its effects: a scene without its radius, and the radii at which something ends."""
+"""A box, its effects and how many discs it has: a scene without its radius, and its limits."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ TINY = 1e-6
 
 @dataclass(frozen=True)
 class Box:
-    """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which discs may move.
+    """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which ``discs`` may move.
 
-    Effects that have the value of their absence are left out. Raises ``InputError`` for a side that
-    is no length, for an unknown effect, and for effects that do not go together.
+    There are two of them unless told, at most 64. Effects that have the value of their absence are
+    left out. Raises ``InputError`` for a side that is no length, for an unknown effect, and for
+    effects that do not go together.
 
     Example:
 
@@ -29,6 +30,7 @@ class Box:
     width: float
     height: float
     effects: dict[str, object] = field(default_factory=dict)
+    discs: int = 2
 
     def __post_init__(self):
         for name in ("width", "height"):
@@ -40,29 +42,48 @@ class Box:
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
-        if named:
+        if named or self.discs != 2:
             object.__setattr__(self, "effects", dict(sorted(self.tiny.effects.items())))
+            object.__setattr__(self, "discs", self.tiny.discs)
 
     def __hash__(self):
-        return hash((self.width, self.height, *self.effects.items()))
+        return hash((self.width, self.height, *self.calls_for.items()))
+
+    def __repr__(self):
+        # What a configuration is known by: that of two discs does not know that there may be more.
+        more = "" if self.discs == 2 else f", discs={self.discs!r}"
+        sides = f"width={self.width!r}, height={self.height!r}"
+        return f"Box({sides}, effects={self.effects!r}{more})"
 
     @classmethod
     def of(cls, scene: Scene) -> Box:
         """Return the box of a ``Scene``."""
-        return cls(scene.width, scene.height, scene.effects)
+        return cls(scene.width, scene.height, scene.effects, scene.discs)
 
     def parameters(self) -> dict[str, object]:
-        """Return {"effects": …, "height": …, "width": …}: plain values, without absent effects.
+        """Return {"discs": …, "effects": …, "height": …, "width": …}: plain values.
 
-        ``Box(**parameters)`` is this box again. So the parameters of a job in a plain box, and with
-        them its results, do not know that there are effects.
+        ``Box(**parameters)`` is this box again. Absent effects and two discs are left out. So the
+        parameters of a job in a plain box, and with them its results, do not know that there is
+        anything else.
         """
         box = {"height": self.height, "width": self.width}
-        return {"effects": dict(self.effects)} | box if self.effects else box
+        box = {"effects": dict(self.effects)} | box if self.effects else box
+        return {"discs": self.discs} | box if self.discs != 2 else box
+
+    @property
+    def calls_for(self):
+        """What it calls for beyond a plain box, as ``Scene.calls_for``."""
+        return self.effects | ({"discs": self.discs} if self.discs != 2 else {})
+
+    @property
+    def is_plain(self):
+        """Whether it is a box of two equal, smooth discs between walls."""
+        return not self.calls_for
 
     def scene(self, radius: float) -> Scene:
         """Return the ``Scene`` at a ``radius``; raise ``InputError`` where there is none."""
-        return Scene(self.width, self.height, radius, **self.effects)
+        return Scene(self.width, self.height, radius, **self.effects, discs=self.discs)
 
     def fits(self, radius: float) -> bool:
         """Say whether there is a scene at this ``radius``, a length."""
@@ -91,9 +112,9 @@ class Box:
 
     def turned(self) -> Box:
         """Return the box turned by a quarter; raise ``InputError`` if it has effects."""
-        if self.effects:
+        if not self.is_plain:
             raise InputError(
-                f"box must be plain to be turned, but it has {', '.join(self.effects)}"
+                f"box must be plain to be turned, but it has {', '.join(self.calls_for)}"
             )
         return replace(self, width=self.height, height=self.width)
 
@@ -133,7 +154,7 @@ class Box:
             # In a field it may take a large disc to touch the top.
             nearly = self.scene(self.last_radius * (1 - TINY))
             return self.last_radius if nearly.is_possible(event) else None
-        if self.effects:
+        if not self.is_plain:
             has_place = event in self.tiny.events
             return self.end(lambda scene: scene.is_possible(event)) if has_place else None
         return min(self.blocking_radius(event), self.largest_radius)

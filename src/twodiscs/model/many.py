@@ -12,12 +12,9 @@ together: 2N pairs of a disc and a wall share the rate of ``right_wall``, as man
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 
-from twodiscs.model.checks import InputError, length, shown, whole
-
-#: The most discs there may be.
-MOST = 64
+from twodiscs.model.checks import MOST_DISCS, InputError, length, shown, whole
 
 #: Classes of events, in the order of all counts.
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
@@ -30,7 +27,7 @@ class Gas:
     ``periodic`` is "" or "x": then the box is a ring of circumference ``width`` along x, its total
     momentum along x is zero, and the discs fit beside each other twice.
 
-    Raises ``InputError`` for a number of discs that is not an integer from 2 to ``MOST``, for a
+    Raises ``InputError`` for a number of discs that is not an integer from 2 to 64, for a
     side or radius that is no length, for another periodic axis, and for a radius at which no
     arrangement of so many discs is known here.
     """
@@ -42,7 +39,7 @@ class Gas:
     periodic: str = ""
 
     def __post_init__(self):
-        object.__setattr__(self, "discs", whole("discs", self.discs, 2, MOST))
+        object.__setattr__(self, "discs", whole("discs", self.discs, 2, MOST_DISCS))
         for name in ("width", "height", "radius"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
         if self.periodic not in ("", "x"):
@@ -95,6 +92,24 @@ class Gas:
         2√(σ² − B²) ≥ σ apart.
         """
         return not self.periodic and self.height <= (2 + math.sqrt(3)) * self.radius
+
+    def can_be_level(self, axis):
+        """Say whether geometry lets two discs be level along ``axis``, "x" or "y", with a third.
+
+        Two that are level along y are σ apart at least along x, and a third one keeps σ from both:
+        it is best off at the other wall of y, in the middle between them or beside them. So this is
+        exact for three discs. Of two it is asked of themselves alone, and what it does not exclude
+        for more than three may still be impossible.
+        """
+        along, across = self.range_x, self.range_y
+        if axis == "x":
+            along, across = across, along
+        ring = bool(self.periodic) and axis == "y"
+        sigma = self.contact_distance
+        if along <= (2 * sigma if ring else sigma):
+            return False
+        beside = (along - sigma) / 2 if ring else max(along / 2, along - sigma)
+        return self.discs == 2 or math.hypot(beside, across) > sigma
 
     def turned(self):
         """Return the same discs in the box turned by a quarter; only between walls."""
@@ -187,6 +202,7 @@ def arranged(discs, a, b, periodic=""):
     return centres, least
 
 
+@cache
 def largest_radius(discs, width, height, periodic=""):
     """Return the largest radius of which ``arranged`` knows centres at least 2r apart.
 

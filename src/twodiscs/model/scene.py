@@ -1,4 +1,4 @@
-"""The scene: two hard discs in a rectangular box, and the geometry that follows from it.
+"""The scene: hard discs in a rectangular box, two unless told, and what follows from it.
 
 Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, disc 1
 has mass one and the total energy is 1/2: the speed of disc 1 is at most one, and times are lengths
@@ -6,7 +6,7 @@ over that speed.
 
 The plain scene has equal, smooth discs between walls. A scene may call for effects: unequal radii
 or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
-are balls). What a scene does not call for is neither simulated nor compiled.
+are balls), more discs than two. What a scene does not call for is neither simulated nor compiled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,17 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, length, number, one_of, shown
+from twodiscs.model.checks import (
+    LONGEST,
+    MOST_DISCS,
+    SHORTEST,
+    InputError,
+    length,
+    number,
+    one_of,
+    shown,
+    whole,
+)
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import DECLARED, EVENTS
 
@@ -28,13 +38,17 @@ REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 #: times begin to be off by more than 1e-4.
 FOLLOWED = 1e-12
 
+#: Decimal digits before or after the point that the prism of all places of more than two discs may
+#: have: its volume is then a double that is neither 0 nor infinite.
+MOST_DIGITS = 150
+
 #: The total energy, kinetic and potential.
 ENERGY = 0.5
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Two hard discs in a box of ``width`` × ``height``, disc 1 of radius ``radius``.
+    """Hard discs in a box of ``width`` × ``height``, two of them, disc 1 of radius ``radius``.
 
     Effects, each absent by default:
 
@@ -46,6 +60,11 @@ class Scene:
       rests on the bottom, so the potential energy is never negative.
     * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
       of the surfaces is reversed too, between discs and at walls. None means smooth.
+
+    ``discs`` is their number, an integer from 2 to 64. More than two are equal and smooth, in the
+    plane, and of the effects only ``periodic`` "x" goes with them: see ``many.Gas``. A collision or
+    a hop is then that of any pair, a hit of the right or the top wall that of one disc, averaged
+    over all initial conditions.
 
     Raises ``InputError`` for a value that is not of its kind, for a radius that leaves the discs no
     room or no motion at total energy 1/2, and for effects that do not go together.
@@ -64,6 +83,7 @@ class Scene:
     periodic: str | Sequence[str] = ""
     field: float = 0.0
     moment_of_inertia: float | None = None
+    discs: int = 2
 
     def __post_init__(self):
         for name in ("width", "height", "radius"):
@@ -74,6 +94,11 @@ class Scene:
             object.__setattr__(self, name, effect.checked(getattr(self, name)))
         if self.has_effects:
             self._check_effects()
+        if self.discs != 2 or type(self.discs) is not int:
+            object.__setattr__(self, "discs", whole("discs", self.discs, 2, MOST_DISCS))
+        if self.discs > 2:
+            self._check_many()
+            return
         if not self._fits():
             raise InputError(
                 f"radius {self.radius!r} does not fit: two {self._what} in a box of "
@@ -104,6 +129,27 @@ class Scene:
         if self.moment_of_inertia is not None:
             self._check_roughness()
 
+    def _check_many(self):
+        if other := [name for name in self.effects if name != "periodic"]:
+            raise InputError(
+                f"{other[0]} must be left out with {self.discs} discs, for more than two are equal "
+                f"and smooth discs of the plane, not {self.effects[other[0]]!r}"
+            )
+        size = self.discs * math.log10(self.gas.range_x * self.gas.range_y)
+        if abs(size) > MOST_DIGITS:
+            raise InputError(
+                f"width and height must be in a unit of length in which the prism of all places of "
+                f"{self.discs} discs lies between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
+                f"{self.width!r} and {self.height!r} at radius {self.radius!r}"
+            )
+
+    @cached_property
+    def gas(self):
+        """The same as a ``Gas`` of N discs; only of equal, smooth discs of the plane."""
+        from twodiscs.model.many import Gas  # more than two discs alone have a use for it
+
+        return Gas(self.discs, self.width, self.height, self.radius, self.periodic)
+
     def _check_roughness(self):
         if self.depth is not None:
             where = "in a box with a depth (rough discs are for the plane)"
@@ -131,12 +177,13 @@ class Scene:
 
     def __repr__(self):
         sides = f"{self.width!r}, {self.height!r}, {self.radius!r}"
-        return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.effects.items())])})"
+        return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.calls_for.items())])})"
 
     def __str__(self):
         """Say what the scene is, in a line."""
         words = [f"{name.replace('_', ' ')} {value}" for name, value in self.effects.items()]
-        discs = f"Two {self._what} of radius {self.radius!r} in a box of {self._box}"
+        number = "Two" if self.discs == 2 else self.discs
+        discs = f"{number} {self._what} of radius {self.radius!r} in a box of {self._box}"
         return ", ".join([discs, *words])
 
     @property
@@ -149,9 +196,12 @@ class Scene:
 
     def unit(self, quantity: str) -> str:
         """Return the unit of a "volume", an "area" or anything that is a "time"."""
-        powers = {"volume": "⁴⁶", "area": "³⁵"}
+        dimensions = self.discs * len(self.axes)
+        powers = {"volume": dimensions, "area": dimensions - 1}
         kind = quantity.rpartition("_")[2]
-        return f"length{powers[kind][self.depth is not None]}" if kind in powers else "time"
+        if kind not in powers:
+            return "time"
+        return "length" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(powers[kind]))
 
     def with_radius(self, radius: float) -> Scene:
         """Return the same scene with another radius of disc 1."""
@@ -170,6 +220,19 @@ class Scene:
     def has_effects(self) -> bool:
         """Whether the scene calls for any effect."""
         return bool(self.effects)
+
+    @property
+    def calls_for(self):
+        """What it calls for beyond two equal, smooth discs between walls, {name: value}.
+
+        These are its effects, and ``discs`` where they are more than two.
+        """
+        return self.effects | ({"discs": self.discs} if self.discs > 2 else {})
+
+    @property
+    def is_plain(self):
+        """Whether it is two equal, smooth discs between walls."""
+        return not self.calls_for
 
     @cached_property
     def axes(self) -> tuple[str, ...]:
@@ -192,6 +255,8 @@ class Scene:
     @cached_property
     def velocity_components(self) -> int:
         """D: the components of velocities and spins, less the momenta that are conserved."""
+        if self.discs > 2:
+            return self.gas.velocity_components
         spins = 0 if self.moment_of_inertia is None else 2
         return 2 * len(self.axes) + spins - len(self.conserved)
 
@@ -258,7 +323,13 @@ class Scene:
 
     @cached_property
     def largest_radius(self) -> float:
-        """The radius of disc 1 at which the discs have no room left."""
+        """The radius of disc 1 at which the discs have no room left.
+
+        Of more than three discs it is that of the densest arrangement that is known here, but in an
+        ordered channel (see ``many.Gas``).
+        """
+        if self.discs > 2:
+            return self.gas.largest_radius
         if not self.has_effects:
             return _largest_radius(self.width, self.height)
         # In σ: Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ².
@@ -305,7 +376,12 @@ class Scene:
 
     @cached_property
     def _passed(self):
-        """The axes along which the discs can exchange sides."""
+        """The axes along which the discs can exchange sides.
+
+        Of more than three discs those along which geometry does not exclude it.
+        """
+        if self.discs > 2:
+            return tuple(axis for axis in self.walled if self.gas.can_be_level(axis))
         return tuple(axis for axis in self.walled if self._has_gap(axis))
 
     def _has_gap(self, axis):
@@ -359,8 +435,11 @@ class Scene:
     def ergodic_components(self) -> int:
         """The number of disjoint parts of configuration space.
 
-        Each hop that is blocked between walls doubles it. A periodic axis has a way around.
+        Each hop that is blocked between walls doubles it. A periodic axis has a way around. None
+        for more than two discs, of which it is not known.
         """
+        if self.discs > 2:
+            return None
         return 2 ** (len(self.walled) - len(self._passed))
 
     def _confined(self, axis):
@@ -381,7 +460,12 @@ class Scene:
 
     @cached_property
     def confined(self):
-        """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2."""
+        """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2.
+
+        False for more than two discs: their times are averages over all initial conditions.
+        """
+        if self.discs > 2:
+            return False, False
         return self._confined("x"), self._confined("y")
 
     @cached_property
@@ -402,11 +486,14 @@ class Scene:
 
         Mirror images and equal discs leave four of the pairs of a disc and a wall that have one
         rate, two of them within the reach of a trajectory where the discs keep their sides. A field
-        has no mirror image along y. It is 1 for everything but walls.
+        has no mirror image along y. It is 2N for walls of more than two discs, and 1 for everything
+        but walls.
         """
         declared = DECLARED[event]
         if declared.kind != "wall":
             return 1
+        if self.discs > 2:
+            return 2 * self.discs
         mirrored = declared.axis == "x" or not self.field
         return round((1 + mirrored) * (1 + self.identical) * self.share(event))
 
@@ -451,8 +538,18 @@ def a_scene(value):
     return value
 
 
-if {f.name: f.default for f in fields(Scene)[3:]} != ABSENT:
+def two_discs(scene, what):
+    """Return ``scene``; raise ``InputError`` unless it is a ``Scene`` of two discs.
+
+    ``what`` is what more discs are refused, in words that follow "for".
+    """
+    if a_scene(scene).discs != 2:
+        raise InputError(f"discs must be 2 for {what}, not {scene.discs}")
+    return scene
+
+
+if {f.name: f.default for f in fields(Scene)[3:-1]} != ABSENT:
     raise TypeError(
-        "the fields of Scene after radius must be the effects of model/effects.py with the values "
-        f"that mean their absence, {ABSENT}"
+        "the fields of Scene between radius and discs must be the effects of "
+        f"model/effects.py with the values that mean their absence, {ABSENT}"
     )

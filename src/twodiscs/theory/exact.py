@@ -3,7 +3,9 @@
 Speeds are uniform on the unit sphere in four dimensions, so the mean time between events of an
 ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
 (Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes that call for effects have other constants and
-weights: they are handed over to ``weighted``, which needs NumPy and is imported only then.
+weights: they are handed over to ``weighted``, which needs NumPy and is imported only then. So are
+more than two discs to ``many``; where no exact value of them is known it is None, which is another
+state than impossible: ``Scene.is_possible``.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from functools import lru_cache
 
 from twodiscs.model.checks import InputError, length, one_of
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
-from twodiscs.model.scene import a_scene
+from twodiscs.model.scene import a_scene, two_discs
 from twodiscs.theory import plain
 
 TYPE_CHECKING = False  # what reads types takes it for true; the module typing is not for free
@@ -44,6 +46,10 @@ PASSES_PER_EVENT = 64
 @lru_cache(maxsize=1024)
 def measures(scene):
     """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are remembered."""
+    if scene.discs > 2:
+        from twodiscs.theory.many.exact import volume_and_areas
+
+        return volume_and_areas(scene)
     if scene.has_effects:
         from twodiscs.theory import weighted
 
@@ -54,9 +60,9 @@ def measures(scene):
 def volume(scene: Scene) -> float:
     """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
-    Within a few roundings of the exact value for every box and radius. In a field it is weighted
-    with the invariant density (see ``weighted``). Raises ``InputError`` for anything that is not a
-    ``Scene``.
+    For N discs it is in length^2N, and None where no exact value is known. Within a few roundings
+    of the exact value for every box and radius. In a field it is weighted with the invariant
+    density (see ``weighted``). Raises ``InputError`` for anything that is not a ``Scene``.
 
     Example:
 
@@ -70,8 +76,8 @@ def areas(scene: Scene) -> dict[str, float]:
 
     Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
     or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
-    balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``weighted``). Accuracy
-    and errors as for ``volume``.
+    balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``weighted``). Of more
+    than two discs it is None where no exact value is known. Accuracy and errors as for ``volume``.
 
     Example:
 
@@ -85,13 +91,17 @@ def rate(scene: Scene, event: str) -> float:
 
     This is the mean over the whole configuration space. Where disc 1 reaches the right (top) wall
     from its own side of disc 2 only, a trajectory that can reach it hits it twice as often:
-    ``mean_times``. Raises ``InputError`` for anything that is not a ``Scene`` or one of
-    ``EVENTS``.
+    ``mean_times``. None where no exact value is known. Raises ``InputError`` for anything that is
+    not a ``Scene`` or one of ``EVENTS``.
 
     Example:
 
         td.rate(scene, "any_wall")
     """
+    if a_scene(scene).discs > 2:
+        from twodiscs.theory.many.exact import event_rates
+
+        return event_rates(scene)[one_of("event", event, EVENTS)]
     volume, areas = measures(a_scene(scene))
     sides = DECLARED[one_of("event", event, EVENTS)].sides
     if scene.has_effects:
@@ -112,6 +122,7 @@ def passing_rate(scene, hop):
     one_of("hop", hop, HOPS)
     if DECLARED[hop].axis not in a_scene(scene).periodic:
         return rate(scene, hop)
+    two_discs(scene, "passages along a periodic axis")
     from twodiscs.theory import weighted
 
     area = weighted.passing_area(scene, hop)
@@ -121,17 +132,21 @@ def passing_rate(scene, hop):
 def event_rate(scene):
     """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
 
-    Raises ``InputError`` for anything that is not a ``Scene``.
+    None where no exact value is known. Raises ``InputError`` for anything that is not a ``Scene``.
     """
-    return rate(scene, "any_wall") + rate(scene, "disc_collision")
+    walls, collisions = rate(scene, "any_wall"), rate(scene, "disc_collision")
+    return None if walls is None else walls + collisions
 
 
 def work_per_event(scene):
     """Return how many times as much an event costs as usual, at most; 1 in a box without ends.
 
     On a periodic axis discs leave their cell between two events, very often where they are small;
-    ``PASSES_PER_EVENT`` times are in what an event costs anyhow.
+    ``PASSES_PER_EVENT`` times are in what an event costs anyhow, and the kernel of N discs looks
+    again only after half a period.
     """
+    if a_scene(scene).discs > 2:
+        return 1.0
     passes = sum(scene.fastest / scene.side(axis) for axis in a_scene(scene).periodic)
     return max(1.0, passes / PASSES_PER_EVENT / event_rate(scene))
 
@@ -147,13 +162,17 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
     Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the
     event is impossible. Wall times are those of disc 1 on the trajectories that can reach the wall:
     half of configuration space where ``Scene.confined``. Where a larger disc 1 keeps its side and
-    still reaches both walls, the time is one over the mean of its two rates. Accuracy and errors
-    as for ``volume``.
+    still reaches both walls, the time is one over the mean of its two rates. Of more than two discs
+    it is None where no exact value is known, too, and walls are averaged over all initial
+    conditions. Accuracy and errors as for ``volume``.
 
     Example:
 
         td.mean_times(scene)["vertical_hop"]
     """
+    if a_scene(scene).discs > 2:
+        rates = {event: rate(scene, event) for event in EVENTS}
+        return {event: 1 / value if value else None for event, value in rates.items()}
     return {
         event: scene.share(event) / rate(scene, event) if area else None
         for event, area in areas(scene).items()
@@ -163,7 +182,8 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
 def exact(scene: Scene) -> Exact:
     """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
 
-    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Raises
+    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. What is not known
+    of more than two discs is None. Raises
     ``InputError`` for anything that is not a ``Scene``.
 
     Example:
@@ -199,7 +219,7 @@ def fraction_near(scene, hop, distance):
     """
     one_of("hop", hop, HOPS)
     distance = length("distance", distance)
-    limit = math.sqrt(2) * min(a_scene(scene).radii)
+    limit = math.sqrt(2) * min(two_discs(scene, "fractions near a surface").radii)
     if distance > limit:
         raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
     if scene.has_effects:
@@ -226,7 +246,8 @@ def shell_expectation(scene, event, epsilon):
     an ``epsilon`` that is not a length up to the radius, for an event that has no place in the
     scene, and for ``any_wall``, which has no shell of its own in a plain scene.
     """
-    one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
+    two_discs(scene, "shells")
+    one_of("event", event, scene.events if scene.has_effects else SHELLS)
     epsilon = length("epsilon", epsilon)
     if epsilon > scene.radius:
         raise InputError(

@@ -11,11 +11,11 @@ from twodiscs.theory.plain import Arc
 
 
 def a_plain_scene(scene):
-    """Return ``scene``; raise ``InputError`` unless it is a ``Scene`` without effects."""
-    if a_scene(scene).has_effects:
+    """Return ``scene``; raise ``InputError`` unless it is a plain ``Scene``."""
+    if not a_scene(scene).is_plain:
         raise InputError(
             "scene must be plain for closed forms, limits and distributions, but it has "
-            f"{', '.join(scene.effects)}"
+            f"{', '.join(scene.calls_for)}"
         )
     return scene
 

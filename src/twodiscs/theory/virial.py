@@ -1,4 +1,4 @@
-"""The virial theorem of Clausius for two discs: wall rates are pressures.
+"""The virial theorem of Clausius for N discs: wall rates are pressures.
 
 Without a field velocities times √mass are uniform on a sphere in D dimensions at total energy 1/2,
 so that a component has the mean square 1/D, and over the passages through a surface, which come at
@@ -12,7 +12,8 @@ share of the four components of velocity, it is
 
     1 = [A ν_right + B ν_top − σ ν_coll/√8] / c_D
 
-for equal discs between walls, with rates ν over all initial conditions.
+for two equal discs between walls, with rates ν over all initial conditions. For N of them, with the
+rates of one disc at one wall and of collisions of any pair, √8 is √2 N. No volume has to be known.
 """
 
 import math
@@ -56,13 +57,16 @@ def weights(scene):
     """Return {event: weight} with which the rates over all initial conditions add up to 1.
 
     None where the events do not tell all forces, or a rate not their mean: for unequal discs, balls
-    and periodic axes, and in a field. Raises ``InputError`` for anything that is not a ``Scene``.
+    and periodic axes, and in a field. For more than two discs see ``many.rates``, from where the
+    weights are; no exact volume is needed. Raises ``InputError`` for anything that is not a
+    ``Scene``.
     """
     if a_scene(scene).effects.keys() - {"moment_of_inertia"}:
         return None
     per_rate = 1 / constant(scene.velocity_components)
+    pairs = math.sqrt(8) if scene.discs == 2 else math.sqrt(2) * scene.discs
     return {
-        "disc_collision": -scene.contact_distance / math.sqrt(8) * per_rate,
+        "disc_collision": -scene.contact_distance / pairs * per_rate,
         "right_wall": scene.range_x * per_rate,
         "top_wall": scene.range_y * per_rate,
     }

@@ -6,11 +6,14 @@ which is not to say that an event is impossible.
 """
 
 import math
+from functools import lru_cache
 
+from twodiscs.model.events import DECLARED, EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
 from twodiscs.theory.many import channel, three
 from twodiscs.theory.many.rates import Measures, rates
+from twodiscs.theory.weighted import constant
 
 
 def method(gas):
@@ -22,6 +25,7 @@ def method(gas):
     return "channel" if gas.is_ordered or gas.turned().is_ordered else None
 
 
+@lru_cache(maxsize=1024)
 def measures(gas, hops=True):
     """Return the ``Measures`` of a ``Gas``, None where no exact value is known here.
 
@@ -46,6 +50,60 @@ def measures(gas, hops=True):
             return channel.measures(gas, hops)
         return channel.measures(gas.turned(), hops).turned()
     return None
+
+
+@lru_cache(maxsize=1024)
+def volume_and_areas(scene):
+    """Return (volume, {event: area}) of a ``Scene`` of N > 2 discs, as ``theory.exact`` does.
+
+    The volume is in length^2N, areas are those of all events that count as one: of any pair, or of
+    one disc at one wall. An area is 0.0 where the event is impossible or has no place; where no
+    exact value is known it is None, and so is the volume.
+    """
+    gas = scene.gas
+    known = measures(gas)
+    areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
+    if known is None:
+        return None, areas
+    volume = math.exp(known.log_volume)
+    over_volume = surfaces(gas, known)
+    areas |= {e: volume * part for e, part in over_volume.items() if scene.is_possible(e)}
+    return volume, areas
+
+
+def surfaces(gas, known):
+    """Return {event: area over volume} of a ``Gas``, given its ``Measures``, as ``theory.exact``.
+
+    That is in the metric in which a state is a point of 2N coordinates. All walls are 2N of each
+    axis with walls.
+    """
+    root, discs = math.sqrt(2), gas.discs
+    over = {
+        "vertical_hop": root * known.hops_y,
+        "horizontal_hop": root * known.hops_x,
+        "disc_collision": root * known.per_contact,
+        "right_wall": known.per_width / discs,
+        "top_wall": known.per_height / discs,
+    }
+    return over | {"any_wall": 2 * (known.per_width + known.per_height)}
+
+
+@lru_cache(maxsize=1024)
+def event_rates(scene):
+    """Return {event: rate} of a ``Scene`` of more than two discs; 0.0 if never, None if not known.
+
+    Of a collision or a hop of any pair, of one disc at one wall, or of any of them at any. They do
+    not need the volume, which may be too small for a double where its logarithm is none.
+    """
+    gas = scene.gas
+    known = measures(gas)
+    if known is None:
+        return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
+    constant_of = constant(gas.velocity_components)
+    return {
+        event: DECLARED[event].sides / 2 * constant_of * part if scene.is_possible(event) else 0.0
+        for event, part in surfaces(gas, known).items()
+    }
 
 
 def mean_times(gas):
