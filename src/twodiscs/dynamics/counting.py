@@ -4,6 +4,7 @@ The mean count in a time T is rate × T exactly, for every T and without burn-in
 independent replicas gives its error.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -250,6 +251,27 @@ def simulated_events(sums):
     return int(sums[COLLISIONS] + sums[ANY_WALLS])
 
 
+def expected_rate(scene, event):
+    """Return how often per time all that counts as ``event`` happens, exactly if that is known.
+
+    Of more than two discs it may be an estimate; 0 where nothing is known of it.
+    """
+    if scene.discs > 2:
+        from twodiscs.dynamics import many
+
+        return many.expected_rates(scene).get(event, 0.0)
+    return exact.rate(scene, event) * scene.multiplicity(event)
+
+
+def expected_event_rate(scene):
+    """Return the wall hits and disc collisions per unit of time, as ``expected_rate``."""
+    if scene.discs > 2:
+        from twodiscs.dynamics import many
+
+        return many.expected_event_rate(scene)
+    return exact.event_rate(scene)
+
+
 def replica_duration(scene):
     """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
@@ -257,6 +279,10 @@ def replica_duration(scene):
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts remember them:
     then more and shorter replicas know the mean better for the same work.
     """
+    if a_scene(scene).discs > 2:
+        from twodiscs.dynamics import many  # a kernel that others have no use for
+
+        return many.duration_of(scene.gas)
     rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
     times = exact.mean_times(scene)
@@ -275,8 +301,14 @@ def run_blocks(
     ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
     detected: without a hop among them no crossing is looked for. Returns (sums, products)
     as ``count_blocks`` does. They are integers: two shards add up to the whole. ``octaves``, an
-    array, is filled as ``sort_into_octaves`` does.
+    array, is filled as ``sort_into_octaves`` does. More than two discs have a kernel of their own
+    (``many``), which detects everything.
     """
+    if scene.discs > 2:
+        from twodiscs.dynamics import many
+
+        shape = {"replicas": replicas, "lanes": lanes}
+        return many.of_events(*many.run_blocks(scene.gas, seed, first, stop, duration, **shape))
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
     # Four pairs of a disc and a wall along each of two axes are all there are.
@@ -370,8 +402,7 @@ class CountingRun:
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
         replicas = (
-            relative_variance(exact.rate(scene, event) * scene.multiplicity(event) * duration)
-            / self.target[event] ** 2
+            relative_variance(expected_rate(scene, event) * duration) / self.target[event] ** 2
             for event in self._waited
         )
 
@@ -383,13 +414,15 @@ class CountingRun:
             )
             return sums if octaves is None else (*sums, octaves)
 
+        planned = max(replicas, default=0.0) / REPLICAS
+        block_events = REPLICAS * expected_event_rate(scene) * duration
         return SequentialRun(
             work,
             lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS)[index] / goals,
             lambda sums: max(1, simulated_events(sums[0])),
-            REPLICAS * exact.event_rate(scene) * duration,
+            block_events,
             budget,
-            on_grid(max(replicas, default=0.0) / REPLICAS),
+            on_grid(min(planned, budget / block_events) if scene.discs > 2 else planned),
             1 + strip.PROPOSAL * _proposals(scene),
         )
 
@@ -436,15 +469,18 @@ def work_per_event(scene):
 
 def _proposals(scene):
     """Return the proposals of starts for each event, with effects; without, they are few."""
+    if scene.discs > 2 or not scene.has_effects:
+        return 0.0
     events = exact.event_rate(scene) * replica_duration(scene)
-    return 1 / exact.free_fraction(scene) / events if scene.has_effects else 0.0
+    return 1 / exact.free_fraction(scene) / events
 
 
 def relative_variance(count):
     """Return the largest variance to expect of a mean ``count`` of a replica, over its square.
 
     Chance has a variance of less than 2⟨N⟩; discs that keep their motion for long add a part of
-    ⟨N⟩². Both numbers hold at all radii of the repository's boxes without effects, where the second
-    one is up to 0.16: at a hundredth of the height, and close to the largest radius.
+    ⟨N⟩². It is infinite where none is expected. Both numbers hold at all radii of the repository's
+    boxes without effects, where the second one is up to 0.16: at a hundredth of the height, and
+    close to the largest radius.
     """
-    return 2 / count + 1 / 6
+    return 2 / count + 1 / 6 if count else math.inf

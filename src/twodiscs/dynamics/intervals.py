@@ -24,7 +24,7 @@ from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, two_discs
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
@@ -203,7 +203,7 @@ class IntervalRun:
     budget: int = BUDGET
 
     def __post_init__(self):
-        scene = a_scene(self.scene)
+        scene = two_discs(self.scene, "intervals between hops")
         one_of("event", self.event, HOPS)
         if not scene.is_possible(self.event):
             raise InputError(

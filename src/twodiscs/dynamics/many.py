@@ -12,6 +12,7 @@ third one is reached.
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,13 +26,17 @@ from twodiscs.dynamics.law import (
     crosses,
     wall_quotient,
 )
+from twodiscs.model.events import EVENTS
 from twodiscs.model.many import CLASSES
 from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.initial import draw_states, initial_of, method
 from twodiscs.sampling.streams import open_stream
+from twodiscs.theory.many import exact
+from twodiscs.theory.many.rates import rates
 
 #: Events of a replica, and where its initial state takes as long as some ten thousand events.
-EVENTS, EVENTS_OF_CHAIN = 256, 8192
+REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -39,6 +44,9 @@ LOOK_AGAIN = -1.0
 #: Classes of events, in the order of all counts.
 N = len(CLASSES)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
+
+#: The classes whose counts are those of an event, in the order of ``EVENTS``.
+PARTS = {name: ("right_wall", "top_wall") if name == "any_wall" else (name,) for name in EVENTS}
 
 
 class ManyLaw(NamedTuple):
@@ -262,6 +270,38 @@ def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LAN
     )  # fmt: skip
 
 
+def of_events(sums, products):
+    """Return (sums, products) of ``EVENTS`` from those of ``CLASSES``.
+
+    Hits of all walls are those of the two classes of them, in every replica.
+    """
+    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
+    whole = products + np.triu(products, 1).T
+    return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
+
+
+@lru_cache(maxsize=256)
+def expected_rates(scene):
+    """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
+
+    Exact where that is known, and else from some insertions (``measures.expected``), within a few
+    per cent. Where these have no room, of wall hits and collisions a guess (``duration_of``).
+    """
+    gas = scene.gas
+    known = exact.measures(gas) or measures.expected(gas)
+    if known is None:
+        return {"disc_collision": _guessed_rate(gas) / 2, "any_wall": _guessed_rate(gas) / 2}
+    by_class = rates(gas, known)
+    summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
+    return {event: rate for event, rate in summed.items() if rate}
+
+
+def expected_event_rate(scene):
+    """Return the wall hits and collisions per time, as ``expected_rates``."""
+    expected = expected_rates(scene)
+    return expected["any_wall"] + expected["disc_collision"]
+
+
 def simulated_events(sums):
     """Return how many wall hits and collisions there are among the counts of all classes."""
     return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
@@ -274,7 +314,10 @@ def duration_of(gas, events=None):
     below the largest radius. Unless told, ``events`` are 256, or ``EVENTS_OF_CHAIN`` where an
     initial state takes a chain of moves.
     """
-    events = events or (EVENTS_OF_CHAIN if method(gas) == "chain" else EVENTS)
+    events = events or (EVENTS_OF_CHAIN if method(gas) == "chain" else REPLICA_EVENTS)
+    return nearest_power_of_two(events / _guessed_rate(gas))
+
+
+def _guessed_rate(gas):
     room = gas.largest_radius - gas.radius
-    rate = math.sqrt(gas.discs) * (0.5 / gas.range_x + 0.5 / gas.range_y + 0.35 / room)
-    return nearest_power_of_two(events / rate)
+    return math.sqrt(gas.discs) * (0.5 / gas.range_x + 0.5 / gas.range_y + 0.35 / room)

@@ -46,7 +46,7 @@ from twodiscs.dynamics.law import (
 from twodiscs.dynamics.strip import law_reverses
 from twodiscs.model.checks import InputError, ascending, length, one_of, whole
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, a_scene, two_discs
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import COMPONENTS, fill_start, require_room
@@ -187,7 +187,7 @@ def require_passing(scene, hop):
     The axis of the ``hop`` may be periodic, where hops are no events of the scene.
     """
     one_of("hop", hop, HOPS)
-    require_room(a_scene(scene))
+    require_room(two_discs(scene, "passages"))
     periodic = AXIS[hop] in scene.periodic
     if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):
         raise InputError(

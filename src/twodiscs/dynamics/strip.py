@@ -159,8 +159,11 @@ def rare_hops(scene):
     """Return the hops that are counted from strips: those that are rare because of a neck.
 
     But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
-    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain.
+    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain. Of
+    more than two discs none is: strips are those of a pair alone.
     """
+    if scene.discs > 2:
+        return ()
     return tuple(
         hop
         for hop in HOPS

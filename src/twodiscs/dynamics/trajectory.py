@@ -3,6 +3,8 @@
 import math
 from itertools import islice, repeat
 
+import numpy as np
+
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two, put_state, state_at
 from twodiscs.dynamics.law import (
     DISC,
@@ -24,7 +26,7 @@ from twodiscs.dynamics.law import (
 )
 from twodiscs.model.checks import InputError, length, whole
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import ENERGY, a_scene
+from twodiscs.model.scene import ENERGY, a_scene, two_discs
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.starts import components, states
@@ -32,6 +34,9 @@ from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
 LONGEST_TRAJECTORY = 6000
+
+#: So many of more than two discs, whose rows are longer, and of which some pair often hops.
+LONGEST_OF_MANY = 1500
 
 #: Events that one may ask for: all of its rows are kept.
 MOST_EVENTS = 1e7
@@ -41,6 +46,9 @@ ROWS = 1000
 
 #: What a row of a trajectory holds.
 COLUMNS = ("time", "x1", "y1", "x2", "y2", "event", "z1", "z2")
+
+#: What more than two discs have after their centres: which of them the event is of.
+DISCS = ("first", "second")
 
 #: How far rounding may have moved a state that is handed in, over the sides and the energy.
 ROUNDING = 1e-9
@@ -164,6 +172,130 @@ def follow(scene, state, duration):
         yield _row(scene, time, event, now)
 
 
+def columns(scene):
+    """Return what a row of a trajectory of a ``Scene`` holds: ``COLUMNS``, or that of N discs.
+
+    These have time, x1, y1, …, xN, yN, event, and the numbers of the disc, or of both of the pair,
+    that the event is of: first < second, None where there is none.
+    """
+    if scene.discs == 2:
+        return COLUMNS
+    centres = (f"{axis}{disc}" for disc in range(1, scene.discs + 1) for axis in "xy")
+    return ("time", *centres, "event", *DISCS)
+
+
+def events_of_many(scene, state, duration):
+    """Yield (time, event, first, second, state) of more than two discs between walls.
+
+    ``state`` is an array of 4N numbers, as a column of ``starts.states``; events are as in
+    ``events_of``, but for a wall, which is called by its axis, wall_x or wall_y. ``first`` and
+    ``second`` are the numbers of the discs that the event is of, None where there is none.
+    """
+    from twodiscs.dynamics import many  # a kernel that two discs have no use for
+
+    n, law, time = scene.discs, many.law_of(scene.gas), 0.0
+    x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
+    old_x, old_y, counts = np.zeros_like(x), np.zeros_like(y), np.zeros((many.N, 1))
+    remaining, times, codes, speeds = (np.full(1, float(duration)) for _ in range(4))
+    pairs = [(j, i) for i in range(n) for j in range(i)]
+    yield time, "start", None, None, np.ravel([x, y, u, v])
+    while True:
+        before, speed = np.ravel([x, y]), np.ravel([u, v])
+        many.find_events(x, y, u, v, remaining, times, codes, speeds, law)
+        flight, code = float(times[0]), int(codes[0])
+        many.advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
+        after, hops = np.ravel([x, y]), []
+        for start, name in ((n, "vertical_hop"), (0, "horizontal_hop")):
+            for i, j in pairs:
+                a, b = start + i, start + j
+                apart = before[a] - before[b]
+                if crosses(apart, after[a] - after[b]):
+                    hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
+        for until, name, i, j in sorted(hops):
+            places = before + until * speed
+            yield time + until, name, i + 1, j + 1, np.concatenate([places, speed])
+        time, now = time + flight, np.ravel([x, y, u, v])
+        if code == int(END_OF_TIME):
+            yield float(duration), "end", None, None, now
+            return
+        if code > 2 * n:
+            i, j = pairs[code - 2 * n - 1]
+            yield time, "disc_collision", i + 1, j + 1, now
+        else:
+            yield time, f"wall_{'xy'[(code - 1) % 2]}", (code - 1) // 2 + 1, None, now
+
+
+def followed_many(scene, seed, start=None, duration=None, watch=None):
+    """Return the rows of ``events_of_many`` as a list, as ``followed`` does of two discs.
+
+    They need walls, a ``start`` is one of ``starts.states``, and without a ``duration`` they last
+    some ``LONGEST_OF_MANY`` events.
+    """
+    from twodiscs.dynamics import many
+
+    seed = whole("seed", seed, 0)
+    if scene.periodic:
+        raise InputError(
+            f"periodic must be left out for a trajectory of {scene.discs} discs, not "
+            f"{scene.periodic!r}"
+        )
+    rate = many.expected_event_rate(scene)
+    if duration is None:
+        duration = nearest_power_of_two(LONGEST_OF_MANY / rate)
+    elif length("duration", duration) * rate > MOST_EVENTS:
+        raise InputError(_too_long(duration, rate))
+    state = states(scene, 1, seed)[:, 0] if start is None else _state_of_many(scene, start)
+    return _listed(events_of_many(scene, state, float(duration)), float(duration), watch)
+
+
+def _listed(events, duration, watch):
+    """Return all of ``events`` as a list; ``watch`` is called now and then (see ``followed``)."""
+    rows = []
+    for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
+        rows += some
+        if watch is not None:
+            watch(rows[-1][0], duration)
+        if len(some) < ROWS:
+            return rows
+
+
+def _too_long(duration, rate):
+    return (
+        f"duration must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are due, "
+        f"not {duration!r}"
+    )
+
+
+def _state_of_many(scene, start):
+    """Return ``start`` as an array of 4N numbers, checked as in ``state_of``."""
+    names, n = components(scene), scene.discs
+    try:
+        state = np.array([float(value) for value in start])
+    except (TypeError, ValueError, OverflowError):
+        state = np.array([])
+    if state.size != len(names) or not np.isfinite(state).all():
+        raise InputError(f"start must be the numbers {', '.join(names)}, not {start!r:.80}")
+    (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
+    for axis, centres in (("x", x), ("y", y)):
+        reach = scene.side(axis) / 2 - scene.radius
+        if (disc := int(np.argmax(np.abs(centres)))) >= 0 and abs(centres[disc]) > reach + (
+            ROUNDING * scene.side(axis)
+        ):
+            raise InputError(
+                f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} between "
+                f"{-reach!r} and {reach!r}, not {float(centres[disc])!r}"
+            )
+    apart = np.hypot(x[:, None] - x, y[:, None] - y)[np.triu_indices(n, 1)].min()
+    if apart < scene.contact_distance * (1 - ROUNDING):
+        raise InputError(
+            f"start must have the discs apart, with {scene.contact_distance!r} or more between "
+            f"their centres, not {float(apart)!r}"
+        )
+    if abs((energy := float(velocities @ velocities) / 2) - ENERGY) > ROUNDING:
+        raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
+    return state
+
+
 def state_of(scene, start):
     """Return ``start`` as a state of the ``Scene``: a tuple of floats, as ``law`` has it.
 
@@ -219,10 +351,16 @@ def _energy(scene, state):
 
 
 def trajectory(scene, seed, start=None, duration=None):
-    """Return one trajectory of a ``Scene``, as rows of ``follow``.
+    """Return one trajectory of a ``Scene``, as rows of ``follow``, or of ``columns``.
 
-    Arguments and errors are those of ``followed``.
+    Arguments and errors are those of ``followed``, or of ``followed_many`` for more than two discs.
     """
+    if a_scene(scene).discs > 2:
+        n, rows = 2 * scene.discs, followed_many(scene, seed, start, duration)
+        return [
+            (time, *np.reshape(state[:n], (2, -1)).T.ravel().tolist(), event, first, second)
+            for time, event, first, second, state in rows
+        ]
     return [_row(scene, *row) for row in followed(scene, seed, start, duration)]
 
 
@@ -237,25 +375,17 @@ def followed(scene, seed, start=None, duration=None, watch=None):
     ``MOST_EVENTS``. ``watch``, if given, is called now and then with the time that it has reached,
     and the ``duration``.
     """
-    seed, rate = whole("seed", seed, 0), exact.event_rate(a_scene(scene))
+    seed = whole("seed", seed, 0)
+    rate = exact.event_rate(two_discs(scene, "states of two"))
     rate *= exact.work_per_event(scene)
     if duration is None:
         hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
         duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
         duration = nearest_power_of_two(duration)
     elif length("duration", duration) * rate > MOST_EVENTS:
-        raise InputError(
-            f"duration must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are "
-            f"due, not {duration!r}"
-        )
+        raise InputError(_too_long(duration, rate))
     if start is None:
         start = map(float, states(scene, 1, seed)[: len(components(scene)), 0])
     else:
         start = state_of(scene, start)
-    events, rows = events_of(scene, tuple(start), float(duration)), []
-    for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
-        rows += some
-        if watch is not None:
-            watch(rows[-1][0], float(duration))
-        if len(some) < ROWS:
-            return rows
+    return _listed(events_of(scene, tuple(start), float(duration)), float(duration), watch)

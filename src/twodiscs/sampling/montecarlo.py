@@ -22,18 +22,16 @@ Thickness is then measured in the metric of the masses, as ``weighted.shell_expe
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.scene import Scene, a_scene
-from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
+from twodiscs.model.scene import Scene, a_scene, two_discs
+from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
 from twodiscs.sampling.separations import draw_constants, propose_separation
@@ -199,7 +197,8 @@ def shell_thickness(scene, event, fraction):
     Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
-    one_of("event", event, scene.events if a_scene(scene).has_effects else SHELLS)
+    two_discs(scene, "shells")
+    one_of("event", event, scene.events if scene.has_effects else SHELLS)
     fraction = proportion("fraction", fraction)
     if scene.has_effects:
         return fraction * _weighted_thickness(scene, event)
@@ -244,22 +243,8 @@ def sample_point(scene, quantities, samples, shell, seed):
     takes some forty times as long. Raises ``InputError`` for an unknown quantity or a number out of
     range.
     """
-    sampler = weighted if a_scene(scene).has_effects else in_prism
+    sampler = weighted if two_discs(scene, "shells").has_effects else in_prism
     return _drawn(sampler(scene, quantities, shell, seed), samples)
-
-
-class Sampler(NamedTuple):
-    """Draws in blocks of so many samples.
-
-    ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
-    what is found, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over that of one
-    of the prism.
-    """
-
-    block: int
-    count: Callable
-    point: Callable
-    cost_ratio: float = 1.0
 
 
 def _drawn(sampler, samples):
@@ -369,8 +354,8 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     better choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point``
     does.
     """
-    if a_scene(scene).has_effects:
-        raise InputError(f"scene must have no effects for conditioned draws, not {scene.effects}")
+    if not a_scene(scene).is_plain:
+        raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")
     return _drawn(conditioned(scene, quantities, shell, seed), samples)
 
 
@@ -547,7 +532,8 @@ def better_point(scene, quantities, samples, shell, seed):
 
     That is ``sample_point`` with effects, and where a sample of the prism is free with a
     probability of at least 1/``COST_RATIO``; else it is ``conditioned_point``, with as many samples
-    as take the same time. Arguments, result and errors are those of either.
+    as take the same time. Arguments, result and errors are those of either. For more than two discs
+    it is ``many.measures.inserted``, which has no shells.
     """
     return SamplingRun(scene, quantities, samples, shell, seed).alone()
 
@@ -556,9 +542,15 @@ def plan(scene, samples):
     """Return what makes the ``Sampler`` that suits a ``Scene``, and the number of its samples.
 
     It is one of ``in_prism``, ``conditioned`` and ``weighted``; ``samples`` are those of the prism.
+    More than two discs are inserted one by one (``many.measures``), as many times as is asked for.
     """
+    if a_scene(scene).discs > 2:
+        from twodiscs.sampling.many import measures  # which plain scenes have no use for
+
+        blocks = -(-whole("samples", samples) // measures.BLOCK)
+        return measures.inserted, blocks * measures.BLOCK
     in_blocks = -(-whole("samples", samples) // BLOCK) * BLOCK
-    if a_scene(scene).has_effects:
+    if scene.has_effects:
         return weighted, in_blocks
     if exact.free_fraction(scene) >= 1 / COST_RATIO:
         return in_prism, in_blocks

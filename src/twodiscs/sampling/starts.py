@@ -52,8 +52,13 @@ def require_room(scene):
 
 
 def require_free_fraction(scene):
-    """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place."""
-    if scene.has_effects and (fraction := exact.free_fraction(scene)) < exact.MIN_FRACTION:
+    """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place.
+
+    More than two discs have other ways to start (``many.initial``).
+    """
+    if scene.discs > 2 or not scene.has_effects:
+        return
+    if (fraction := exact.free_fraction(scene)) < exact.MIN_FRACTION:
         raise InputError(
             f"radius {scene.radius!r} leaves the discs {fraction:.1g} of the prism of all places, "
             f"and a scene with effects needs more room, {exact.MIN_FRACTION:g} of it"
@@ -61,7 +66,12 @@ def require_free_fraction(scene):
 
 
 def components(scene):
-    """Return the names of the components of a state of a ``Scene``."""
+    """Return the names of the components of a state of a ``Scene``.
+
+    Of N discs x1 … xN, then y, u and v of them.
+    """
+    if scene.discs > 2:
+        return tuple(f"{name}{disc}" for name in "xyuv" for disc in range(1, scene.discs + 1))
     balls, rough = scene.depth is not None, scene.moment_of_inertia is not None
     return PLANE + BALLS * balls + ROUGH * rough
 
@@ -187,10 +197,14 @@ def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
 
     They are the first ones of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
     ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
-    ``draw_configuration``). ``watch``, if given, is called now and then with how many are drawn,
-    and ``number``.
+    ``draw_configuration``). Of N > 2 discs there are 4N rows, in the order of ``components``.
+    ``watch``, if given, is called now and then with how many are drawn, and ``number``.
     """
     require_room(scene)
+    if scene.discs > 2:
+        from twodiscs.sampling.many import initial  # which others have no use for
+
+        return initial.states(scene.gas, number, seed, block)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     state = open_stream(np.uint64(seed), block)

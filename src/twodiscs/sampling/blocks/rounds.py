@@ -139,6 +139,20 @@ def in_rounds(run, watch=None, cores=1, kept=None):
     return Progress(sums, done, rounds, excess)
 
 
+class Sampler(NamedTuple):
+    """Draws in blocks of so many samples.
+
+    ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
+    what is found, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over that of one
+    of the prism.
+    """
+
+    block: int
+    count: Callable
+    point: Callable
+    cost_ratio: float = 1.0
+
+
 def all_in_rounds(parts, watch=None, cores=1, kept=None):
     """Return {name: ``Progress``} of the runs in ``parts``, {name: run}, one after the other.
 

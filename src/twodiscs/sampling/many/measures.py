@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, whole
+from twodiscs.model.checks import InputError, one_of, proportion, whole
+from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many.rates import Measures, overlap_of_two
@@ -32,6 +33,16 @@ UNITS = 2.0**20
 
 #: What is summed: the volume and the numbers of ``Measures`` after the logarithm.
 QUANTITIES = ("volume", "per_width", "per_height", "per_contact", "hops_x", "hops_y")
+
+
+#: What they are called in a point.
+NAMES = (
+    "volume", "right_wall_area", "top_wall_area", "disc_collision_area", "horizontal_hop_area",
+    "vertical_hop_area",
+)  # fmt: skip
+
+#: How many times the time of a sample of the prism of two discs a disc takes, roughly.
+COST_RATIO = 10.0
 
 
 class Box(NamedTuple):
@@ -238,3 +249,78 @@ def sample(gas, samples, seed):
     """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
     blocks = -(-whole("samples", samples) // BLOCK)
     return estimate(gas, *run_blocks(gas, seed, 0, blocks), blocks * BLOCK)
+
+
+# The pipeline -------------------------------------------------------------------------------------
+
+
+def inserted(scene, quantities, shell, seed):
+    """Return the ``Sampler`` of volume and areas of a ``Scene`` of more than two discs.
+
+    Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is a dict for a
+    JSON file: radius, method "insertion", samples, ``unit`` (2^20), and for each quantity its
+    measure, ``sum`` Σ w and ``squares`` Σ w², both in units, so that measure × sum / (unit ×
+    samples) is the estimate; ``products`` hold Σ w_a w_b of the pairs of them. All walls are
+    wanted by their two parts. Raises ``InputError`` for an unknown quantity, a shell that is no
+    fraction, and a seed that is no integer ≥ 0.
+    """
+    allowed = ("volume", *(f"{event}_area" for event in scene.events))
+    for quantity in quantities:
+        one_of("quantity", quantity, allowed)
+    if not quantities:
+        raise InputError("quantities must name at least one quantity, not none")
+    proportion("shell", shell)
+    whole("seed", seed, 0)
+    wanted = {*quantities, "volume"}
+    if "any_wall_area" in wanted:
+        wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}
+    rows = [k for k, name in enumerate(NAMES) if name in wanted]
+    gas = scene.gas
+
+    def count(first, stop):
+        return np.vstack(run_blocks(gas, seed, first, stop))
+
+    def point(samples, counts):
+        sums, products = counts[0], counts[1:]
+        measures = _sampled_measures(gas)
+        return {
+            "radius": scene.radius,
+            "method": "insertion",
+            "samples": samples,
+            "unit": int(UNITS),
+            "quantities": {
+                NAMES[k]: {
+                    "sum": int(sums[k]), "squares": int(products[k, k]), "measure": measures[k],
+                }
+                for k in rows
+            },
+            "products": {
+                f"{NAMES[j]}*{NAMES[k]}": int(products[j, k]) for j in rows for k in rows if j < k
+            },
+        }  # fmt: skip
+
+    return Sampler(BLOCK, count, point, COST_RATIO * gas.discs)
+
+
+def _sampled_measures(gas):
+    """Return what a mean weight of 1 says of volume and areas, in the order of ``NAMES``.
+
+    Areas are those of ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
+    """
+    a, b, n = gas.range_x, gas.range_y, gas.discs
+    volume, pairs = (a * b) ** n * box_of(gas).typical, n * (n - 1) / 2
+    level = math.sqrt(2) * pairs
+    touching = level * 2 * math.pi * gas.contact_distance / (a * b)
+    factors = (1.0, 1 / a, 1 / b, touching, level / a, level / b)
+    return [volume * factor for factor in factors]
+
+
+def expected(gas):
+    """Return about what the ``Measures`` of a ``Gas`` are, from a few blocks of the stream 0.
+
+    The same everywhere. None where not a sample has room.
+    """
+    try:
+        return sample(gas, 16 * BLOCK, 0)[0]
+    except InputError:
+        return None
