@@ -13,6 +13,11 @@ by design and would look too narrow.
 A row without an error bar says so in `status`. It is still compared wherever a bound holds: no
 hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
 
+Where no exact value is known, as of most scenes of more than two discs, nothing is compared with
+it. `flux` then says whether a mean time of dynamics is that which volume and area by Monte Carlo
+give: their ratio is 1. So does `sum_rule`, the virial theorem, for any number of discs between
+walls.
+
 A row is `independent`, a test, if it could fail and follows from no other: not one of an event that
 is certain or impossible, of a count that is the sum of other rows' counts in every replica, of an
 area or a sum rule put together from other rows, or of the scores of others. Tests of one method at
@@ -76,28 +81,50 @@ def _sum_rule(scene, point):
     return _comparison("sum_rule", "mean_times", "dynamics", values, derived=True)
 
 
-def comparisons(box, volume, areas, times, histogram, dynamics):
+def _flux(scene, row, point, derived):
+    """Return the comparison of a mean time of dynamics with volume and area by Monte Carlo.
+
+    ``row`` is that of the time, ``point`` one of insertions.
+    """
+    sampled = estimates.flux_time(scene, row["event"], point)
+    ratio = stderr = z = None
+    if sampled is not None and row["stderr"] is not None:
+        ratio = row["estimate"] / sampled.value
+        relative = row["relative_stderr"], sampled.relative_stderr
+        stderr = ratio * math.hypot(*relative)
+        if max(relative) ** 2 * scores.NORMAL <= 1:
+            z = (ratio - 1) / stderr
+    values = _normal_values(scene.radius, 1.0, ratio, stderr, z)
+    return _comparison("flux", f"{row['event']}_time", "dynamics", values, derived)
+
+
+def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
     """Return a comparison for every estimate at a radius of a ``Box``, without verdicts.
 
     ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
     points, which say whose counts are sums of others, and have the sum rule of virials wherever its
-    three events were counted.
+    three events were counted. Where no exact mean time is known the points of ``monte_carlo`` say
+    what it should be.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
         for row in table:
             values = {**row, "exact": row["expectation"]}
-            joined = name == "area" and row["epsilon"] is None  # two shells
+            joined = row["quantity"] == "any_wall_area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
     summed = {
         (point["radius"], event)
         for point in dynamics
         for event in estimates.sums_of_others(point["counts"], point["products"], point["replicas"])
     }
+    inserted = {p["radius"]: p for p in monte_carlo if p["method"] == "insertion"}
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]
         derived = method == "dynamics" and (row["radius"], row["event"]) in summed
         rows.append(_comparison("mean_time", f"{row['event']}_time", method, row, derived))
+        unknown = row["exact"] is None and row["status"] != "impossible"
+        if unknown and (point := inserted.get(row["radius"])):
+            rows.append(_flux(box.scene(row["radius"]), row, point, derived))
     for (radius, event), bins in groupby(histogram, key=lambda row: (row["radius"], row["event"])):
         row = next(bins)
         values = _normal_values(

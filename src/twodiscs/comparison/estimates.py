@@ -12,8 +12,9 @@ from itertools import chain, combinations
 import numpy as np
 
 from twodiscs.model.checks import InputError, length, proportion, whole
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import DECLARED, EVENTS
 from twodiscs.theory import virial
+from twodiscs.theory.weighted import constant
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.
@@ -187,6 +188,96 @@ def binomial_estimate(hits, samples, measure):
     return Estimate(measure * fraction, measure * error, samples)
 
 
+def weighted_estimate(total, squares, unit, samples, measure):
+    """Return (``measure`` × ⟨w⟩ as an ``Estimate`` or ``None``, effective number of samples).
+
+    ``total`` is Σ w and ``squares`` Σ w² over so many ``samples``, both in ``unit``, as points of
+    insertions have them. As many samples of equal weight, (Σ w)²/Σ w², would be as precise where
+    few have any. None without any weight at all.
+    """
+    total, squares = whole("total", total, 0), whole("squares", squares, 0)
+    samples, measure = whole("samples", samples, 2), real("measure", measure)
+    if not total:
+        return None, 0.0
+    mean, second = total / (unit * samples), squares / (unit * samples)
+    error = math.sqrt(max(second - mean**2, 0.0) / samples)
+    return Estimate(measure * mean, measure * error, samples), total**2 / (squares * unit)
+
+
+def _weights_of(point, weights):
+    """Return ⟨w⟩, ⟨w²⟩ and the effective number of samples of Σ_q weight × quantity.
+
+    ``point`` is one of insertions, ``weights`` are {quantity: weight}. The effective number is the
+    least of all quantities.
+    """
+    unit, samples, parts = point["unit"], point["samples"], point["quantities"]
+    scale = {name: weight * parts[name]["measure"] for name, weight in weights.items()}
+
+    def joint(a, b):
+        if a == b:
+            return parts[a]["squares"]
+        return point["products"][f"{a}*{b}" if f"{a}*{b}" in point["products"] else f"{b}*{a}"]
+
+    mean = math.fsum(scale[a] * parts[a]["sum"] for a in scale) / (unit * samples)
+    second = math.fsum(scale[a] * scale[b] * joint(a, b) for a in scale for b in scale)
+    effective = min(
+        weighted_estimate(parts[a]["sum"], parts[a]["squares"], unit, samples, 1.0)[1]
+        for a in scale
+    )
+    return mean, second / (unit * samples), effective
+
+
+def sampled_sum(point, weights):
+    """Return (Σ_q weight × estimate of q as an ``Estimate`` or None, effective number of samples).
+
+    ``point`` is one of insertions; arguments and result are those of ``_weights_of`` and
+    ``weighted_estimate``, the covariance of the quantities included.
+    """
+    mean, second, effective = _weights_of(point, weights)
+    if not mean:
+        return None, 0.0
+    error = math.sqrt(max(second - mean**2, 0.0) / point["samples"])
+    return Estimate(mean, error, point["samples"]), effective
+
+
+def sampled_ratio(point, weights):
+    """Return (Σ_q weight × estimate of q)/(that of the volume) of a point of insertions.
+
+    An ``Estimate``, whose relative error is that of linear propagation, with the covariance of the
+    quantities and the volume. ``None`` where one of them has an effective number of samples below
+    ``MIN_EVENTS``.
+    """
+    volume, _, enough = _weights_of(point, {"volume": 1.0})
+    area, _, effective = _weights_of(point, weights)
+    if min(enough, effective) < MIN_EVENTS:
+        return None
+    # The variance of Σ weight × q/area − volume/V, whose mean is 0.
+    terms = {name: weight / area for name, weight in weights.items()} | {"volume": -1 / volume}
+    variance = max(_weights_of(point, terms)[1], 0.0)
+    ratio, samples = area / volume, point["samples"]
+    return Estimate(ratio, ratio * math.sqrt(variance / samples), samples)
+
+
+def flux_time(scene, event, point):
+    """Return the mean time between events as volume and area of a point of insertions give it.
+
+    An ``Estimate``: the rate is c_D/2 × area/volume from each side of the surface, see ``theory``.
+    ``None`` where that has no honest error, or the point does not have both.
+    """
+    events = [event]
+    if event == "any_wall":
+        events = [wall for wall in ("right_wall", "top_wall") if wall in scene.events]
+    weight = float(len(events) and scene.multiplicity(events[0])) if event == "any_wall" else 1.0
+    weights = {f"{name}_area": weight for name in events}
+    if not {"volume", *weights} <= point["quantities"].keys():
+        return None
+    ratio = sampled_ratio(point, weights)
+    if ratio is None:
+        return None
+    rate = DECLARED[event].sides / 2 * constant(scene.velocity_components) * ratio.value
+    return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
+
+
 # Molecular dynamics ---------------------------------------------------------------------------
 
 
@@ -288,7 +379,7 @@ def sum_rule(scene, duration, replicas, counts, products):
     """
     weights = virial.weights(scene)
     if weights is None:
-        raise InputError(f"scene must have a sum rule, but has {', '.join(scene.effects)}")
+        raise InputError(f"scene must have a sum rule, but has {', '.join(scene.calls_for)}")
     duration = real("duration", duration)
     rates = {e: scene.share(e) / scene.multiplicity(e) / duration for e in weights}
     return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)

@@ -25,7 +25,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, accuracy, count, one_of, proportion, shown
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, a_scene, two_discs
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
@@ -44,10 +44,11 @@ class Measurement:
 
     ``stderr`` is the standard error; it is None where there is too little for an honest one, and
     ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
-    and where the ``status`` is impossible. ``z`` is None without an exact value, and else it is the standard normal deviate of the estimate from what it is an estimate of: the exact value
-    or, for an area, the exact ``expectation`` of its shell. ``count`` is how many events, or hits,
-    are behind it; ``status`` is as in the tables, and ``bound`` a lower bound on the mean time
-    where none was seen.
+    and where the ``status`` is impossible. ``z`` is None without an exact value, and else it is the
+    standard normal deviate of the estimate from what it is an estimate of: the exact value or, for
+    an area, the exact ``expectation`` of its shell. ``count`` is how many events, or hits, are
+    behind it; ``status`` is as in the tables, and ``bound`` a lower bound on the mean time where
+    none was seen.
     """
 
     quantity: str
@@ -225,7 +226,7 @@ class Intervals(Result):
             [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins]
         )
         few = min(self.counts[:2]) < MIN_EVENTS
-        exact = None if scene.has_effects else tails.density_at_zero(scene, self.hop)
+        exact = None if not scene.is_plain else tails.density_at_zero(scene, self.hop)
         error, status = (None, "too-few") if few else (spread, "extrapolated")
         self.at_zero = Measurement(
             "density_at_zero",
@@ -334,13 +335,15 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
         points = {"monte_carlo": [run.alone(watch, cores, kept)]}
     theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
+    # Insertions always have the volume.
+    rows = [row for row in rows if row["quantity"] in quantities]
     return Measurements("sample", scene, rows, settings, kept)
 
 
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Intervals`` between hops (see the face)."""
     one_of("hop", hop, HOPS)
-    if a_scene(scene).moment_of_inertia is not None:
+    if two_discs(scene, "intervals between hops").moment_of_inertia is not None:
         raise InputError(
             "scene must have smooth discs, for rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
@@ -369,7 +372,7 @@ def exact_table(width, height, radii, effects):
     """Return the exact numbers over radii as a ``DataFrame`` (see the face)."""
     import pandas as pd
 
-    box = Box(width, height, effects)
+    box = box_with(width, height, effects)
     scenes = scenes_of(box, radii)
     rows = [
         {
@@ -382,9 +385,18 @@ def exact_table(width, height, radii, effects):
     ]
     frame = pd.DataFrame(rows).set_index("radius")
     times = [f"{event}_time" for event in EVENTS]
-    frame[times] = frame[times].astype(float)
+    known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
+    frame[known] = frame[known].astype(float)
     frame.attrs["box"] = box
     return frame
+
+
+def box_with(width, height, effects):
+    """Return the ``Box`` of sides, effects and ``discs``, which may be among the ``effects``."""
+    if not isinstance(effects, dict) or "discs" not in effects:
+        return Box(width, height, effects)
+    rest = {name: value for name, value in effects.items() if name != "discs"}
+    return Box(width, height, rest, effects["discs"])
 
 
 def scenes_of(box, radii):

@@ -12,6 +12,7 @@ from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
 from twodiscs.model.checks import InputError, count, shown
+from twodiscs.model.scene import two_discs
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
 from twodiscs.theory import exact
@@ -85,6 +86,7 @@ def _seen(function, start, now):
 
 def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
     """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
+    two_discs(scene, "averages of observables")
     stream, times = seed_of(scene, "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must be one of two arrays of states, not {shown(function)}")

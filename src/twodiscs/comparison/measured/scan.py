@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, overload
 
-from twodiscs.comparison.measured.measurements import Measurements, scenes_of, simulate
+from twodiscs.comparison.measured.measurements import Measurements, box_with, scenes_of, simulate
 from twodiscs.comparison.measured.result import Result
 from twodiscs.model.box import Box
 
@@ -89,7 +89,7 @@ def scan(
     width, height, radii, error, seed, budget, events, name, cores=1, progress=None, effects=None
 ):
     """Return the ``Scan`` of mean times over ``radii`` (see the face)."""
-    box = Box(width, height, {} if effects is None else effects)
+    box = box_with(width, height, {} if effects is None else effects)
     return Scan(
         [
             simulate(scene, error, seed, budget, events, name, cores, progress)

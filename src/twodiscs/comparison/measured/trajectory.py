@@ -10,17 +10,15 @@ import pandas as pd
 
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.watching import watched
-from twodiscs.dynamics.trajectory import followed, unwrapped
+from twodiscs.dynamics.trajectory import DISCS, followed, followed_many, unwrapped
 from twodiscs.model.checks import InputError, shown
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:
     from twodiscs.model.scene import Scene
 
-#: The velocity that belongs to a place.
-VELOCITIES = {
-    "x1": "u1", "y1": "v1", "x2": "u2", "y2": "v2", "z1": "w1", "z2": "w2",
-}  # fmt: skip
+#: The velocity along each axis.
+VELOCITIES = {"x": "u", "y": "v", "z": "w"}
 
 
 class Trajectory(pd.DataFrame):
@@ -28,7 +26,8 @@ class Trajectory(pd.DataFrame):
 
     Columns are time, x1, y1, x2, y2 (the centres, from that of the box), event, and u1, v1, u2, v2
     (velocities). Balls have z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their
-    surfaces. On periodic axes places go on beyond the cell.
+    surfaces. On periodic axes places go on beyond the cell. N discs have x1, y1, …, xN, yN, event,
+    first and second (the discs that the event is of) and then u1, v1, …, uN, vN.
     """
 
     @property
@@ -60,8 +59,9 @@ class Trajectory(pd.DataFrame):
         states = np.empty(at.size, [(name, float) for name in names])
         for name in names:
             states[name] = self[name].to_numpy()[row]
-        for place, velocity in VELOCITIES.items():
-            if place in names:
+        for place in names:
+            if place[0] in VELOCITIES:
+                velocity = VELOCITIES[place[0]] + place[1:]
                 falling = field if place[0] == "y" else 0.0
                 states[place] += (states[velocity] - falling * since / 2) * since
                 states[velocity] -= falling * since
@@ -71,6 +71,8 @@ class Trajectory(pd.DataFrame):
 def trajectory(scene, seed, start, duration, name, progress=None):
     """Return one ``Trajectory`` (see the face)."""
     seed = seed_of(scene, "trajectory", seed, name)
+    if scene.discs > 2:
+        return _of_many(scene, seed, start, duration, progress)
     with watched(progress, f"trajectory r = {scene.radius:g}") as watch:
         rows = followed(scene, seed, start, duration, watch)
     times, events, states = zip(*rows, strict=True)
@@ -89,6 +91,22 @@ def trajectory(scene, seed, start, duration, name, progress=None):
     columns = {"time": times, **{n: columns[n] for n in first}, "event": events} | {
         n: columns[n] for n in last
     }
+    frame = Trajectory(columns)
+    frame.attrs["scene"] = scene
+    return frame
+
+
+def _of_many(scene, seed, start, duration, progress):
+    """Return the ``Trajectory`` of more than two discs."""
+    with watched(progress, f"trajectory r = {scene.radius:g}") as watch:
+        rows = followed_many(scene, seed, start, duration, watch)
+    times, events, first, second, states = zip(*rows, strict=True)
+    known = dict(zip(components(scene), np.array(states).T, strict=True))
+    discs = range(1, scene.discs + 1)
+    columns = {"time": times} | {n: known[n] for d in discs for n in (f"x{d}", f"y{d}")}
+    columns |= {"event": events}
+    columns |= {n: pd.array(ds, "Int64") for n, ds in zip(DISCS, (first, second), strict=True)}
+    columns |= {n: known[n] for d in discs for n in (f"u{d}", f"v{d}")}
     frame = Trajectory(columns)
     frame.attrs["scene"] = scene
     return frame

@@ -77,6 +77,11 @@ class Table:
         }
 
     @classmethod
+    def of(cls, names):
+        """Return the table of a file whose columns are ``names``: this one, for nearly all."""
+        return cls
+
+    @classmethod
     def write(cls, path, rows):
         """Write ``rows`` as the CSV file ``path``.
 

@@ -14,13 +14,18 @@ class Check(Table):
     """One row per comparison with the exact theory."""
 
     comparison: TEXT
-    """volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and z_spread"""
+    """
+    volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and z_spread; where
+    no exact mean time is known flux, that of dynamics over that of Monte Carlo
+    """
     quantity: TEXT
     """what is compared"""
     radius: LENGTH
     """radius of the discs; empty for a statement on all radii"""
     method: TEXT
-    """monte_carlo, conditioned, dynamics, strip (starts next to a rare hop) or intervals"""
+    """
+    monte_carlo, conditioned, insertion, dynamics, strip (starts next to a rare hop) or intervals
+    """
     exact: SEE_QUANTITY
     """exact value; for an area, the shell's expectation"""
     estimate: SEE_QUANTITY
@@ -61,5 +66,6 @@ class Check(Table):
             MeanTimes.rows(box, theory, points) + seen_anywhere(box, theory, points),
             HopHistogram.rows(theory, points),
             points.get("dynamics", ()),
+            points.get("monte_carlo", ()),
         )
         return check.check_rows(compared)

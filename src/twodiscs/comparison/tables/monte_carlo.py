@@ -19,19 +19,22 @@ class Sampled(Table):
     method: TEXT
     """
     monte_carlo: rejection from the prism; conditioned: draws that keep to where the discs fit,
-    where less than one in 64 of the prism does; areas by a thin shell
+    where less than one in 64 of the prism does; areas by a thin shell. insertion: of more than two
+    discs, one by one, each sample with a weight; areas without a shell
     """
     exact: AS_QUANTITY
     """exact value"""
     estimate: AS_QUANTITY
-    """measure × hits/samples; empty without a hit"""
+    """measure × hits/samples, of insertions measure × mean weight; empty without a hit"""
     stderr: AS_QUANTITY
-    """binomial standard error; empty below 100 hits or misses"""
+    """
+    binomial standard error, of insertions that of the weights; empty below 100 hits or misses
+    """
     z: NUMBER
     samples: COUNT
     """configurations drawn from the prism, or proposed"""
     hits: COUNT
-    """configurations that count"""
+    """configurations that count; of insertions the effective number (Σw)²/Σw², rounded"""
     epsilon: LENGTH
     """
     thickness of the shell in configuration space (to either side, for a hop), × √mass where masses
@@ -53,7 +56,7 @@ class Sampled(Table):
 class Volume(Sampled):
     """
     One row per radius: the volume of configuration space, exact and by Monte Carlo. In a field it
-    is weighted with the invariant density; for balls it is in length⁶.
+    is weighted with the invariant density; for balls it is in length⁶, for N discs in length^2N.
     """
 
     exact: VOLUME
@@ -70,7 +73,7 @@ class Volume(Sampled):
         """
         exact = ExactValues(theory)
         return [
-            _sampled_row(point, "volume", *2 * [exact[point["radius"], "volume"]])
+            _row_of(point, "volume", *2 * [exact[point["radius"], "volume"]])
             for point in by_radius(points.get("monte_carlo", ()))
             if "volume" in point["quantities"]
         ]
@@ -80,7 +83,7 @@ class Areas(Sampled):
     """
     One row per radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
     of finite thickness is not a surface, so its exact expectation has a column. In a field areas
-    are weighted as the flux is; for balls they are in length⁵.
+    are weighted as the flux is; for balls they are in length⁵, for N discs in length^(2N − 1).
     """
 
     exact: AREA
@@ -101,6 +104,9 @@ class Areas(Sampled):
         for point in by_radius(points.get("monte_carlo", ())):
             radius, sampled = point["radius"], {}
             scene = box.scene(radius)
+            if point["method"] == "insertion":
+                rows += _inserted_rows(scene, point, exact, areas)
+                continue
             for event in EVENTS:
                 quantity = f"{event}_area"
                 part = point["quantities"].get(quantity)
@@ -114,6 +120,80 @@ class Areas(Sampled):
                 sampled["any_wall"] = _any_wall_row(point, value, *parts)
             rows += [sampled[event] for event in EVENTS if event in sampled and event in areas]
         return rows
+
+
+def _row_of(point, quantity, exact, expectation):
+    if point["method"] == "insertion":
+        return _weighted_row(point, quantity, exact)
+    return _sampled_row(point, quantity, exact, expectation)
+
+
+def _inserted_rows(scene, point, exact, areas):
+    """Return the rows of the areas of a point of insertions, which are unbiased."""
+    rows = []
+    for event in EVENTS:
+        quantity = f"{event}_area"
+        if event in areas and quantity in point["quantities"]:
+            rows.append(_weighted_row(point, quantity, exact[scene.radius, quantity]))
+        elif event in areas and event == "any_wall":
+            rows += _all_walls_row(scene, point, exact[scene.radius, quantity])
+    return rows
+
+
+def _weighted_row(point, quantity, exact):
+    """Return the row of a quantity of a point of insertions."""
+    from twodiscs.comparison import estimates
+
+    part, samples = point["quantities"][quantity], point["samples"]
+    return _of_estimate(
+        point, quantity, exact,
+        *estimates.weighted_estimate(
+            part["sum"], part["squares"], point["unit"], samples, part["measure"]
+        ),
+    )  # fmt: skip
+
+
+def _all_walls_row(scene, point, exact):
+    """Return the row of all walls, 2N of each axis with walls, in a list; or none of them."""
+    from twodiscs.comparison import estimates
+
+    walls = [f"{wall}_area" for wall in ("right_wall", "top_wall") if wall in scene.events]
+    if not {*walls} <= point["quantities"].keys():
+        return []
+    weights = {wall: scene.multiplicity(wall.removesuffix("_area")) for wall in walls}
+    return [_of_estimate(point, "any_wall_area", exact, *estimates.sampled_sum(point, weights))]
+
+
+def _of_estimate(point, quantity, exact, estimate, effective):
+    """Return the row of an unbiased estimate with an ``effective`` number of samples."""
+    from twodiscs.comparison import estimates, scores
+
+    z = test = None
+    status = "sampled" if effective >= estimates.MIN_EVENTS else "too-few"
+    if exact == 0:
+        z, test = scores.impossible_z(0 if estimate is None else 1)
+        z, status = abs(z), "impossible"
+    elif estimate is None:
+        status = "none-seen"
+    elif exact is not None and effective >= scores.NORMAL:
+        z = scores.student_deviate((estimate.value - exact) / estimate.stderr, estimate.n - 1)
+        test = "normal"
+    return {
+        "radius": point["radius"],
+        "quantity": quantity,
+        "method": point["method"],
+        "exact": exact,
+        "estimate": estimate and estimate.value,
+        "stderr": estimate.stderr if status == "sampled" else None,
+        "z": z,
+        "samples": point["samples"],
+        "hits": round(effective),
+        "epsilon": None,
+        "expectation": exact,
+        "bias": None if exact is None else 0.0,
+        "status": status,
+        "test": test,
+    }
 
 
 def _sampled_row(point, quantity, exact, expectation):
