@@ -55,7 +55,10 @@ def test_a_study_of_any_scenes_is_drawn_without_a_box(name):
 
 def test_only_the_animation_animates():
     assert callable(import_module(f"twodiscs.{ANIMATION.module}").animate)
-    assert (ANIMATION.tables, ANIMATION.of_plain) == (("trajectory",), True)
+    assert ANIMATION.tables == ("trajectory",)
+    assert ANIMATION.is_called({"trajectory"})
+    assert ANIMATION.is_called({"trajectory"}, {"discs": 3})
+    assert not ANIMATION.is_called({"trajectory"}, {"field": 1.0})
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -10,12 +10,15 @@ from twodiscs.figures.kit.captions import (
     Sentence,
     Shown,
     longer_than,
+    of_many,
+    of_two,
     plain,
     plain_square,
     said,
     sentences,
     with_effects,
 )
+from twodiscs.model.effects import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,8 @@ class Entry:
     ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are watched, and is of
     use if any is. A drawing needs nothing: it takes the sides of the box alone, and shows equal
     discs between walls. ``of_plain`` figures are for such scenes only, and ``without`` are effects
-    in which a figure says nothing.
+    in which a figure says nothing. Among the effects of a scene is ``discs`` if they are more than
+    two.
     """
 
     title: str
@@ -110,6 +114,15 @@ LINES = (
         """,
         with_effects,
     ),
+    Sentence(
+        """
+        Vertical lines mark where vertical hops (r_v) and horizontal ones (r_h) of any pair of discs
+        are excluded, and the largest radius at which an arrangement is known. A hit of a wall is
+        that of one disc, averaged over all initial conditions. Where no exact value is known there
+        is no line, and no residual.
+        """,
+        of_many,
+    ),
 )
 RESIDUALS = "Residuals z beneath are in standard errors, with guide lines at ±2 and ±5"
 
@@ -184,11 +197,25 @@ FIGURES = {
     "hopping_trajectory": Entry(
         "Hopping dynamics",
         DYNAMICS,
-        """
-        (a) One trajectory: the separation of the discs in one direction against time. Dots mark the
-        hops, at which it changes sign. (b) The shaded stretch of time enlarged, with a bar for each
-        hop: a hop is often undone soon, before collisions have scrambled the motion.
-        """,
+        (
+            Sentence(
+                """
+                (a) One trajectory: the separation of the discs in one direction against time. Dots
+                mark the hops, at which it changes sign. (b) The shaded stretch of time enlarged,
+                with a bar for each hop: a hop is often undone soon, before collisions have
+                scrambled the motion.
+                """,
+                of_two,
+            ),
+            Sentence(
+                """
+                (a) One trajectory: where all discs are along the longer side against time, coloured
+                by the order in which they start. Lines that cross are hops. (b) The beginning,
+                enlarged.
+                """,
+                of_many,
+            ),
+        ),
         "figures.motion.hopping_trajectory",
         tables=("trajectory",),
         needs=frozenset({"trajectory"}),
@@ -420,13 +447,25 @@ FIGURES = {
 ANIMATION = Entry(
     "The two discs, animated",
     DYNAMICS,
-    """
-    The discs as they move, before and after a hop of the rarer kind. Traces are the latest paths
-    of the centres, and the picture stops at the moment of the hop. Beneath, the separation of the
-    discs against time: the hop changes its sign.
-    """,
+    (
+        Sentence(
+            """
+            The discs as they move, before and after a hop of the rarer kind. Traces are the latest
+            paths of the centres, and the picture stops at the moment of the hop. Beneath, the
+            separation of the discs against time: the hop changes its sign.
+            """,
+            of_two,
+        ),
+        Sentence(
+            """
+            The discs as they move, coloured by the order in which they start along the longer side.
+            Traces are the latest paths of the centres. Beneath, where they are along that side.
+            """,
+            of_many,
+        ),
+    ),
     "figures.motion.animation",
     tables=("trajectory",),
     needs=frozenset({"trajectory"}),
-    of_plain=True,
+    without=frozenset(EFFECTS),
 )

@@ -22,8 +22,8 @@ def plot(result, path, figure):
         raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
     name = one_of("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
-    if box.effects and not entry.needs:
-        raise InputError(f"scene must be plain to be drawn, but it has {', '.join(box.effects)}")
+    if not box.is_plain and not entry.needs:
+        raise InputError(f"scene must be plain to be drawn, but it has {', '.join(box.calls_for)}")
     draw = import_module(f"twodiscs.{entry.module}").draw
     with style.context():
         drawn = draw(box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
@@ -96,7 +96,10 @@ def _figures_of(rows):
 
 def rows_of(trajectory):
     """Return the rows of a trajectory that ``the_scene`` knows; two are the least."""
-    missing = [n for n in ("time", "x1", "y1", "x2", "y2", "event") if n not in trajectory]
+    places = (
+        f"{axis}{disc}" for disc in range(1, the_scene(trajectory).discs + 1) for axis in "xy"
+    )
+    missing = [n for n in ("time", *places, "event") if n not in trajectory]
     if missing or len(trajectory) < 2:
         raise InputError(
             f"trajectory must have two rows at least, and all of its columns, not {len(trajectory)}"
@@ -113,6 +116,6 @@ def animate(trajectory, path):
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be what trajectory() returns, not {trajectory!r:.80}")
     if scene.has_effects:
-        raise InputError(f"scene must be plain to be animated, not {scene}")
+        raise InputError(f"scene must have no effects to be animated, not {scene}")
     with style.context():
         animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])

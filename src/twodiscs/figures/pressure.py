@@ -33,7 +33,7 @@ def draw(box, tables):
     ]
     panels.draw_series(main, lower, radii, series)
     main.axhline(1, color=BLACK, lw=0.7, ls=(0, (1, 1.5)))
-    if not box.effects:
+    if box.is_plain:
         end = box.largest_radius
         farthest = min(LAST, 1 - max(box.thresholds, default=0) / end)
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
@@ -55,14 +55,18 @@ def draw(box, tables):
 def _series(name, box, event, rows, radii, factor):
     """Return the ``Series`` of ``factor`` (scene, event) times the rate of an event."""
     scenes = [None if np.isnan(radius) else box.scene(float(radius)) for radius in radii]
-    exact = [np.nan if s is None else factor(s, event) * rate(s, event) for s in scenes]
+    rates = [None if s is None else rate(s, event) for s in scenes]
+    exact = [
+        np.nan if n is None else factor(s, event) * n for s, n in zip(scenes, rates, strict=True)
+    ]
     shown = []
     for row in rows:
         if row["event"] == event and row["stderr"] is not None:
             scene, time = box.scene(row["radius"]), row["estimate"]
             value = factor(scene, event) * scene.share(event) / time
             # What is too long a time is too low a rate.
-            measured = {"estimate": value, "stderr": value * row["stderr"] / time, "z": -row["z"]}
+            measured = {"estimate": value, "stderr": value * row["stderr"] / time}
+            measured["z"] = None if row["z"] is None else -row["z"]
             shown.append(row | measured)
     return panels.Series(name, shown, np.array(exact))
 

@@ -52,7 +52,10 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
         _laws(main, box, quantity.removesuffix("_time"), laws)
     if rooted:
         main.set_yscale("function", functions=(_root, np.square))
-        main.set_ylim(0, 1.05 * max(np.nanmax(part.exact) for part in series))
+        largest = [value for part in series for value in part.exact[np.isfinite(part.exact)]]
+        if box.discs > 2:  # of which no exact value may be known where the largest one is
+            largest += [row["estimate"] for part in series for row in part.rows if row["estimate"]]
+        main.set_ylim(0, 1.05 * max(largest, default=0.0) or 1.0)
     else:
         panels.logarithmic(main, radii, series)
     panels.legend(main, box, series, loc, single=single)
@@ -79,7 +82,7 @@ def _as_drawn(row):
 
 def _laws(axes, box, event, laws):
     """Draw laws for small discs and below the largest radius, known for boxes without effects."""
-    if box.effects:
+    if not box.is_plain:
         return
     end = box.largest_radius
     if "small" in laws:
@@ -99,11 +102,14 @@ def _approach(axes, box, by_quantity):
         event = quantity.removesuffix("_time")
         end, name = ends[event]
         scenes = [box.scene(float(end * (1 - d))) for d in distances]
-        exact = [mean_times(scene)[event] for scene in scenes]
+        times = [mean_times(scene)[event] for scene in scenes]
+        exact = np.array(times, float)
         (line,) = axes.plot(distances, exact, color=colour, zorder=5)
         line.set_label(rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$")
-        shown += exact
-        if not box.effects:
+        shown += [time for time in times if time]
+        if box.discs > 2:
+            shown += [row["estimate"] for row in part.rows if row["estimate"]]
+        if box.is_plain:
             near = distances < LAW
             laws = [threshold_time(scene, event) for scene in scenes]
             panels.asymptote(axes, distances[near], np.array(laws)[near])
@@ -112,5 +118,5 @@ def _approach(axes, box, by_quantity):
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$")
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper right" if box.discs == 2 else "best")
     panels.letter(axes, "b")

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 class Shown:
     """What a figure shows: a scene with these ``effects`` in a box with these ``sides``.
 
+    Among the effects is ``discs`` where they are more than two.
+
     ``rows`` are those of its tables, of the quantities that it shows. Sides and rows are None where
     they are not known: whatever may be said then is said.
     """
@@ -27,9 +29,19 @@ def plain(shown):
     return not shown.effects
 
 
+def of_many(shown):
+    """Say whether the scene has more discs than two."""
+    return "discs" in shown.effects
+
+
+def of_two(shown):
+    """Say whether the scene has two discs."""
+    return not of_many(shown)
+
+
 def with_effects(shown):
-    """Say whether the scene has effects."""
-    return bool(shown.effects)
+    """Say whether the scene has effects, of two discs."""
+    return bool(shown.effects) and not of_many(shown)
 
 
 def longer_than(ratio):

@@ -30,7 +30,7 @@ def branches(box, others=()):
     regimes = []
     for low, high in pairwise(ends):
         even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
-        if box.effects:
+        if not box.is_plain:
             even = max(6, round(ALL_EVEN * (high - low) / ends[-1]))
             geometric, closest = FEWER_GEOMETRIC, FARTHER
         near = np.geomspace(closest, 1 / even, geometric)
@@ -47,7 +47,7 @@ def exact(box, others=()):
 
     Quantities are named as in theory.csv. Between two regimes stands a NaN, so that a line drawn
     through the values is never joined across a limit, where some of them jump; NaN also means that
-    an event is impossible. ``others`` are more limits, as in ``branches``.
+    an event is impossible, or no exact value known. ``others`` are more limits, as in ``branches``.
     """
     radii, rows = [], []
     for branch in branches(box, others):

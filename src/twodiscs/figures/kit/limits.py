@@ -23,6 +23,8 @@ CHANGES = {
 def limits(box):
     """Return [(radius, name in mathtext), …] of a ``Box``, ascending.
 
+    Of more than two discs they are as with effects.
+
     They are h/4 and w/4, where they fit, and the largest radius. With effects they are r_v and r_h,
     where vertical and horizontal hops become blocked; r_t, from which on discs rise to the top wall
     in a field; r_x and r_y, where disc 1 loses its way to the other side of disc 2, if that is not
@@ -30,7 +32,7 @@ def limits(box):
     side; and the largest radius, which a field may lower.
     """
     names = {}
-    if not box.effects:
+    if box.is_plain:
         for hop in sorted(HOPS, key=AXIS.get):
             radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
             names[radius] = f"{names[radius]}={name}" if radius in names else name
@@ -54,7 +56,7 @@ def _fills(scene, axis):
 def hop_ends(box):
     """Return {hop: (radius at which it ends, its name)} of a ``Box``."""
     ends = limits(box)
-    names = (QUARTERS["y"], QUARTERS["x"]) if not box.effects else (VERTICAL, HORIZONTAL)
+    names = (QUARTERS["y"], QUARTERS["x"]) if box.is_plain else (VERTICAL, HORIZONTAL)
     return {
         hop: next((limit for limit in ends if name in limit[1].split("=")), ends[-1])
         for hop, name in zip(HOPS, names, strict=True)

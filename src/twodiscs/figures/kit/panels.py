@@ -49,7 +49,7 @@ def panels(box, label, beneath=0):
 
     ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
     """
-    line = LINE if box.effects else 0
+    line = 0 if box.is_plain else LINE
     figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line)
     lower = add_panel(figure, beneath + BOTTOM, LOWER)
     main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
@@ -100,9 +100,10 @@ def name_box(axes, box, more="", up=0):
 
 
 def effects(box):
-    """Return the effects of a ``Box`` in symbols, a list of texts."""
+    """Return how many discs a ``Box`` has, if not two, and its effects in symbols, texts."""
     texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
-    return [EFFECTS[name].symbol.format(value) for name, value in texts]
+    discs = [f"${box.discs}$ discs"] if box.discs > 2 else []
+    return [*discs, *(EFFECTS[name].symbol.format(value) for name, value in texts)]
 
 
 def name_limits(axes, ends):
@@ -219,11 +220,14 @@ def legend(axes, box, series, loc, single=None):
     may lie as low as half of the largest; "best" is wherever the curves leave room, and the place
     in a ``box`` with effects.
     """
-    loc = "best" if box.effects else loc
+    loc = loc if box.is_plain else "best"
     handles, names = [], []
     for (colour, marker), part in zip(SERIES, series, strict=False):
         style = open_symbol(colour, marker)
-        if single:
+        if single and not np.any(np.isfinite(part.exact)):
+            handles += axes.plot([], [], ls="", **style)
+            names.append(single)
+        elif single:
             handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
             names += ["exact", single]
         elif part.is_seen():

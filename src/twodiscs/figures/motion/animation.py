@@ -1,4 +1,4 @@
-"""The two discs as they move: long on their sides, until they squeeze past each other.
+"""The discs as they move: two of them long on their sides, until they squeeze past each other.
 
 For the screen: a GIF, which every program shows, or an animated PNG, which is an image to a report.
 The discs move freely between events, so straight lines through the rows of trajectory.csv are the
@@ -16,6 +16,7 @@ from PIL import Image
 
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.figures.motion import many
 from twodiscs.model.checks import InputError, length
 from twodiscs.model.events import HOPS
 
@@ -69,9 +70,11 @@ class Stage:
     def __init__(self, box, radius, rows):
         width, height, radius = box.width, box.height, length("radius", radius)
         step = (width + height) / CROSSING
-        names = ("time", "x1", "y1", "x2", "y2", "event")
+        self.of = box
+        places = [f"{axis}{disc}" for disc in range(1, box.discs + 1) for axis in "xy"]
+        names = ("time", *places, "event")
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
-        self.times, self.hop, self.centre = moments(rows, step)
+        self.times, self.hop, self.centre = self.moments(rows, step)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
 
@@ -85,9 +88,14 @@ class Stage:
         drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
         text = rf"$w\times h={width:g}\times{height:g}$,  $r={radius:g}$"
+        text = ",  ".join([text, *panels.effects(box)])
         drawing.label(self.box, text, (0, 1), (0, 5), **above)
         self._draw_strip()
         self.moving = self._moving(radius, (-x, x, -y, y))
+
+    def moments(self, rows, step):
+        """Return what ``moments`` does."""
+        return moments(rows, step)
 
     def places(self, disc, times):
         """Return the centres (n, 2) of a disc at ``times``."""
@@ -167,8 +175,62 @@ class Stage:
         moving["hops"].set_data(hops, 0 * hops)
 
 
+class StageOfMany(Stage):
+    """The panels and what moves in them: all discs, and beneath where they are."""
+
+    def moments(self, rows, step):
+        """Return (times of the frames, None, the first of them): as many as around a hop."""
+        start, end = rows[0]["time"], rows[-1]["time"]
+        frames = start + step * np.arange(BEFORE + AFTER + 1)
+        frames = frames[frames <= end]
+        if len(frames) < 2:
+            raise InputError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
+        self.colours = many.colours(self.of, rows[0])
+        return frames, None, start
+
+    def _draw_strip(self):
+        axis, side = many.along(self.of), max(self.of.width, self.of.height)
+        self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
+        times = self.path(self.times[0], self.times[-1])
+        self.strip.set(xlim=(times[0], times[-1]), ylim=(-side / 2, side / 2), xlabel="time $t$")
+        self.strip.set_ylabel(f"${axis}$")
+        for disc, colour in enumerate(self.colours, 1):
+            places = self.places(disc, times)[:, "xy".index(axis)]
+            self.strip.plot(times, places, color=colour, lw=0.8)
+
+    def _moving(self, radius, extent):
+        artists = {}
+        for disc, colour in enumerate(self.colours, 1):
+            face = tuple(0.45 * part + 0.55 for part in colour)
+            artists[f"disc {disc}"] = self.box.add_patch(
+                Circle((0, 0), radius, facecolor=face, edgecolor=colour, linewidth=1.2)
+            )
+        for disc in range(1, self.of.discs + 1):
+            artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
+            artists[f"number {disc}"] = drawing.label(
+                self.box, f"{disc}", (0, 0), (0, 0), ha="center", va="center", fontsize=9
+            )
+        (artists["now"],) = self.strip.plot([], [], color=BLACK, lw=1.0)
+        return artists
+
+    def show(self, time):
+        """Move everything to where it is at ``time``."""
+        past = self.path(max(time - self.trace, self.times[0]), time)
+        for disc, colour in enumerate(self.colours, 1):
+            places = self.places(disc, past)
+            fading = [to_rgba(colour, 1 - (time - t) / self.trace) for t in past[1:]]
+            self.moving[f"trace {disc}"].set(
+                segments=np.stack([places[:-1], places[1:]], axis=1), colors=fading
+            )
+            self.moving[f"disc {disc}"].center = places[-1]
+            self.moving[f"number {disc}"].xy = places[-1]
+        self.moving["now"].set_data([time, time], self.strip.get_ylim())
+
+
 def animate(box, radius, rows, paths):
-    """Write an animation of one hop to every one of ``paths``, which are .gif or .png files.
+    """Write an animation of one hop, or of more than two discs, to every one of ``paths``.
+
+    These are .gif or .png files.
 
     ``box`` is the ``Box`` and ``radius`` that of the discs; ``rows`` are those of trajectory.csv,
     at least two frames of them. Raises ``InputError`` for anything else.
@@ -178,7 +240,7 @@ def animate(box, radius, rows, paths):
             raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise InputError("rows must be those of a trajectory, not none")
-    stage = Stage(box, radius, rows)
+    stage = (Stage if box.discs == 2 else StageOfMany)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():
         artist.set_animated(True)

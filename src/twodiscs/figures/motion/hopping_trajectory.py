@@ -4,6 +4,7 @@ import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.figures.motion import many
 
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
@@ -17,8 +18,11 @@ def draw(box, tables, radius=None):
 
     In a box higher than wide, or where x is periodic, it is y2 − y1. The ``radius``, if given, is
     written above. The discs move freely between events, or fall alike, so straight lines
-    through the rows are the trajectory itself.
+    through the rows are the trajectory itself. More than two discs are drawn by
+    ``many.world_lines``.
     """
+    if box.discs > 2:
+        return many.world_lines(box, tables["trajectory"], radius)
     periodic = box.effects.get("periodic", "")
     along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
     axis, hop = ("x", "horizontal_hop") if along_x else ("y", "vertical_hop")
