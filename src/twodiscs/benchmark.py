@@ -17,10 +17,11 @@ from statistics import median
 
 import numpy as np
 
-from twodiscs.dynamics import counting
+from twodiscs.dynamics import counting, many
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.intervals import hop_intervals
 from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.many import Gas
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.configuration.load import load
@@ -68,6 +69,14 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
     duration = counting.replica_duration(scene)
     counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
     return counting.simulated_events(counted[0]), seconds
+
+
+def lockstep_of_many(discs, blocks=BLOCKS // 8):
+    """Count all events of so many discs by the kernel of N discs, which takes two as well."""
+    gas = Gas(discs, SCENE.width, SCENE.height, SCENE.radius / 2)
+    duration = many.duration_of(gas)
+    counted, seconds = timed(lambda: many.run_blocks(gas, 1, 0, blocks, duration))
+    return many.simulated_events(counted[0]), seconds
 
 
 def lockstep_intervals(intervals=5_000_000):
@@ -227,6 +236,11 @@ def compared(name, values, unit, baseline, larger_is_better=True):
     ]
 
 
+#: The engine of two discs, and the kernel of N with two, three, four and eight at half the radius.
+MANY = {"lockstep": partial(lockstep, BLOCKS // 8, replace(SCENE, radius=SCENE.radius / 2))}
+MANY |= {f"discs_{discs}": partial(lockstep_of_many, discs) for discs in (2, 3, 4, 8)}
+
+
 def benchmarks(effects):
     """Run everything and return the rows of benchmark.csv; ``effects`` as in ``with_effects``."""
     rows = effects_rows(effects)
@@ -249,6 +263,7 @@ def benchmarks(effects):
         "1/s",
         "numpy",
     )
+    add("md_events_per_second_of_many", interleaved(MANY), "1/s", "lockstep")
     for error in (1e-3, 1e-4):
         events = count_until(error)[0]
         seconds = {
@@ -279,7 +294,7 @@ def main():
     parser.add_argument("--output", default="results/benchmark.csv")
     given = parser.parse_args()
     requests = (request for path in given.scenes for request in load(read(path)).scenes)
-    effects = {request.name: request.effects for request in requests}
+    effects = {r.name: r.box.effects for r in requests if r.box.effects and r.box.discs == 2}
     quick = given.table == "effects_cost"
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)

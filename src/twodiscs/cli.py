@@ -163,7 +163,7 @@ def _table(scene, numbers):
         event: "impossible" if not scene.is_possible(event) else _known(time)
         for event, time in numbers["mean_times"].items()
     }
-    effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.effects.items()]
+    effects = [f"{name.replace('_', ' '):<20}{value}" for name, value in scene.calls_for.items()]
     if effects:
         effects.append(f"{'velocity components':<20}{scene.velocity_components}")
     if scene.conserved:
@@ -175,12 +175,15 @@ def _table(scene, numbers):
             "",
             *effects,
             f"{'regime':<20}{numbers['regime']}",
-            f"{'ergodic components':<20}{numbers['ergodic_components']}",
+            f"{'ergodic components':<20}{_known(numbers['ergodic_components'])}",
             f"{'largest radius':<20}{numbers['largest_radius']!r:<24}length",
             f"{'volume':<20}{_known(numbers['volume']):<24}{volume}",
             "",
             f"{'event':<20}{f'area ({area})':<24}mean time (time)",
-            *(f"{event:<20}{_known(area):<24}{times[event]}" for event, area in numbers["areas"].items()),
+            *(
+                f"{event:<20}{_known(area):<24}{times[event]}"
+                for event, area in numbers["areas"].items()
+            ),
         ]
     )
 

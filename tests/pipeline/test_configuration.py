@@ -675,3 +675,55 @@ def test_stability_needs_sides_that_leave_room_below():
     with pytest.raises(load.ConfigError, match="shared must leave out 'stability' unless"):
         load.load({"scenes": [scene]})
     assert load.load({"scenes": [scene], "shared": ["errata"]}).main.name == "a"
+
+
+# More discs than two
+
+
+def test_two_discs_are_the_default_and_leave_no_trace():
+    assert one(discs=2) == one()
+    assert repr(one(discs=2)) == repr(one())
+    assert one().box.discs == 2
+
+
+def test_more_discs_are_a_scene_of_their_own():
+    request = one(discs=3, radii=[0.1, 0.2])
+    assert request.box == Box(1.5, 1.0, discs=3)
+    assert request.effects == {"discs": 3}
+    assert request.watch.mean_times == EVENTS
+    assert request.watch.hop_histogram == ()
+    assert request.watch.trajectory == 0.125  # half of h/4
+    assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
+    ring = one(discs=3, radii=[0.1], effects={"periodic": "x"})
+    assert ring.watch.trajectory is None
+    configuration = load.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
+    assert configuration.plain == ()
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"discs": 1}, "discs must be an integer from 2 to 64, not 1"),
+        ({"discs": 65}, "discs must be an integer from 2 to 64, not 65"),
+        ({"discs": 2.5}, "discs must be an integer from 2 to 64, not 2.5"),
+        ({"discs": True}, "discs must be an integer from 2 to 64, not True"),
+        ({"discs": 3, "radii": [0.31]}, "radii: radius 0.31 does not fit: of 3 discs"),
+        ({"discs": 3, "effects": {"field": 1}}, "effects: field must be left out with 3 discs"),
+        (
+            {"discs": 3, "radii": [0.1], "watch": {"hop_histogram": [0.1]}},
+            "watch.hop_histogram must be false with 3 discs",
+        ),
+        (
+            {
+                "discs": 3,
+                "radii": [0.1],
+                "effects": {"periodic": "x"},
+                "watch": {"trajectory": 0.1},
+            },
+            "watch.trajectory must be false, for trajectories of 3 discs are those between walls",
+        ),
+    ],
+)
+def test_what_more_discs_cannot_have_is_refused(keys, message):
+    with pytest.raises(load.ConfigError, match=re.escape(f"scenes[0].{message}")):
+        one(**keys)

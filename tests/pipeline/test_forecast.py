@@ -17,9 +17,9 @@ from twodiscs.studies.catalogue import STUDIES
 BOX = {"width": 1.5, "height": 1.0}
 
 
-def run(radius, accuracy, budget=10**9, events=EVENTS, **effects):
+def run(radius, accuracy, budget=10**9, events=EVENTS, discs=2, **effects):
     """Return the run of a job of dynamics."""
-    scene = Box(1.5, 1.0, effects).scene(radius)
+    scene = Box(1.5, 1.0, effects, discs).scene(radius)
     return CountingRun(scene, dict.fromkeys(events, accuracy), budget, 1)
 
 
@@ -34,6 +34,21 @@ def test_events_are_those_of_the_job(radius, accuracy):
 def test_a_scene_with_effects_is_forecast():
     work = run(0.2, 2e-3, 10**8, ["disc_collision"], periodic="xy")
     assert 1 / 1.5 < work.alone()["events"] / forecast.pilot(work).events < 1.5
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.26])
+@pytest.mark.parametrize("discs", [3, 4])
+def test_more_discs_are_forecast(discs, radius):
+    """The price does not need an exact value, but for the start of what is known of four discs."""
+    work = run(radius, 1e-2, 10**8, ["disc_collision", "top_wall"], discs=discs)
+    assert 1 / 1.5 < work.alone()["events"] / forecast.pilot(work).events < 1.5
+    block = {"discs": discs, "radii": [radius], "watch": {"mean_times": True, "volume": True}}
+    asked = scene(**block, accuracy="draft", monte_carlo={"samples": 1e5})
+    assert 1e-4 < cost.seconds(asked, "dynamics", radius) < 100
+    assert cost.minutes(asked, "dynamics") >= cost.MINUTES
+    assert cost.seconds(asked, "monte_carlo", radius) > 1e5 / cost.SAMPLES_PER_SECOND
+    drawn = forecast.pilot(cost.run_of(asked, "monte_carlo", radius))
+    assert drawn.events == pytest.approx(1e5, rel=0.05)
 
 
 def test_a_budget_is_not_exceeded():

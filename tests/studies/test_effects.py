@@ -27,11 +27,12 @@ from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.studies.effects import figure
 from twodiscs.studies.effects import measure as effects
+from twodiscs.studies.effects.study import SCENES
 from twodiscs.studies.effects.table import Effects, EffectsCost
 from twodiscs.theory import exact, tails
 
-FILES = sorted((Path(__file__).parents[2] / "config" / "scenes").glob("*.yaml"))
-NAMES = [path.stem for path in FILES]
+NAMES = [*SCENES]
+FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]
 PLAIN = Box(1.5, 1.0)
 ROUGH = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 SEED = 1908

@@ -41,6 +41,8 @@ CALLED = {
     "channel": ALL - {"horizontal_hop_area"},
     "field": ALL - {"pressure"},
     "rough": ALL - {"hop_histogram"},
+    "three": ALL - {"hop_histogram"},
+    "channel-of-eight": ALL - {"hop_histogram"},
 }
 
 
@@ -104,7 +106,9 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
         assert figures == CALLED.get(request.name, ALL)
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
-        assert rules - {"intervals", "trajectory"} == {
+        # More than two discs are animated, too.
+        assert ("animate" in rules) == (request.box.discs > 2)
+        assert rules - {"intervals", "trajectory", "animate"} == {
             *("exact", "monte_carlo", "dynamics", "table", "figure"),
         }
         assert tables == {*request.tables} - {"trajectory"}
@@ -123,7 +127,8 @@ def test_a_file_is_a_quick_look_at_one_scene(name):
     assert block["results"] == f"results/scenes/{name}"
     assert block["shared"] == []
     assert 6 <= len(request.radii) <= 8
-    assert (request.box.width, request.box.height) == (1.5, 1.0)
+    sides = (4.8, 0.6) if name == "channel-of-eight" else (1.5, 1.0)
+    assert (request.box.width, request.box.height) == sides
     assert set(request.dynamics["accuracy"].values()) == {1e-2}
 
 

@@ -85,9 +85,10 @@ def assignment(text):
 
 
 def add_box(parser, required=True):
-    """Add the arguments that say what a ``Box`` is: sides and effects."""
+    """Add the arguments that say what a ``Box`` is: sides, the number of discs and effects."""
     for side in ("width", "height"):
         parser.add_argument(f"--{side}", type=number, required=required, help="a length")
+    parser.add_argument("--discs", type=whole_number, default=2, help="how many (2), at most 64")
     effects = parser.add_argument_group("effects", "what the scene calls for besides")
     for effect in EFFECTS.values():
         kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
@@ -101,7 +102,7 @@ def box_of(options):
     named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
     if "periodic" in named:
         named["periodic"] = "".join(named["periodic"])
-    return Box(options.width, options.height, named)
+    return Box(options.width, options.height, named, options.discs)
 
 
 def add_scene(parser):
@@ -117,7 +118,7 @@ def scene_of(options):
 
 def box_arguments(box):
     """Return the arguments that say what a ``Box`` is, as one text for a shell."""
-    return words({"width": box.width, "height": box.height, **box.effects})
+    return words({"width": box.width, "height": box.height, **box.calls_for})
 
 
 def words(given):

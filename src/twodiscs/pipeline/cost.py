@@ -18,6 +18,10 @@ EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
 #: its draws.
 DEAREST = 16.0
 
+#: What a sample of more than two discs takes for each of them, as samples of the prism. An event of
+#: theirs takes their pairs.
+DRAW = 10.0
+
 #: The limit of a job is so many times its price, and so many minutes more to start it.
 PATIENCE, MINUTES = 4.0, 10.0
 
@@ -50,14 +54,16 @@ def seconds(scene, stage, radius):
 def _seconds(scene, stage, work):
     """Return the seconds that so much work takes."""
     speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
-    return work / speed * (SLOWER if scene.effects else 1.0)
+    return work / speed * (SLOWER if scene.box.effects else 1.0)
 
 
 def _most(scene, stage):
     """Return the work that one radius may take, by the budgets alone."""
+    discs = scene.box.discs
+    sample, event = (1.0, DEAREST) if discs == 2 else (DRAW * discs, max(DEAREST, discs**2 / 2))
     return {
-        "monte_carlo": scene.monte_carlo["samples"],
-        "dynamics": DEAREST * scene.event_budget,
+        "monte_carlo": sample * scene.monte_carlo["samples"],
+        "dynamics": event * scene.event_budget,
         "intervals": scene.histogram["event_budget"],
     }[stage]
 

@@ -172,8 +172,9 @@ def _scene(block, path, common):
     watched = block.get("watch")
     if watched is None:
         watched = dict.fromkeys(Watch.__dataclass_fields__, True)
-        watched["trajectory"] = bool(_hops(scene))
-        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene)
+        many = scene.discs > 2
+        watched["trajectory"] = bool(_hops(scene)) and not (many and scene.periodic)
+        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and not many
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     watch = Watch(
         volume=watched["volume"],
@@ -224,7 +225,7 @@ def _box(block, path):
     named |= {name: sides.pop(name) for name in EFFECTS if name in sides}
     named = {name: value for name, value in named.items() if value != ABSENT[name]}
     try:
-        return Box(sides["width"], sides["height"], named)
+        return Box(sides["width"], sides["height"], named, block["discs"])
     except InputError as error:
         raise ConfigError(f"{path}.effects: {error}") from None
 
@@ -237,7 +238,7 @@ def _radii(asked, box, path):
     _checked([smallest], box, f"{path}.smallest")
     include = _checked(asked.get("include", []), box, f"{path}.include")
     try:
-        if box.effects:
+        if not box.is_plain:
             generated = even_radii(smallest, LAST_FRACTION * box.last_radius, asked["count"])
         else:
             generated = radii(box.width, box.height, smallest, asked["count"])
@@ -266,6 +267,11 @@ def _histogram(asked, box, scene, path):
     event = asked.get("event", next(iter(hops), None))
     if asked.get("radii") == []:
         return {**asked, "radii": (), "event": event}
+    if scene.discs > 2:
+        raise ConfigError(
+            f"{path} must be false with {scene.discs} discs, for intervals between hops are those "
+            "of two; watch mean_times instead"
+        )
     if not _is_smooth(scene):
         raise ConfigError(
             f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
@@ -294,9 +300,13 @@ def _trajectory(asked, box, scene, path):
         return None
     if not _hops(scene):
         raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if scene.discs > 2 and scene.periodic:
+        raise ConfigError(
+            f"{path} must be false, for trajectories of {scene.discs} discs are those between walls"
+        )
     if asked is not True:
         radius = asked
-    elif box.effects:
+    elif not box.is_plain:
         radius = _short(BELOW_THRESHOLD * min(map(box.threshold, _hops(scene))))
     else:
         radius = _short(TRAJECTORY_FRACTION * box.shortest)
@@ -324,7 +334,8 @@ def _checked(radii, box, path):
             scene = box.scene(radius)
         except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
-        if scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
+        two = scene.discs == 2
+        if two and scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
             raise ConfigError(
                 f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
                 f"places, and a scene with effects needs more room, {MIN_FRACTION:g} of it"

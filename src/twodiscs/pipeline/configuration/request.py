@@ -68,8 +68,11 @@ class SceneRequest:
 
     @property
     def effects(self):
-        """The effects of the box, {name: value}."""
-        return self.box.effects
+        """What the box calls for beyond two equal, smooth discs between walls, {name: value}.
+
+        That is its effects, and ``discs`` where they are more than two.
+        """
+        return self.box.calls_for
 
     @property
     def event_budget(self):

@@ -29,11 +29,13 @@ def load(folder):
 
 def read(path, table):
     """Return the file of a ``Table`` as a ``DataFrame``, with what is in it in ``attrs``."""
+    rows = table.read(path)
+    table = table.of(rows[0] if rows else ())
     columns = table.columns()
     kinds = {name: KINDS[column.kind] for name, column in columns.items()}
     configuration = _configuration(path)
     # Floats with all their digits: pandas' own parser may be off in the last one.
-    frame = pd.DataFrame(table.read(path), columns=list(columns)).astype(kinds)
+    frame = pd.DataFrame(rows, columns=list(columns)).astype(kinds)
     frame.attrs = {
         "table": table.name(),
         "meaning": table.meaning(),
