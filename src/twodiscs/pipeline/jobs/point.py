@@ -10,6 +10,7 @@ job should do, it is the sum of shards: jobs of their own, with ``--part`` and `
 import inspect
 from pathlib import Path
 
+from twodiscs.comparison.measured.watching import watched
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import (
     Parser,
@@ -106,7 +107,8 @@ def main():
     elif options.shards:
         content = joined(work, options.shards)
     else:
-        content = work.alone()
+        with watched(None, options.stage) as watch:
+            content = work.alone(watch)
     write_json(options.output, content)
 
 
