@@ -82,6 +82,7 @@ def test_many_radii_have_some_pilots_near_by():
 
 
 CONFIGURATION = {
+    "shared": ["paper", "report"],
     "accuracy_cost": {"seconds": 7},
     "scenes": [
         {"name": "a", "box": BOX, "radii": [0.1, 0.2], "watch": {"mean_times": True}},

@@ -42,7 +42,7 @@ def default():
 @pytest.fixture(scope="module")
 def only_effects():
     """A configuration without a plain scene."""
-    return loaded(read(CONFIG / "config.yaml") | read(CONFIG / "scenes" / "rough.yaml"))
+    return loaded(read(CONFIG / "scenes" / "rough.yaml"))
 
 
 def test_only_long_runs_are_built_when_asked_for():

@@ -125,7 +125,7 @@ def test_a_file_is_a_quick_look_at_one_scene(name):
     assert request.name == name
     assert request.effects
     assert block["results"] == f"results/scenes/{name}"
-    assert block["shared"] == []
+    assert load(block).shared == ("report",)
     assert 6 <= len(request.radii) <= 8
     sides = (4.8, 0.6) if name == "channel-of-eight" else (1.5, 1.0)
     assert (request.box.width, request.box.height) == sides
@@ -162,3 +162,15 @@ def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
         }
         read = made if names == ["paper"] else {"errata": made["errata"]}
         assert found == ALWAYS.union({"paper", "report"} & {*names}, *read.values())
+
+
+def test_scenes_of_another_file_do_not_inherit_what_is_built_once(unbuilt, tmp_path):
+    """A box of one's own over the default configuration: its jobs and the report on it."""
+    scene = {"name": "mine", "box": {"width": 2, "height": 1}, "watch": {"volume": True}}
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({"scenes": [scene]}))
+    found = {rule for rule, w in unbuilt.jobs("--configfile", str(path)) if "scene" not in repr(w)}
+    assert found == {*ALWAYS, "report"}
+    # A file without scenes is laid over config.yaml, which asks for the manuscript.
+    path.write_text("seed: 5\n")
+    assert "paper" in {rule for rule, _ in unbuilt.jobs("--configfile", str(path))}

@@ -84,7 +84,7 @@ def _load(mapping):
             raise ConfigError(
                 f"scenes[{i}].name must differ from every other scene's, not {name!r}"
             )
-    shared = _shared(settled.get("shared"), all(scene.effects for scene in scenes))
+    shared = _shared(settled["shared"], all(scene.effects for scene in scenes))
     configuration = Configuration(
         settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
     )
@@ -351,8 +351,6 @@ def _shared(asked, all_have_effects):
     known = schema()["properties"]["shared"]["items"]["enum"]
     studies = [study.name for study in STUDIES.values() if study.shared]
     about_plain = {name for name in studies if STUDIES[name].about_plain} | {"paper"}
-    if asked is None:
-        asked = [name for name in known if not (all_have_effects and name in about_plain)]
     for name in asked:
         if all_have_effects and name in about_plain:
             raise ConfigError(
