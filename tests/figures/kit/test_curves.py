@@ -43,4 +43,17 @@ def test_limits_of_another_box_break_the_curves_too():
     own, more = curves.branches(box), curves.branches(box, others=(0.1, 0.9))
     assert len(more) == len(own) + 1
     assert more[0][-1] < 0.1 < more[1][0]
-    assert sum(map(len, own)) < sum(map(len, curves.branches(PAPER)))
+
+
+@pytest.mark.parametrize("effects", [{}, {"field": 1.5}, {"periodic": "x"}])
+def test_curves_have_no_corners(effects):
+    """As drawn on a column, in points: no line turns by more than 20 degrees."""
+    radii, exact = curves.exact(Box(1.5, 1.0, effects))
+    across = radii / np.nanmax(radii) * 200
+    for name, values in exact.items():
+        with np.errstate(divide="ignore", invalid="ignore"):
+            up = np.log(np.where(values > 0, values, np.nan)) * 30  # five units fill the height
+        steps = np.diff(across + 1j * up)
+        pairs = np.abs(steps) > 1
+        turns = np.degrees(np.abs(np.angle(steps[1:] / steps[:-1])))[pairs[1:] & pairs[:-1]]
+        assert np.nanmax(turns, initial=0) < 20, name

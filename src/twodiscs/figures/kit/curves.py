@@ -8,15 +8,12 @@ from twodiscs.comparison.tables.exact import Theory
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
 
-#: Closest approach to the limits of a regime, over its length.
-CLOSEST = 1e-9
+#: Closest approach to the limits of a regime, over its length; the latter for scenes with effects.
+CLOSEST, FARTHER = 1e-9, 1e-5
 
-#: Radii in each regime: evenly spaced, and in geometric progression towards either end.
-EVEN, GEOMETRIC = 60, 25
-
-#: The same for scenes with effects, whose theory takes longer; the even ones are those of all
-#: regimes.
-ALL_EVEN, FEWER_GEOMETRIC, FARTHER = 60, 8, 1e-5
+#: Radii in each regime: like Chebyshev nodes, which crowd quadratically towards both ends, where
+#: curves bend, and in geometric progression from the last of them on.
+NODES, GEOMETRIC = 96, 8
 
 
 def branches(box, others=()):
@@ -27,15 +24,11 @@ def branches(box, others=()):
     """
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
+    inner = (1 - np.cos(np.pi * np.arange(1, NODES) / NODES)) / 2
+    near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
     regimes = []
     for low, high in pairwise(ends):
-        even, geometric, closest = EVEN, GEOMETRIC, CLOSEST
-        if not box.is_plain:
-            even = max(6, round(ALL_EVEN * (high - low) / ends[-1]))
-            geometric, closest = FEWER_GEOMETRIC, FARTHER
-        near = np.geomspace(closest, 1 / even, geometric)
-        inner = np.linspace(0, 1, even + 1)[1:-1]
-        start = np.geomspace(1e-4, 1 / even, geometric) if low == 0 else near
+        start = np.geomspace(1e-4, inner[0], GEOMETRIC) if low == 0 else near
         fractions = np.unique(np.concatenate([start, inner, 1 - near]))
         radii = low + fractions * (high - low)
         regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
