@@ -4,7 +4,7 @@ from pathlib import PurePosixPath
 
 import pytest
 
-from twodiscs.pipeline.documents.report import KEY, key_figures, rules, short
+from twodiscs.pipeline.documents.report import KEY, KEY_OF_ALL, key_figures, rules, short
 
 DOT = """digraph snakemake_dag {
     graph[bgcolor=white, margin=0];
@@ -32,12 +32,14 @@ def test_rules_in_a_circle_are_not_drawn():
 
 
 def test_other_figures_stand_in_for_those_that_are_not_there():
-    here = ["a/figures/model.png", "a/figures/volume.png", "b/figures/mean_hop_time.png"]
-    here += ["a/figures/mean_hop_time.png", "a/figures/animation.png", "figures/tails.png"]
-    found = [path.as_posix() for path in key_figures(sorted(map(PurePosixPath, here)))]
-    assert found == ["a/figures/mean_hop_time.png", "figures/tails.png", "a/figures/volume.png"]
-    many = [f"a/figures/{name}.png" for name in (*KEY, "volume")]
-    assert [path.stem for path in key_figures(list(map(PurePosixPath, many)))] == list(KEY)
+    def key(*names, of_scene=True):
+        paths = [PurePosixPath(f"a/figures/{name}.png") for name in sorted(names)]
+        return [path.stem for path in key_figures(paths, of_scene)]
+
+    assert key("model", "volume", "mean_hop_time", "animation") == ["mean_hop_time", "volume"]
+    assert key("model", "animation") == []
+    assert key("volume", *KEY) == [*KEY]
+    assert key("stability", *KEY_OF_ALL, of_scene=False) == [*KEY_OF_ALL]
 
 
 @pytest.mark.parametrize(

@@ -61,9 +61,19 @@ async function look() {
         rows: all("#agreement tr").map(row => [...row.cells].map(cell => cell.innerText)),
         figures: all("figure").map(figure => {
             const [image, caption] = ["img", "figcaption"].map(tag => figure.querySelector(tag));
-            return {loaded: image.naturalWidth, title: image.alt, caption: caption.innerText,
+            return {loaded: image.naturalWidth, title: caption.querySelector("strong").innerText,
+                    key: figure.className == "key", alt: image.alt, caption: caption.innerText,
                     beneath: place(caption).top >= place(image).bottom, shown: place(image).width};
         }),
+        thumbnails: all(".thumbnails img").map(image => [image.naturalWidth, image.alt]),
+        sections: all("section h2").map(heading => heading.innerText),
+        paused: (() => {
+            const [button, picture] = ["button", "picture"].map(
+                tag => document.querySelector(`#animation ${tag}`));
+            const seen = [button.innerText];
+            button.click();
+            return [...seen, button.innerText, picture.querySelector("source").media];
+        })(),
         tops: ["h1", ".verdict", "#agreement", "#animation", ".key", ".files", "#rules"].map(
             selector => place(document.querySelector(selector)).top),
         opening: place(document.querySelector("#animation img")).bottom,
@@ -201,10 +211,11 @@ def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
 
 
 def test_key_figures_have_their_captions_beneath_them(front, complete):
-    first, *key = front["figures"]
-    assert first["title"] == ANIMATION.title
-    titles = {entry.title: entry for entry in (FIGURES | STUDY_FIGURES).values()}
-    assert len({figure["title"] for figure in key}) == 5
+    first, *others = front["figures"]
+    assert first["title"] == f"{ANIMATION.title}."
+    key = [figure for figure in others if figure["key"]]
+    titles = {f"{entry.title}.": entry for entry in (FIGURES | STUDY_FIGURES).values()}
+    assert len({figure["title"] for figure in key}) == 2 + 1 + 5  # of the scenes six, walls, of all
     for figure in front["figures"]:
         assert figure["loaded"] > 300
         assert figure["beneath"]
@@ -212,7 +223,25 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
         assert figure["shown"] > 300
     for figure in key:
         text = caption(titles[figure["title"]], complete.path / "results", SIX)
-        assert text.replace("_", "") in plain(figure["caption"])
+        if "Scene walls" not in figure["caption"]:
+            assert text.replace("_", "") in plain(figure["caption"])
+        # Who does not see the picture hears what it shows.
+        assert figure["alt"].startswith(figure["title"])
+        assert len(figure["alt"]) > len(figure["title"]) + 20
+
+
+def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
+    assert front["sections"] == ["Scene six", "Scene walls", "Studies, over all scenes"]
+    drawn = {p for p in (complete.path / "results").glob("*/figures/*.png")}
+    drawn |= {p for p in (complete.path / "results" / "figures").glob("*.png")}
+    assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
+    assert all(width > 100 and len(text) > 20 for width, text in front["thumbnails"])
+    linked = [link for link in front["links"] if link.endswith(".pdf")]
+    assert "six/figures/volume.pdf" in linked
+
+
+def test_the_animation_can_be_paused(front):
+    assert front["paused"] == ["Pause", "Play", "all"]
 
 
 def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):

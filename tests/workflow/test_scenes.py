@@ -83,7 +83,6 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
         parts = [WATCHED[name][1:] for name in subset]
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
-            rules -= {"animate"}
             figures -= {"pressure"}  # there is none in a field
         else:
             figures |= DRAWINGS
@@ -106,8 +105,7 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
         assert figures == CALLED.get(request.name, ALL)
         assert ("intervals" in rules) == ("hop_histogram" in tables) == ("hop_histogram" in figures)
         assert ("trajectory" in rules) == ("hopping_trajectory" in figures)
-        # More than two discs are animated, too.
-        assert ("animate" in rules) == (request.box.discs > 2)
+        assert ("animate" in rules) == ("trajectory" in rules)
         assert rules - {"intervals", "trajectory", "animate"} == {
             *("exact", "monte_carlo", "dynamics", "table", "figure"),
         }

@@ -18,7 +18,6 @@ from twodiscs.figures.kit.captions import (
     sentences,
     with_effects,
 )
-from twodiscs.model.effects import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -33,9 +32,8 @@ class Entry:
     of no scene reads where they are. ``needs`` are quantities, named as those of theory.csv or
     ``hop_histogram`` and ``trajectory``: the figure shows whichever of them are watched, and is of
     use if any is. A drawing needs nothing: it takes the sides of the box alone, and shows equal
-    discs between walls. ``of_plain`` figures are for such scenes only, and ``without`` are effects
-    in which a figure says nothing. Among the effects of a scene is ``discs`` if they are more than
-    two.
+    discs between walls. ``without`` are effects in which a figure says nothing. Among the effects
+    of a scene is ``discs`` if they are more than two.
     """
 
     title: str
@@ -46,7 +44,6 @@ class Entry:
     tables: tuple = ()
     main_tables: tuple = ()
     needs: frozenset = field(default_factory=frozenset)
-    of_plain: bool = False
     without: frozenset = field(default_factory=frozenset)
     options: dict = field(default_factory=dict)
 
@@ -55,7 +52,7 @@ class Entry:
 
         ``effects`` are those of the scene, if it has any.
         """
-        if effects and (self.of_plain or not self.needs or not self.without.isdisjoint(effects)):
+        if effects and (not self.needs or not self.without.isdisjoint(effects)):
             return False
         return not self.needs or not self.needs.isdisjoint(watched)
 
@@ -463,9 +460,15 @@ ANIMATION = Entry(
             """,
             of_many,
         ),
+        Sentence(
+            """
+            What leaves at a dotted end comes in at the opposite one. Balls are seen along z, so
+            that they may cover each other; the spin of rough discs is not shown.
+            """,
+            with_effects,
+        ),
     ),
     "figures.motion.animation",
     tables=("trajectory",),
     needs=frozenset({"trajectory"}),
-    without=frozenset(EFFECTS),
 )

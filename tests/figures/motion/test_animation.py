@@ -165,3 +165,26 @@ def test_same_bytes_whatever_the_machine_is_set_to(rows, frames, tmp_path):
     for path in outputs:
         assert path.read_bytes() == frames[0].with_name(f"a{path.suffix}").read_bytes()
         assert path.stat().st_size < 600_000
+
+
+@pytest.mark.parametrize(
+    "effects", [{"periodic": "x"}, {"periodic": "x", "mass_ratio": 3.0}, {"field": 1.5}]
+)
+def test_paths_with_effects_are_those_of_the_dynamics(effects):
+    """Between events discs fall with the field; on a periodic axis nothing jumps."""
+    box = Box(1.5, 1.0, effects)
+    rows = Trajectory.rows(box, 0.1, 1)
+    with style.context():
+        stage = animation.Stage(box, 0.1, rows)
+    times = np.linspace(stage.times[0], stage.times[-1], 20001)
+    for disc in (1, 2):
+        places = stage.places(disc, times)
+        # No disc is faster than if it had all of the energy.
+        speed = 1.0001 * (1 + 2 * effects.get("field", 0)) ** 0.5
+        assert np.abs(np.diff(places, axis=0)).max() < speed * (times[1] - times[0])
+        if "field" in effects:
+            bent = np.diff(places[:, 1], 2) / (times[1] - times[0]) ** 2
+            assert np.median(bent) == pytest.approx(-1.5, rel=1e-3)
+        inside = stage.folded(places)
+        assert (np.abs(inside).max(axis=0) < [0.7501, 0.5001]).all()
+    stage.show(stage.centre)

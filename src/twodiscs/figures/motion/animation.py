@@ -1,8 +1,9 @@
 """The discs as they move: two of them long on their sides, until they squeeze past each other.
 
 For the screen: a GIF, which every program shows, or an animated PNG, which is an image to a report.
-The discs move freely between events, so straight lines through the rows of trajectory.csv are the
-trajectory itself; frames follow each other in equal steps of time, and one of them shows the moment
+The discs move freely between events, or fall alike, so straight lines or parabolas through the rows
+of trajectory.csv are the trajectory itself. On a periodic axis what leaves the box at one end comes
+in at the other. Frames follow each other in equal steps of time, and one of them shows the moment
 of the hop.
 """
 
@@ -68,12 +69,16 @@ class Stage:
     """The panels and what moves in them, for one stretch of a trajectory."""
 
     def __init__(self, box, radius, rows):
-        width, height, radius = box.width, box.height, length("radius", radius)
+        self.scene = scene = box.scene(length("radius", radius))
+        width, height = box.width, box.height
         step = (width + height) / CROSSING
         self.of = box
         places = [f"{axis}{disc}" for disc in range(1, box.discs + 1) for axis in "xy"]
         names = ("time", *places, "event")
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
+        self.sides = {"x": width, "y": height}
+        if box.discs == 2:
+            self._unwrap()
         self.times, self.hop, self.centre = self.moments(rows, step)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
@@ -85,13 +90,41 @@ class Stage:
         spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
         x, y = width / 2, height / 2
         self.box = drawing.add_axes(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
-        drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
+        if scene.periodic:
+            self._draw_walls(x, y)
+        else:
+            drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
         text = rf"$w\times h={width:g}\times{height:g}$,  $r={radius:g}$"
         text = ",  ".join([text, *panels.effects(box)])
         drawing.label(self.box, text, (0, 1), (0, 5), **above)
         self._draw_strip()
-        self.moving = self._moving(radius, (-x, x, -y, y))
+        self.moving = self._moving((-x, x, -y, y))
+
+    def _unwrap(self):
+        """Undo the steps by which rows keep the separation along periodic axes within one period.
+
+        The separation steps by a period, and the centre of mass stays.
+        """
+        share = self.scene.masses[1] / sum(self.scene.masses)
+        for axis in self.scene.periodic:
+            if axis not in self.sides:
+                continue
+            one, other = self.rows[f"{axis}1"], self.rows[f"{axis}2"]
+            stepped = self.rows["event"] == f"wrap_{axis}"
+            steps = np.cumsum(np.where(stepped, np.sign(one - other), 0.0)) * self.sides[axis]
+            self.rows[f"{axis}1"] = one - share * steps
+            self.rows[f"{axis}2"] = other + (1 - share) * steps
+
+    def _draw_walls(self, x, y):
+        """Draw the walls that there are; the ends of a periodic axis are dotted."""
+        for axis, ends in (
+            ("x", [([s * x, s * x], [-y, y]) for s in (-1, 1)]),
+            ("y", [([-x, x], [s * y, s * y]) for s in (-1, 1)]),
+        ):
+            style = {"lw": 0.8, "ls": (0, (1, 2))} if axis in self.scene.periodic else {"lw": 1.2}
+            for end in ends:
+                self.box.plot(*end, color=BLACK, clip_on=False, **style)
 
     def moments(self, rows, step):
         """Return what ``moments`` does."""
@@ -99,19 +132,38 @@ class Stage:
 
     def places(self, disc, times):
         """Return the centres (n, 2) of a disc at ``times``."""
-        return np.column_stack(
-            [np.interp(times, self.rows["time"], self.rows[f"{q}{disc}"]) for q in "xy"]
-        )
+        rows = self.rows["time"]
+        places = np.column_stack([np.interp(times, rows, self.rows[f"{q}{disc}"]) for q in "xy"])
+        if self.scene.field:
+            after = np.clip(np.searchsorted(rows, times), 1, len(rows) - 1)
+            fall = (times - rows[after - 1]) * (rows[after] - times)
+            places[:, 1] += self.scene.field / 2 * fall
+        return places
+
+    def folded(self, places):
+        """Return ``places`` moved by whole periods into the box."""
+        places = places.copy()
+        for axis in self.scene.periodic:
+            if axis in self.sides:
+                column, side = "xy".index(axis), self.sides[axis]
+                places[:, column] -= side * np.round(places[:, column] / side)
+        return places
 
     def path(self, start, end):
-        """Return the times of all rows between two moments, and these two."""
+        """Return the times of all rows between two moments, and these two.
+
+        Where paths are curved or folded there are as many between them as make them smooth.
+        """
         times = self.rows["time"]
-        return np.array([start, *times[(times > start) & (times < end)], end])
+        path = np.array([start, *times[(times > start) & (times < end)], end])
+        if self.scene.field or self.scene.periodic:
+            path = np.union1d(path, np.arange(start, end, self.trace / 100))
+        return path
 
     def apart(self, times):
         """Return the separation of the discs along the axis of the hop."""
         axis = "xy".index(self.axis)
-        return (self.places(2, times) - self.places(1, times))[:, axis]
+        return self.folded(self.places(2, times) - self.places(1, times))[:, axis]
 
     def _draw_strip(self):
         """Draw how the separation is going to change, below the box."""
@@ -124,21 +176,23 @@ class Stage:
         self.strip.axhline(0, color=GREY, lw=0.5)
         self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
 
-    def _moving(self, radius, extent):
+    def _moving(self, extent):
         """Return {name: artist} of what changes from frame to frame, in the order of drawing."""
         x0, x1, y0, y1 = extent
         artists = {}
         for disc, (face, edge) in enumerate(drawing.DISCS, 1):
-            artists[f"disc {disc}"] = self.box.add_patch(
-                Circle((0, 0), radius, facecolor=face, edgecolor=edge, linewidth=1.2)
-            )
+            # On a periodic axis a disc at an end of the box shows at the other one, too.
+            images = [""] + [f" {axis}" for axis in self.scene.periodic if axis in self.sides]
+            for image in images:
+                circle = Circle((0, 0), self.scene.radii[disc - 1], fc=face, ec=edge, lw=1.2)
+                artists[f"disc {disc}{image}"] = self.box.add_patch(circle)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
             (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
             artists[f"number {disc}"] = drawing.label(
                 self.box, f"{disc}", (0, 0), (-9, 9), color=edge, fontsize=11
             )
-        middle = self.places(1, [self.centre])[0]
+        middle = self.folded(self.places(1, np.array([self.centre])))[0]
         line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
         (artists["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
         artists["text"] = self.box.annotate(
@@ -156,12 +210,19 @@ class Stage:
         moving = self.moving
         past = self.path(max(time - self.trace, self.times[0]), time)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
-            places = self.places(disc, past)
-            fading = [to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]]
-            moving[f"trace {disc}"].set(
-                segments=np.stack([places[:-1], places[1:]], axis=1), colors=fading
-            )
+            places = self.folded(self.places(disc, past))
+            segments = np.stack([places[:-1], places[1:]], axis=1)
+            fading = np.array([to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]])
+            if self.scene.periodic:  # what goes out at one end and comes in at the other is no path
+                near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(self.sides.values()) / 2
+                segments, fading = segments[near], fading[near]
+            moving[f"trace {disc}"].set(segments=segments, colors=fading)
             moving[f"disc {disc}"].center = places[-1]
+            for axis in filter(self.sides.get, self.scene.periodic):
+                image = places[-1].copy()
+                column = "xy".index(axis)
+                image[column] -= np.copysign(self.sides[axis], image[column])
+                moving[f"disc {disc} {axis}"].center = image
             moving[f"centre {disc}"].set_data(*places[-1:].T)
             moving[f"number {disc}"].xy = places[-1]
         since = time - self.centre if self.hop else -1
@@ -169,7 +230,7 @@ class Stage:
         moving["text"].set_visible(0 <= since < self.marked)
         past = self.path(self.times[0], time)
         moving["past"].set_data(past, self.apart(past))
-        moving["now"].set_data([time], self.apart([time]))
+        moving["now"].set_data([time], self.apart(np.array([time])))
         kinds, times = self.rows["event"], self.rows["time"]
         hops = times[(kinds == self.hop) & (times >= self.times[0]) & (times <= time)]
         moving["hops"].set_data(hops, 0 * hops)
@@ -198,12 +259,12 @@ class StageOfMany(Stage):
             places = self.places(disc, times)[:, "xy".index(axis)]
             self.strip.plot(times, places, color=colour, lw=0.8)
 
-    def _moving(self, radius, extent):
+    def _moving(self, extent):
         artists = {}
         for disc, colour in enumerate(self.colours, 1):
             face = tuple(0.45 * part + 0.55 for part in colour)
             artists[f"disc {disc}"] = self.box.add_patch(
-                Circle((0, 0), radius, facecolor=face, edgecolor=colour, linewidth=1.2)
+                Circle((0, 0), self.scene.radius, facecolor=face, edgecolor=colour, linewidth=1.2)
             )
         for disc in range(1, self.of.discs + 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))

@@ -1,6 +1,6 @@
-"""The report that is opened first: verdict, agreement, key figures; Snakemake's own is behind it.
+"""The report that is opened first: verdict, agreement, a section a scene; Snakemake's is behind it.
 
-It is one HTML file with its pictures in it; tables, other figures and Snakemake's report are links
+It is one HTML file with its pictures in it; tables, figures as PDF and Snakemake's report are links
 to the files beside it. Standard input is the graph of rules that ``snakemake --rulegraph`` prints.
 """
 
@@ -8,10 +8,13 @@ import json
 import re
 import sys
 from base64 import b64encode
+from datetime import date
 from graphlib import CycleError, TopologicalSorter
+from io import BytesIO
 from pathlib import Path, PurePosixPath
 
 from markupsafe import Markup, escape
+from PIL import Image
 
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
@@ -23,8 +26,13 @@ from twodiscs.pipeline.documents.numbers.rounding import rounded_up
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
-#: The figures that the report opens on, and how many; others stand in for those that are not there.
-KEY = ("mean_hop_time", "tails", "distributions", "effects", "accuracy_cost_by_radius")
+#: The figures that sections open on, of a scene and of all, and how many those of a scene are;
+#: others stand in for those of a scene that are not there. The rest are thumbnails.
+KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
+KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
+
+#: Pixels: the width of a thumbnail.
+THUMBNAIL = 320
 
 ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
@@ -33,6 +41,9 @@ DENSITY = 2
 
 #: What is a symbol with a subscript in a caption: r_c.
 SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
+
+#: The first sentence of a caption, which says what is drawn: its end is no decimal point.
+SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
 
 #: Pixels of the graph: from column to column, from row to row, width and height of a rule.
 ACROSS, DOWN, WIDE, HIGH = 136, 62, 126, 24
@@ -71,18 +82,68 @@ def figure(folder, path, scenes):
         text += f" Scene {scene['name']}, {scene['box']}."
     data = Path(folder, path).read_bytes()
     return {
+        "alt": f"{entry.title}. {SENTENCE.match(text)[0]}",
         "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
+        "file": path.with_suffix(".gif" if entry == ANIMATION else ".pdf"),
+        "name": path.stem,
         "title": entry.title,
-        "uri": f"data:image/png;base64,{b64encode(data).decode()}",
+        "uri": _uri(data),
         "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
     }
 
 
-def key_figures(paths):
-    """Return the paths of the key figures among ``paths``, of the first scene that has each."""
+def _uri(data):
+    return f"data:image/png;base64,{b64encode(data).decode()}"
+
+
+def thumbnail(folder, path, scenes):
+    """Return the ``figure`` at ``path`` with a small picture of it."""
+    with Image.open(Path(folder, path)) as image:
+        image = image.convert("RGB")
+        image.thumbnail((THUMBNAIL, 2 * THUMBNAIL))
+        small = BytesIO()
+        image.quantize(32).save(small, "PNG", optimize=True)
+    return figure(folder, path, scenes) | {"uri": _uri(small.getvalue())}
+
+
+def movie(folder, path, scenes):
+    """Return the animation at ``path`` with the picture that stands still longest, the hop."""
+    with Image.open(Path(folder, path)) as image:
+        shown = []
+        for k in range(image.n_frames):
+            image.seek(k)
+            shown.append(image.info["duration"])
+        image.seek(shown.index(max(shown)))
+        still = BytesIO()
+        image.convert("RGB").quantize(64).save(still, "PNG", optimize=True)
+    return figure(folder, path, scenes) | {"still": _uri(still.getvalue())}
+
+
+def key_figures(paths, of_scene=True):
+    """Return the paths of the key figures among ``paths``, those of one scene or of all scenes."""
+    here = {path.stem: path for path in paths}
+    if not of_scene:
+        return [here[name] for name in KEY_OF_ALL if name in here]
     wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
-    first = {path.stem: path for path in reversed(paths)}  # the first scene wins
-    return [first[name] for name in dict.fromkeys(wanted) if name in first][: len(KEY)]
+    return [here[name] for name in dict.fromkeys(wanted) if name in here][:SOME]
+
+
+def section(folder, paths, scenes, scene=None):
+    """Return what the report shows of the figures and tables at ``paths``, of a scene or of all."""
+    drawn = [path for path in paths if path.suffix == ".png"]
+    movies = [path for path in drawn if path.stem == "animation"]
+    key = key_figures(drawn, scene is not None)
+    others = [path for path in drawn if path not in key and path not in movies]
+    effects = (scene or {}).get("effects") or {}
+    return {
+        "animation": movie(folder, movies[0], scenes) if movies else None,
+        "box": scene and scene["box"],
+        "effects": [f"{name.replace('_', ' ')} {value}" for name, value in effects.items()],
+        "figures": [figure(folder, path, scenes) for path in key],
+        "name": scene and scene["name"],
+        "tables": [path for path in paths if path.suffix == ".csv"],
+        "thumbnails": [thumbnail(folder, path, scenes) for path in others],
+    }
 
 
 def direct(feeds):
@@ -138,21 +199,20 @@ def contents(folder, files, scenes, dot, workflow):
     rules as Snakemake says it, ``workflow`` its own report.
     """
     by_name = {scene["name"]: scene for scene in scenes}
-    order = [*by_name, "figures"]
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
-    drawn = [path for path in paths if path.suffix == ".png"]
-    drawn.sort(key=lambda path: order.index(path.parts[0]))
-    groups = {"all scenes": [p for p in paths if p.parts[0] not in by_name]}
-    groups |= {name: [p for p in paths if p.parts[0] == name] for name in by_name}
-    movies = [path for path in drawn if path.stem == "animation"]
+    of_all = [path for path in paths if path.parts[0] not in by_name]
+    sections = [
+        section(folder, [path for path in paths if path.parts[0] == name], by_name, scene)
+        for name, scene in by_name.items()
+    ]
+    sections += [section(folder, of_all, by_name)] if of_all else []
     return {
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
-        "animation": figure(folder, movies[0], by_name) if movies else None,
         "commit": commit(Path(__file__).parent),
-        "figures": [figure(folder, path, by_name) for path in key_figures(drawn)],
-        "groups": {name: some for name, some in groups.items() if some},
+        "date": date.today(),
         "paper": "paper.pdf" in files,
         "graph": rules(dot),
+        "sections": sections,
         "versions": versions(),
         "workflow": workflow,
     }
