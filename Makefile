@@ -2,9 +2,10 @@
 # make test       the same set-up, then what decides whether a change is good
 # make test-all   that, and what takes long and seldom fails: coverage of intervals, other processors, Slurm
 #
-# CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
+# CONFIG=my.yaml builds that configuration instead. CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
 
 CORES ?= 2
+CONFIG ?=
 PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
 PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
@@ -16,12 +17,7 @@ export PYTHONDONTWRITEBYTECODE =
 .PHONY: all test test-all
 
 all: .venv/ready
-	$(IN_VENV) snakemake --cores $(CORES)
-	@echo
-	@echo "Figures      results/<scene>/figures/"
-	@echo "Tables       results/<scene>/*.csv"
-	@echo "The paper    results/paper.pdf"
-	@echo "The report   results/report.html"
+	$(IN_VENV) snakemake --cores $(CORES) $(if $(CONFIG),--configfile $(CONFIG))
 
 test-all: WHICH = -m "slow or not slow"
 test-all: test

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,11 +11,16 @@ import pytest
 from fabricated import command
 
 from twodiscs import cli
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline import arguments
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
+from twodiscs.pipeline.jobs import build
+from twodiscs.studies.catalogue import STUDIES
 from twodiscs.theory.exact import exact as exact_numbers
 
 BOX = ["--width", "1.5", "--height", "1"]
@@ -167,3 +173,55 @@ def test_run_exits_with_what_main_returns(status):
     with pytest.raises(SystemExit) as caught:
         arguments.run(lambda: status)
     assert caught.value.code == status
+
+
+# Builds -----------------------------------------------------------------------------------------
+
+
+def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert not command(monkeypatch, cli, "new", "my.yaml")
+    assert "twodiscs run my.yaml" in capsys.readouterr().out
+    (scene,) = load(read("my.yaml")).scenes
+    assert scene.name == "mine"
+    # What stands in its comments may be said.
+    text = Path("my.yaml").read_text()
+    for line in re.findall(r"# (\w+: .*)", text):
+        assert re.match(r"(seed|shared|radii|effects|watch): ", line), line
+    Path("all.yaml").write_text(re.sub(r"# (\w+: )", r"\1", text))
+    assert load(read("all.yaml")).scenes[0].effects == {"radius_ratio": 0.5}
+    assert command(monkeypatch, cli, "new", "my.yaml") == 2
+    assert capsys.readouterr().err == "error: my.yaml is there already, and is not written over\n"
+    assert Path("my.yaml").read_text() == text
+
+
+def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = build.command("my.yaml", ["volume", "results/check.passed"], Path("/a/Snakefile"))
+    assert words == [
+        *("snakemake", "--snakefile", "/a/Snakefile", "--cores", "all", "--no-hooks"),
+        *("--configfile", "my.yaml", "--", "volume", "results/check.passed"),
+    ]
+    monkeypatch.chdir(build.snakefile().parent)
+    assert "--snakefile" not in build.command("my.yaml", [], build.snakefile())
+    with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
+        build.command("my.yaml", ["volme"], Path("Snakefile"))
+
+
+def test_targets_are_those_of_the_readme():
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (?:<!--.*?--> )?(`[^|]*) \|", readme, re.MULTILINE)
+    assert {*re.findall("`(\\w+)`", " ".join(rows))} <= {*build.TARGETS}
+    rules = " ".join(p.read_text() for p in (Path(__file__).parents[1] / "workflow").rglob("*smk"))
+    fixed = {*build.TARGETS} - {*FIGURES} - {*STUDIES} - {"all"}
+    assert [name for name in fixed if f"rule {name}:" not in rules] == []
+
+
+def test_a_build_ends_with_verdict_and_report(tmp_path):
+    assert build.closing(tmp_path) == ""
+    (tmp_path / "check.passed").write_text("a: 3 comparisons passed\n")
+    (tmp_path / "report.html").touch()
+    passed, verdict, report = build.closing(tmp_path).splitlines()
+    assert passed.startswith(f"{tmp_path / 'check.passed'}, of 2")
+    assert verdict == "  a: 3 comparisons passed"
+    assert report == f"The report is {tmp_path / 'report.html'}"

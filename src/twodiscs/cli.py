@@ -5,7 +5,7 @@ import json
 import sys
 
 import twodiscs
-from twodiscs.model.checks import PRESETS
+from twodiscs.model.checks import PRESETS, InputError
 from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
 
 #: What the examples of ``--help`` are about.
@@ -23,6 +23,8 @@ def _main():
     if options.command is None:
         parser.print_help()
         return
+    if options.command in ("run", "new"):
+        return options.work(options)
     options.work(scene_of(options), options)
 
 
@@ -64,6 +66,16 @@ def _parser():
     some.add_argument("--duration", type=number, help="a time (some hops of the rarer kind)")
     some.add_argument("--start", type=number, nargs="+", metavar="X", help="x1 y1 x2 y2 u1 v1 …")
     _seed(some)
+
+    text = "build a configuration with Snakemake, or some of it, on all cores"
+    some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
+    some.add_argument("targets", nargs="*", metavar="TARGET", help="such as volume or report (all)")
+    some.set_defaults(work=_run)
+    text = "write a commented configuration"
+    some = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    some.add_argument("configuration", help="a file that is not there yet")
+    some.set_defaults(work=_new)
     return parser
 
 
@@ -79,6 +91,22 @@ def _cores(command):
 def _seed(command):
     command.add_argument("--seed", type=whole_number, default=1, help="of the random numbers (1)")
     command.add_argument("--name", help="that of a scene in a configuration, for its numbers")
+
+
+def _run(options):
+    try:
+        import snakemake  # noqa: F401
+    except ImportError:
+        raise InputError("twodiscs run needs Snakemake: pip install twodiscs[workflow]") from None
+    from twodiscs.pipeline.jobs import build
+
+    return build.build(options.configuration, options.targets)
+
+
+def _new(options):
+    from twodiscs.pipeline.jobs import build
+
+    build.new(options.configuration)
 
 
 def _exact(scene, options):

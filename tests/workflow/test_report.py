@@ -215,7 +215,7 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
     assert first["title"] == f"{ANIMATION.title}."
     key = [figure for figure in others if figure["key"]]
     titles = {f"{entry.title}.": entry for entry in (FIGURES | STUDY_FIGURES).values()}
-    assert len({figure["title"] for figure in key}) == 2 + 1 + 5  # of the scenes six, walls, of all
+    assert len({figure["title"] for figure in key}) == 2 + 2 + 5  # of the scenes six, walls, of all
     for figure in front["figures"]:
         assert figure["loaded"] > 300
         assert figure["beneath"]
@@ -232,8 +232,8 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
 
 def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
     assert front["sections"] == ["Scene six", "Scene walls", "Studies, over all scenes"]
-    drawn = {p for p in (complete.path / "results").glob("*/figures/*.png")}
-    drawn |= {p for p in (complete.path / "results" / "figures").glob("*.png")}
+    drawn = {*(complete.path / "results").glob("*/figures/*.png")}
+    drawn |= {*(complete.path / "results" / "figures").glob("*.png")}
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
     assert all(width > 100 and len(text) > 20 for width, text in front["thumbnails"])
     linked = [link for link in front["links"] if link.endswith(".pdf")]

@@ -1,13 +1,9 @@
 """Configuration files, read with limits before anything else reads them.
 
-The profile calls ``check_command_line`` before Snakemake reads what ``--configfile`` names, and the
-Snakefile calls ``read`` before its own ``configfile:``.
+The Snakefile calls ``read`` before its own ``configfile:``.
 """
 
-import argparse
-import os
 import sys
-from functools import cache
 
 import yaml
 
@@ -52,20 +48,6 @@ def read(path):
     if not isinstance(mapping, dict):
         raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {shown(mapping)}")
     return mapping
-
-
-@cache
-def check(path):
-    """End the program with a sentence if ``path`` is no file to be read."""
-    or_exit(read, path)
-
-
-def check_command_line(arguments):
-    """End the program with a sentence if a file after ``--configfile`` is none to be read."""
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
-    parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
-    for path in parser.parse_known_args(arguments)[0].configfile:
-        check(os.path.abspath(path))
 
 
 def or_exit(function, *arguments):
