@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 from checkout import REPOSITORY
@@ -39,6 +40,9 @@ MODULES = {
     "snakemake-logger-plugin-rich": "snakemake_logger_plugin_rich",
 }
 
+#: What the workflow is made of, beside its Snakefile.
+CARRIED = ("workflow", "config", "profiles", "paper")
+
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
@@ -48,7 +52,7 @@ def installed(tmp_path_factory):
     offline = ["--no-deps", "--no-index"]
     source = folder / "source"
     source.mkdir()
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE", "Snakefile", "CITATION.cff", *CARRIED):
         (source / name).symlink_to(REPOSITORY / name)
     leave = shutil.ignore_patterns("__pycache__", "*.egg-info")
     shutil.copytree(REPOSITORY / "src", source / "src", ignore=leave)
@@ -77,6 +81,21 @@ def test_the_shell_works_from_a_wheel(installed):
     found = json.loads(outside(installed, "-m", "twodiscs.cli", "exact", *scene))
     assert found["regime"] == "all-hops"
     assert (installed / "twodiscs" / "py.typed").exists()
+
+
+def test_the_wheel_carries_the_workflow(installed):
+    """All that a rule may ask for, but for what is expected of the default configuration."""
+    (built,) = installed.parent.glob("*.whl")
+    _, mark, names = "\n".join(ZipFile(built).namelist()).partition("share/twodiscs/")
+    carried = {line.partition("share/twodiscs/")[2] for line in (mark + names).splitlines()}
+    left = {"expected", "queue", "slurm"}
+    asked = {
+        path.relative_to(REPOSITORY).as_posix()
+        for folder in CARRIED
+        for path in (REPOSITORY / folder).rglob("*.*")
+        if path.is_file() and left.isdisjoint(path.parts) and path.name != "schema.json"
+    }
+    assert asked | {"Snakefile", "workflow/Snakefile", "CITATION.cff"} <= carried
 
 
 @pytest.mark.slow

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
         moment_of_inertia: float | None
 
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 #: Names that are at home elsewhere; they are imported when they are first used (PEP 562).
 _HOMES = {
