@@ -92,7 +92,15 @@ def add_box(parser, required=True):
     effects = parser.add_argument_group("effects", "what the scene calls for besides")
     for effect in EFFECTS.values():
         kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
-        effects.add_argument(_option(effect.name), help=effect.meaning, **kind)
+        effects.add_argument(_option(effect.name), help=_help(effect), **kind)
+
+
+def _help(effect):
+    """Return what an effect is, with its unit, its range and what is without it."""
+    said = [effect.unit] if effect.unit else []
+    said += [f"{effect.low:g} to {effect.high:g}"] if effect.is_number else ["x, y or z"]
+    said += [f"{effect.default} without it"] if effect.default else []
+    return f"{effect.meaning} ({'; '.join(said)})"
 
 
 def box_of(options):
