@@ -46,7 +46,8 @@ def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
         assert found <= symbols
     legend = [text.get_text() for text in main.get_legend().get_texts()]
     single = FIGURES[name].options.get("single")
-    assert legend == (["exact", single] if single else list(names.values()))
+    laws = ["limiting law"] if FIGURES[name].options.get("laws") else []
+    assert legend == (["exact", single] if single else list(names.values())) + laws
     assert main.get_ylabel() == FIGURES[name].options["label"]
     assert main.get_yscale() == ("function" if FIGURES[name].options.get("rooted") else "log")
 

@@ -728,3 +728,12 @@ def test_more_discs_are_a_scene_of_their_own():
 def test_what_more_discs_cannot_have_is_refused(keys, message):
     with pytest.raises(load.ConfigError, match=re.escape(f"scenes[0].{message}")):
         one(**keys)
+
+
+def test_all_mistakes_of_keys_and_values_are_told_at_once():
+    bad = {"seeed": 1, "shard_events": 3, "scenes": [PLAIN["scenes"][0] | {"accuracy": 7}]}
+    with pytest.raises(load.ConfigError) as caught:
+        load.load(bad)
+    said = str(caught.value).split("; ")
+    assert said[0] == "the configuration has an unknown key 'seeed'"
+    assert [s.partition(" must")[0] for s in said[2:]] == ["shard_events", "scenes[0].accuracy"]

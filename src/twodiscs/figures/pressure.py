@@ -32,8 +32,11 @@ def draw(box, tables):
         for event in events
     ]
     panels.draw_series(main, lower, radii, series)
-    main.axhline(1, color=BLACK, lw=0.7, ls=(0, (1, 1.5)))
+    ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
+    main.axhline(1, **ideal)
+    more = [("ideal gas", ideal)]
     if box.is_plain:
+        more.append((panels.LAW_NAME, panels.LAW))
         end = box.largest_radius
         farthest = min(LAST, 1 - max(box.thresholds, default=0) / end)
         near = [box.scene(float(r)) for r in end * (1 - np.geomspace(0.99 * farthest, 1e-6))]
@@ -45,7 +48,7 @@ def draw(box, tables):
             ]
             panels.asymptote(main, [scene.radius for scene in near], laws)
     panels.logarithmic(main, radii, series)
-    panels.legend(main, box, series, "upper left")
+    panels.legend(main, box, series, "upper left", more=more)
     if summed:
         panels.letter(main, "a")
         _virials(panels.add_panel(figure, panels.BOTTOM, VIRIALS), box, rows, radii)

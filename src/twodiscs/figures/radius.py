@@ -4,6 +4,7 @@ One figure for all of them; the catalogue says which quantities each shows and h
 """
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from twodiscs.figures.kit import curves, panels
 from twodiscs.figures.kit.limits import hop_ends
@@ -58,7 +59,8 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
         main.set_ylim(0, 1.05 * max(largest, default=0.0) or 1.0)
     else:
         panels.logarithmic(main, radii, series)
-    panels.legend(main, box, series, loc, single=single)
+    more = [(panels.LAW_NAME, panels.LAW)] if laws and box.is_plain else []
+    panels.legend(main, box, series, loc, single=single, more=more)
     if approach:
         panels.letter(main, "a")
         _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, by_quantity)
@@ -118,5 +120,8 @@ def _approach(axes, box, by_quantity):
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$")
-    axes.legend(loc="upper right" if box.discs == 2 else "best")
+    handles, _ = axes.get_legend_handles_labels()
+    if box.is_plain:
+        handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
+    axes.legend(handles=handles, loc="upper right" if box.discs == 2 else "best")
     panels.letter(axes, "b")

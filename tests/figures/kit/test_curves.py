@@ -55,5 +55,6 @@ def test_curves_have_no_corners(effects):
             up = np.log(np.where(values > 0, values, np.nan)) * 30  # five units fill the height
         steps = np.diff(across + 1j * up)
         pairs = np.abs(steps) > 1
-        turns = np.degrees(np.abs(np.angle(steps[1:] / steps[:-1])))[pairs[1:] & pairs[:-1]]
+        pairs = pairs[1:] & pairs[:-1]
+        turns = np.degrees(np.abs(np.angle(steps[1:][pairs] / steps[:-1][pairs])))
         assert np.nanmax(turns, initial=0) < 20, name

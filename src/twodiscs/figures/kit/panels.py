@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.limits import limits
@@ -162,9 +163,14 @@ def draw_series(main, lower, radii, series, single=False):
         residuals(lower, part.rows, colour, marker)
 
 
+#: How a limiting law is drawn, and what it is called.
+LAW = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
+LAW_NAME = "limiting law"
+
+
 def asymptote(axes, x, y):
     """Draw a limiting law."""
-    axes.plot(x, y, color=BLACK, lw=0.7, ls=(0, (4, 2)), zorder=6)
+    axes.plot(x, y, **LAW)
 
 
 def _column(rows, *names):
@@ -212,13 +218,13 @@ def residuals(axes, rows, colour, marker):
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
 
 
-def legend(axes, box, series, loc, single=None):
+def legend(axes, box, series, loc, single=None, more=()):
     """Explain the symbols at a ``loc``; ``single`` names the method of the only series.
 
-    Series of which nothing is seen, of events that are impossible, are left out. ``loc`` is a
-    corner in matplotlib's words; "beside" is the top, short of the radii where regimes end, which
-    may lie as low as half of the largest; "best" is wherever the curves leave room, and the place
-    in a ``box`` with effects.
+    ``more`` are (name, style) of lines besides. Series of which nothing is seen, of events that are
+    impossible, are left out. ``loc`` is a corner in matplotlib's words; "beside" is the top, short
+    of the radii where regimes end, which may lie as low as half of the largest; "best" is wherever
+    the curves leave room, and the place in a ``box`` with effects.
     """
     loc = loc if box.is_plain else "best"
     handles, names = [], []
@@ -233,6 +239,9 @@ def legend(axes, box, series, loc, single=None):
         elif part.is_seen():
             handles += axes.plot([], [], **style)
             names.append(part.name)
+    for name, style in more:
+        handles.append(Line2D([], [], **style))
+        names.append(name)
     if loc == "beside":
         axes.legend(handles, names, loc="upper right", bbox_to_anchor=(0.49, 1))
     else:

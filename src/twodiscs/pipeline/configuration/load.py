@@ -128,8 +128,10 @@ def _validate(settled):
     errors = list(Draft202012Validator(schema()).iter_errors(settled))
     # A misspelt key often explains a missing one, so it goes first.
     errors.sort(key=lambda error: error.validator != "additionalProperties")
-    if errors:
-        raise ConfigError(_sentence(errors[0]))
+    # Of each block or value what is wrong first, for the rest may follow from it.
+    first = {tuple(error.absolute_path): error for error in reversed(errors)}
+    if first:
+        raise ConfigError("; ".join(map(_sentence, reversed(first.values()))))
 
 
 def _sentence(error):

@@ -15,7 +15,7 @@ import twodiscs
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.configuration.load import check_results, load
-from twodiscs.pipeline.configuration.reading import read
+from twodiscs.pipeline.configuration.reading import ConfigError, read
 from twodiscs.studies.catalogue import STUDIES
 
 #: Targets by name, beside the figures and the studies.
@@ -101,7 +101,11 @@ def command(path, targets, snakefile):
 
 def build(path, targets):
     """Build ``targets`` of the configuration at ``path`` with Snakemake; return its exit status."""
-    configuration = load(read(path))
+    try:
+        configuration = load(read(path))
+    except ConfigError as error:
+        # What cannot be read names its file already.
+        raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
     check_results(configuration.results, ".")
     # The Snakefile says how it ended only where there was something to do; here it is always said.
     words = command(path, targets, snakefile())
