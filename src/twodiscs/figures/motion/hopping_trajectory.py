@@ -53,7 +53,9 @@ def draw(box, tables, radius=None):
     close.set(xlim=(start, end), ylim=(-reach, reach), xlabel="time $t$")
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
-    whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0)
+    whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
+    whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
+    whole.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)  # above, beside the box
     panels.name_box(whole, box, f",  $r={radius:g}$" if radius else "")
     return figure
 

@@ -29,7 +29,10 @@ LEFT, RIGHT, BOTTOM, TOP, GAP = 0.5, 0.1, 0.36, 0.36, 0.46
 LOWER, BREAK = 1.25, 0.05
 SPLIT, TIMES = 3e-5, (1.5e-7, 2e-1)
 
-LEGEND = {"fontsize": 6.5, "handlelength": 1.8, "borderaxespad": 0.3}
+LEGEND = {
+    "fontsize": 6.5, "handlelength": 1.8, "borderaxespad": 0.3,
+    "title": "method: power of the time", "title_fontsize": 6.5, "alignment": "left",
+}  # fmt: skip
 
 #: No error below this one can be told from rounding.
 ROUNDING = 2.0**-53

@@ -78,7 +78,9 @@ def _rates(axes, rows):
             axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
         zero = mean * tails.density_at_zero(box.scene(radius), event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
-    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), label="exponential")
+    for ls, name in (("-", "one rate fits"), ((0, (1, 1)), "one rate fitted, refused")):
+        axes.plot([], [], color=GREY, lw=1.4, ls=ls, label=name)
     late = np.linspace(6, LONGEST, 40)
     axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
     axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")
