@@ -1,8 +1,8 @@
 """Effects as a target: the mean times of the scenes of config/scenes, and what is made of them."""
 
-from checkout import REPOSITORY
+from twodiscs.studies.effects.study import SCENES
 
-FILES = sorted(path.stem for path in (REPOSITORY / "config" / "scenes").glob("*.yaml"))
+FILES = sorted(SCENES)
 FIGURE = ("shared_figure", ("figure=effects",))
 MADE = [("effects_cost", ()), ("effects_table", ()), FIGURE]
 
