@@ -40,6 +40,9 @@ rule mine:
         "cp {{input}} {{output}}"
 """
 
+#: Distances of the study of passages, as it has them and as they are built: rare hops take long.
+DISTANCES = "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), range(3, 4)"
+
 #: For a module whose files are in a folder of their own.
 BELOW = 'config:\n        config["discs"]\n    prefix:\n        "below"'
 
@@ -170,7 +173,9 @@ def fresh(path):
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
-    return Checkout(path)
+    checkout = Checkout(path)
+    checkout.replace("src/twodiscs/studies/passages/measure.py", *DISTANCES)
+    return checkout
 
 
 def use(place, configuration, prefix="", more='config:\n        config["discs"]'):
