@@ -46,6 +46,10 @@ CALLS = {
 }
 
 
+#: These take the same way as others.
+LIKE_OTHERS = ("simulate on two cores", "intervals of rare hops", "scan")
+
+
 @contextmanager
 def stopped(code):
     """Give the process that ran ``code`` until it was sent the signal of Ctrl-C, and has ended."""
@@ -68,7 +72,10 @@ def stopped(code):
         yield child
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(c, marks=pytest.mark.slow if c in LIKE_OTHERS else ()) for c in CALLS],
+)
 def test_a_call_stops_at_once(name):
     with stopped(CHILD.format(call=CALLS[name])) as child:
         assert (child.stdout.read(), child.stderr.read()) == ("stopped\n", "")

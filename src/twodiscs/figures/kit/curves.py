@@ -12,8 +12,9 @@ from twodiscs.model.events import EVENTS
 CLOSEST, FARTHER = 1e-9, 1e-5
 
 #: Radii in each regime: like Chebyshev nodes, which crowd quadratically towards both ends, where
-#: curves bend, and in geometric progression from the last of them on.
-NODES, GEOMETRIC = 96, 8
+#: curves bend, and in geometric progression from the last of them on. With effects the theory takes
+#: longer, and has fewer.
+NODES, FEWER, GEOMETRIC = 96, 56, 8
 
 
 def branches(box, others=()):
@@ -24,7 +25,8 @@ def branches(box, others=()):
     """
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
-    inner = (1 - np.cos(np.pi * np.arange(1, NODES) / NODES)) / 2
+    nodes = NODES if box.is_plain else FEWER
+    inner = (1 - np.cos(np.pi * np.arange(1, nodes) / nodes)) / 2
     near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
     regimes = []
     for low, high in pairwise(ends):
