@@ -104,7 +104,7 @@ def scene_rows(name, *values):
 def tables():
     """Return tables whose numbers are easily seen."""
     verdict = {"passed": True, "independent": True, "bound": 4.75}
-    found = {name: [] for name in (*table.OF_SCENES, *table.OF_STUDIES)}
+    found = {name: [] for name in (*table.OF_SCENES, *table.OF_STUDIES, "long_run")}
     found["grid"] = scene_rows("grid", {"radius": 0.1}, {"radius": 0.2})
     found["check"] = scene_rows(
         "check",
@@ -737,7 +737,8 @@ def test_more_discs_have_exact_times_where_there_are_any():
 
 
 def write(folder, tables):
-    for name, found in tables.items():
+    for name in (*table.OF_SCENES, *table.OF_STUDIES):
+        found = tables[name]
         own = folder / "main" if name in table.OF_SCENES else folder
         own.mkdir(exist_ok=True)
         columns = TABLES[name].columns()
@@ -753,6 +754,29 @@ def test_tables_are_read_from_the_folders_of_scenes_and_from_that_of_all(tables,
     (tmp_path / "errata.csv").write_text("nothing\n")
     with pytest.raises(InputError, match=r"errata\.csv must be a table errata"):
         table.read(tmp_path, [scene])
+
+
+LONG_RUN = [
+    {"event": event, "radius": 0.224, "exact": exact, "relative_stderr": error, "z": z}
+    | {"count": count}
+    for event, exact, error, z, count in (
+        ("horizontal_hop", 12273.9, 1.23e-5, 0.4, 10**7),
+        ("disc_collision", 1.21, 2.46e-7, -1.55, 2 * 10**11),
+        ("any_wall", 0.318, 1.04e-7, 0.2, 8 * 10**11),
+    )
+]
+
+
+def test_the_long_run_is_quoted_by_its_events_errors_and_largest_deviation():
+    assert texts(agreement.long_run(rows("mean_times", *LONG_RUN))) == {
+        "long_run_events": "$10^(12)$",
+        "long_run_radius": "0.224",
+        "long_run_error": "$10^(-7)$",
+        "long_run_rare": "$1.2 times 10^(4)$",
+        "long_run_rare_error": "$2 times 10^(-5)$",
+        "long_run_largest": "$1.6$",
+    }
+    assert agreement.long_run([]) == {}
 
 
 def test_numbers_become_rows_of_a_table(tables, tmp_path):
@@ -792,6 +816,7 @@ def test_what_the_manuscript_prints_is_what_is_computed(tables):
         "stability": stability_rows(),
         "passages": passage_rows(),
         "more_discs": gas_rows(),
+        "long_run": rows("mean_times", *LONG_RUN),
     }
     found = table.numbers(tables, [BOX])
     constants = {"dearer", "intervals", "seed"}

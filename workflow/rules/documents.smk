@@ -8,6 +8,7 @@ if MAIN:
         """Typeset the manuscript; every number in it is read from these results."""
         input:
             template=source("paper/paper.typ"),
+            long_run=source("paper/long_run/mean_times.csv"),
             texts=[
                 source(name)
                 for name in (
@@ -52,7 +53,7 @@ if MAIN:
         shell:
             "python -m twodiscs.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
             " {input.studied} --template {input.template} --boxes {params.boxes} --seed {params.seed}"
-            " --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
+            " --long-run {input.long_run} --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
             " > {log} 2>&1"
 
 

@@ -30,7 +30,7 @@ def captions(results, scene):
 def printed(contents):
     """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
     scenes = contents["scenes"]
-    values = numbers(read(contents["results"], scenes), scenes)
+    values = numbers(read(contents["results"], scenes, contents["long_run"]), scenes)
     constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
     return values | {name: whole(value) for name, value in constants.items()}
 
@@ -113,12 +113,14 @@ def main():
     )
     parser.add_argument("--seed", required=True, type=int, help="the seed of the configuration")
     parser.add_argument("--configuration", required=True, help="its hash")
+    parser.add_argument("--long-run", metavar="CSV", help="mean_times.csv of the long run")
     parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of numbers")
     parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
     options = parser.parse_args()
     boxes = {scene: sides(box) for scene, box in named(options.boxes, "boxes").items()}
     contents = contents_of(options.files, boxes, options.output)
     contents |= {"configuration": options.configuration, "seed": options.seed}
+    contents |= {"long_run": options.long_run}
     values = printed(contents)
     PaperNumbers.write(options.numbers, table_rows(values))
     typeset(options.template, options.output, contents, values)

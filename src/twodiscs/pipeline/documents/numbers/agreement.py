@@ -5,6 +5,7 @@ import statistics
 
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
+    at_least,
     at_most,
     in_words,
     sides,
@@ -130,6 +131,22 @@ def effort(tables):
         "target": span(column("mean_times", "target")),
         "strips": in_words(len(strips)) if strips else None,
         "strips_longest": significant(max(strips), 2) if strips else None,
+    }
+
+
+def long_run(rows):
+    """Return {name: ``Number``} on the long run; ``rows`` are those of its mean_times.csv."""
+    if not rows:
+        return {}
+    count = {row["event"]: row["count"] for row in rows}
+    rare = max(rows, key=lambda row: row["exact"])
+    return {
+        "long_run_events": significant(float(count["any_wall"] + count["disc_collision"]), 2),
+        "long_run_radius": Number(rows[0]["radius"], repr(rows[0]["radius"])),
+        "long_run_error": at_least([row["relative_stderr"] for row in rows], 1),
+        "long_run_rare": significant(rare["exact"], 2),
+        "long_run_rare_error": at_most([rare["relative_stderr"]], 1),
+        "long_run_largest": at_most(scores(rows)),
     }
 
 

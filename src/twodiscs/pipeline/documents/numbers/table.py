@@ -41,11 +41,12 @@ class PaperNumbers(Table):
     """what is printed, as markup of Typst; empty for an empty cell"""
 
 
-def read(results, scenes):
+def read(results, scenes, long_run=None):
     """Return {name: rows} of the tables in the folder ``results`` that numbers are taken from.
 
-    ``scenes`` have a "name" each and the names of their "tables"; rows of a scene get a "scene".
-    Raises ``OSError`` for a table that is missing, ``InputError`` for a file that is none.
+    ``long_run`` is the mean_times.csv of the long run, which no build makes. ``scenes`` have a
+    "name" each and the names of their "tables"; rows of a scene get a "scene". Raises ``OSError``
+    for a table that is missing, ``InputError`` for a file that is none.
     """
     tables = {name: [] for name in (*OF_SCENES, *OF_STUDIES)}
     for scene in scenes:
@@ -55,6 +56,7 @@ def read(results, scenes):
                 tables[name].append({"scene": scene["name"], **row})
     for name in OF_STUDIES:
         tables[name] = STUDY_TABLES[name].read(Path(results, f"{name}.csv"))
+    tables["long_run"] = SCENE_TABLES["mean_times"].read(long_run) if long_run else []
     return tables
 
 
@@ -70,6 +72,7 @@ def numbers(tables, scenes):
         **agreement.correlations(tables["check"]),
         **agreement.mean_scores(tables["check"], scenes),
         **agreement.effort(tables),
+        **agreement.long_run(tables["long_run"]),
         **distributions.chains(tables["hop_histogram"]),
         **distributions.densities(tables["distributions"], tables["hop_histogram"]),
         **distributions.tails(tables["tails"]),
