@@ -9,8 +9,14 @@ import numpy as np
 import pytest
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import HOPS
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.pipeline.configuration.load import load
+from twodiscs.pipeline.configuration.reading import read
+from twodiscs.pipeline.digests import read_json
 from twodiscs.pipeline.documents.numbers import (
     agreement,
     costs,
@@ -777,6 +783,26 @@ def test_the_long_run_is_quoted_by_its_events_errors_and_largest_deviation():
         "long_run_largest": "$1.6$",
     }
     assert agreement.long_run([]) == {}
+
+
+def test_the_long_run_is_what_its_shards_counted_and_agrees():
+    folder = Path(__file__).resolve().parents[2] / "paper" / "long_run"
+    scene = load(read(folder / "config.yaml")).scenes[0]
+    point = read_json(folder / "dynamics.json")
+    assert point["radius"] == scene.radii[0]
+    theory = list(Theory.rows(scene.box, scene.radii))
+    made = MeanTimes.rows(scene.box, theory, {"dynamics": [point]})
+    kept = MeanTimes.read(folder / "mean_times.csv")
+    assert [row["event"] for row in made] == [row["event"] for row in kept]
+    for ours, theirs in zip(made, kept, strict=True):
+        assert ours["count"] == theirs["count"]
+        assert ours["estimate"] == pytest.approx(theirs["estimate"], rel=1e-12)
+        assert abs(ours["z"]) < 5  # ten scores: a false alarm in 2e5 seeds
+    shards = [read_json(path) for path in folder.glob("shards/all-*.json")]
+    used = [shard for shard in shards if shard["stop"] * REPLICAS <= point["replicas"]]
+    assert sum(shard["stop"] - shard["first"] for shard in used) * REPLICAS == point["replicas"]
+    counted = [sum(counts) for counts in zip(*(shard["sums"][0] for shard in used), strict=True)]
+    assert counted == [point["counts"][event] for event in EVENTS]
 
 
 def test_numbers_become_rows_of_a_table(tables, tmp_path):
