@@ -40,15 +40,13 @@ def run_of(scene, stage, radius):
 
 
 def _work(run):
-    """Return the work of a run by its parts."""
-    return {
-        name: part.planned * part.block_events * part.cost_ratio for name, part in run.parts.items()
-    }
+    """Return the work of all planned blocks of a run."""
+    return sum(part.planned * part.block_work for part in run.parts.values())
 
 
 def seconds(scene, stage, radius):
     """Return the processor time of a point, its shards included, roughly, without any start."""
-    return _seconds(scene, stage, sum(_work(run_of(scene, stage, radius)).values()))
+    return _seconds(scene, stage, _work(run_of(scene, stage, radius)))
 
 
 def _seconds(scene, stage, work):
@@ -121,7 +119,7 @@ def shards(scene, stage, radius):
     from twodiscs.sampling.blocks.rounds import pieces
 
     run = run_of(scene, stage, radius)
-    if sum(_work(run).values()) <= scene.shard_events:
+    if _work(run) <= scene.shard_events:
         return []
     return [
         (name, *piece)
@@ -132,5 +130,4 @@ def shards(scene, stage, radius):
 
 def _per_shard(scene, part):
     """Return how many blocks of a part a shard has: a power of two, so that shards stay."""
-    most = scene.shard_events / (part.block_events * part.cost_ratio)
-    return 1 << max(0, math.floor(math.log2(most)))
+    return 1 << max(0, math.floor(math.log2(scene.shard_events / part.block_work)))
