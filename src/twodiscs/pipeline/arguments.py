@@ -145,22 +145,6 @@ def _option(name):
     return f"--{name.replace('_', '-')}"
 
 
-def print_progress():
-    """Return what prints what is done and the time that is left; None where nobody watches.
-
-    It takes a text and the work that is left, over the work that is done. Logs are kept clean.
-    """
-    if not sys.stderr.isatty():
-        return None
-    start = time.process_time()
-
-    def report(done, left):
-        seconds = left * (time.process_time() - start)
-        print(f"{done}, about {seconds:.0f} s left", file=sys.stderr)
-
-    return report
-
-
 def fail(message):
     """Print ``message`` on one line of standard error and exit with status 2."""
     print(f"error: {' '.join(str(message).split())}", file=sys.stderr)

@@ -8,9 +8,11 @@ import pytest
 from fabricated import BOX, RADII, Laws, command, scenes
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import box_arguments
 from twodiscs.pipeline.digests import write_json
 from twodiscs.pipeline.jobs import figure, study, table
+from twodiscs.studies.catalogue import STUDY_TABLES
 
 WORDS = box_arguments(BOX).split()
 
@@ -82,6 +84,17 @@ def test_a_point_of_another_stage_is_refused(run, points, capsys, stage):
     words = "--theory", "theory.csv", f"--{stage}", path, "--output", "a.csv"
     assert run(table, "check", *WORDS, *words) == 2
     assert f"{path} is not a point of {stage}" in capsys.readouterr().err
+
+
+def test_a_mistake_of_a_study_keeps_its_place(run, monkeypatch):
+    def rows(cls, box, seed):
+        raise InputError("radius 3 does not fit")
+
+    monkeypatch.setattr(STUDY_TABLES["errata"], "rows", classmethod(rows))
+    given = json.dumps({"box": BOX.parameters(), "seed": 1})
+    with pytest.raises(RuntimeError, match="errata") as caught:
+        run(study, "errata", "--parameters", given, "--output", "errata.csv")
+    assert isinstance(caught.value.__cause__, InputError)
 
 
 def test_a_study_reads_tables_and_its_parameters(run, capsys):

@@ -11,15 +11,15 @@ from pathlib import Path
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.arguments import Parser, named, parameters, print_progress, run
+from twodiscs.pipeline.arguments import Parser, fail, named, parameters, run
 from twodiscs.studies.catalogue import STUDY_TABLES, TABLES
 
 
 class Tables(dict):
-    """The tables of a job, {name: rows}; one that was not given is an ``InputError``."""
+    """The tables of a job, {name: rows}; one that was not given ends it with a sentence."""
 
     def __missing__(self, name):
-        raise InputError(f"the table {name} must be given, as --tables {name}=CSV")
+        fail(f"the table {name} must be given, as --tables {name}=CSV")
 
 
 def read_tables(texts):
@@ -42,14 +42,19 @@ def main():
     table, given = STUDY_TABLES[options.table], parameters(options.parameters)
     if "box" in given:
         given["box"] = Box(**given["box"])
-    more = {"tables": read_tables(options.tables), "report": print_progress()}
-    signature = inspect.signature(table.rows)
-    given |= {name: value for name, value in more.items() if name in signature.parameters}
+    signature, tables = inspect.signature(table.rows), read_tables(options.tables)
+    if "tables" in signature.parameters:
+        given["tables"] = tables
     try:
         bound = signature.bind(**given)
     except TypeError as error:
         raise InputError(f"parameters of {options.table}: {error}") from None
-    table.write(options.output, table.rows(*bound.args, **bound.kwargs))
+    try:
+        rows = table.rows(*bound.args, **bound.kwargs)
+    except InputError as error:
+        # The configuration was accepted, so the mistake is the study's: the traceback says where.
+        raise RuntimeError(f"the study of {options.table} asks for what is not allowed") from error
+    table.write(options.output, rows)
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from mpmath import mp
+from tqdm import tqdm
 
 from twodiscs.comparison.estimates import LinearFit
 from twodiscs.comparison.tables.exact import Theory
@@ -352,7 +353,7 @@ def exact_values(scene, part):
     return {f"{event}_time": value for event, value in exact.mean_times(scene).items()}
 
 
-def measure(all_series, repetitions, report):
+def measure(all_series, repetitions):
     """Run every series ``repetitions`` times in turn and return {(series, work): results}.
 
     A result is (relative errors by quantity, units of work, seconds of one call).
@@ -360,7 +361,8 @@ def measure(all_series, repetitions, report):
     for curve in all_series:
         curve.run(curve.works[0], 0)
     results = {(i, work): [] for i, curve in enumerate(all_series) for work in curve.works}
-    for repetition in range(repetitions):
+    # In a terminal alone: logs stay clean.
+    for repetition in tqdm(range(repetitions), "repetitions", leave=False, disable=None):
         for i, curve in enumerate(all_series):
             true = exact_values(curve.scene, curve.part)
             # Nothing of the series before is left in the processor's memory.
@@ -374,9 +376,6 @@ def measure(all_series, repetitions, report):
                 with mp.workdps(DIGITS):
                     errors = {q: float(value / true[q] - 1) for q, value in estimates.items()}
                 results[i, work].append((errors, units, seconds))
-        if report is not None:
-            done = repetition + 1
-            report(f"{done} of {repetitions} repetitions", (repetitions - done) / done)
     return results
 
 
@@ -602,15 +601,14 @@ def where_single_fails(scale):
         )  # fmt: skip
 
 
-def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS, report=None):
+def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time.
 
     Of the least work every method does its share, so a few seconds are spent whatever is asked.
-    ``repetitions`` ≥ 2. ``report``, if given, is called with a text on what is done and the work
-    left, over that done. Raises ``InputError`` for a number out of range.
+    ``repetitions`` ≥ 2. Raises ``InputError`` for a number out of range.
     """
     scale = length("seconds", seconds) / USUAL_SECONDS
     repetitions = whole("repetitions", repetitions, 2)
     all_series = series(scale)
-    work_rows = work_precision(all_series, measure(all_series, repetitions, report))
+    work_rows = work_precision(all_series, measure(all_series, repetitions))
     return [*work_rows, *by_radius(scale), *where_single_fails(scale)]

@@ -60,8 +60,8 @@ class AccuracyCost(Table):
     """its standard error"""
 
     @classmethod
-    def rows(cls, seconds, report=None):
+    def rows(cls, seconds):
         """Return the rows for some ``seconds`` of processor time (see ``measure.rows``)."""
         from twodiscs.studies.accuracy_cost import measure
 
-        return [cls.empty(**row) for row in measure.rows(seconds, report=report)]
+        return [cls.empty(**row) for row in measure.rows(seconds)]
