@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import re
 import subprocess
 import sys
@@ -225,3 +226,23 @@ def test_a_build_ends_with_verdict_and_report(tmp_path):
     assert passed.startswith(f"{tmp_path / 'check.passed'}, of 2")
     assert verdict == "  a: 3 comparisons passed"
     assert report == f"The report is {tmp_path / 'report.html'}"
+
+
+@pytest.mark.parametrize(
+    ("line", "proposed"),
+    [
+        ("twodiscs si", ["simulate"]),
+        ("twodiscs simulate --ev", ["--events"]),
+        ("twodiscs simulate --events vert", ["vertical_hop"]),
+        ("twodiscs run my.yaml volu", ["volume"]),
+    ],
+)
+def test_a_shell_completes(tmp_path, line, proposed):
+    path, program = tmp_path / "proposed", "from twodiscs.cli import main; main()"
+    shell = {
+        "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_STDOUT_FILENAME": str(path),
+        "_ARGCOMPLETE_SUPPRESS_SPACE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)),
+        "COMP_TYPE": "9",
+    }  # fmt: skip
+    subprocess.run([sys.executable, "-c", program], env={**os.environ, **shell}, timeout=60)
+    assert path.read_text().splitlines() == proposed

@@ -4,8 +4,11 @@ import csv
 import json
 import sys
 
+import argcomplete
+
 import twodiscs
 from twodiscs.model.checks import PRESETS, InputError
+from twodiscs.model.events import EVENTS
 from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
 
 #: What the examples of ``--help`` are about.
@@ -19,6 +22,7 @@ def main():
 
 def _main():
     parser = _parser()
+    argcomplete.autocomplete(parser, always_complete_options="long")
     options = parser.parse_args()
     if options.command is None:
         parser.print_help()
@@ -53,12 +57,16 @@ def _parser():
     some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
     some.add_argument("--error", type=error, default=1e-3, help="relative, or a preset (1e-3)")
     some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
-    some.add_argument("--events", nargs="+", metavar="EVENT", help="what to watch (all)")
+    events = some.add_argument("--events", nargs="+", metavar="EVENT", help="what to watch (all)")
+    events.completer = argcomplete.ChoicesCompleter(EVENTS)
     _seed(some)
     _cores(some)
     some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
     some.add_argument("--samples", type=whole_number, default=10**7, help="at least (1e7)")
-    some.add_argument("--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area")
+    wanted = some.add_argument(
+        "--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area"
+    )
+    wanted.completer = argcomplete.ChoicesCompleter(("volume", *(f"{e}_area" for e in EVENTS)))
     some.add_argument("--shell", type=number, default=0.02, help="thickness, a fraction (0.02)")
     _seed(some)
     _cores(some)
@@ -70,7 +78,10 @@ def _parser():
     text = "build a configuration with Snakemake, or some of it, on all cores"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
-    some.add_argument("targets", nargs="*", metavar="TARGET", help="such as volume or report (all)")
+    targets = some.add_argument(
+        "targets", nargs="*", metavar="TARGET", help="such as volume or report (all)"
+    )
+    targets.completer = _targets
     some.set_defaults(work=_run)
     text = "write a commented configuration"
     some = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
@@ -91,6 +102,13 @@ def _cores(command):
 def _seed(command):
     command.add_argument("--seed", type=whole_number, default=1, help="of the random numbers (1)")
     command.add_argument("--name", help="that of a scene in a configuration, for its numbers")
+
+
+def _targets(**_):
+    """Return what a shell proposes as a target."""
+    from twodiscs.pipeline.jobs.build import TARGETS
+
+    return TARGETS
 
 
 def _run(options):
