@@ -26,7 +26,7 @@ from twodiscs.dynamics.law import (
     crosses,
     wall_quotient,
 )
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import by_kind
 from twodiscs.model.many import CLASSES
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
@@ -46,7 +46,15 @@ N = len(CLASSES)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
 
 #: The classes whose counts are those of an event, in the order of ``EVENTS``.
-PARTS = {name: ("right_wall", "top_wall") if name == "any_wall" else (name,) for name in EVENTS}
+PARTS = by_kind(
+    "dynamics/many.py",
+    {
+        "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
+        "collision": lambda event: ("disc_collision",),
+        "wall": lambda event: ("right_wall" if event.axis == "x" else "top_wall",),
+        "walls": lambda event: ("right_wall", "top_wall"),
+    },
+)
 
 
 class ManyLaw(NamedTuple):

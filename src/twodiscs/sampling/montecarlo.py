@@ -116,7 +116,7 @@ def sets_of(squares, square, centre, ends):
     return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
 
 
-def _ends(epsilon, collision, wall):
+def shell_ends(epsilon, collision, wall):
     """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELLS``.
 
     ``collision`` gives the square of the distance where a shell of disc collisions of this
@@ -263,7 +263,7 @@ def in_prism(scene, quantities, shell, seed):
         first = math.ceil((1.0 - thick / ranges[axis]) * 2.0**32 - 0.5)
         return first if side > 0 else 2**32 - 1 - first
 
-    ends = _ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
+    ends = shell_ends(epsilon, lambda thick: (sigma + thick) * (sigma + thick), first_grain)
     shells, prism = True if any(epsilon) else None, (scene.range_x * scene.range_y) ** 2
 
     def count(first, stop):
@@ -276,11 +276,13 @@ def in_prism(scene, quantities, shell, seed):
     )
 
 
-def _shells(scene, quantities, shell):
-    """Return (the set of "volume" and events to sample, ε for each event with a shell or 0).
+def _with_shell(scene):
+    """Return the events that are sampled by a shell of their own."""
+    return EVENTS if scene.has_effects else SHELLS
 
-    These are ``SHELLS``, or all ``EVENTS`` in a scene with effects.
-    """
+
+def _shells(scene, quantities, shell):
+    """Return (the set of "volume" and events to sample, ε for each event with a shell or 0)."""
     allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
     for quantity in quantities:
         one_of("quantity", quantity, allowed)
@@ -290,8 +292,10 @@ def _shells(scene, quantities, shell):
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and not scene.has_effects:
         wanted |= {"right_wall", "top_wall"}
-    shells = EVENTS if scene.has_effects else SHELLS
-    return wanted, [shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in shells]
+    thickness = [
+        shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in _with_shell(scene)
+    ]
+    return wanted, thickness
 
 
 def _point(scene, method, wanted, epsilon, samples, measure, counts):
@@ -301,7 +305,7 @@ def _point(scene, method, wanted, epsilon, samples, measure, counts):
         sampled["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
     # A sample looks at both sides of a hop, and at one disc and one of its walls.
     multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
-    for event, thickness, hits in zip(EVENTS, epsilon, counts[1:], strict=False):
+    for event, thickness, hits in zip(_with_shell(scene), epsilon, counts[1:], strict=False):
         if event in wanted:
             sampled[f"{event}_area"] = {
                 "hits": int(hits),
@@ -364,7 +368,7 @@ def conditioned(scene, quantities, shell, seed):
     wanted, epsilon = _shells(scene, quantities, shell)
     seed, draw, sigma = whole("seed", seed, 0), draw_constants(scene), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
-    ends = _ends(
+    ends = shell_ends(
         epsilon,
         lambda thick: thick * (2.0 * sigma + thick),
         lambda axis, side, thick: -thick if side > 0 else thick - ranges[axis],

@@ -19,6 +19,7 @@ rates of one disc at one wall and of collisions of any pair, √8 is √2 N. No 
 import math
 
 from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.events import DECLARED, WALLS
 from twodiscs.model.scene import a_scene
 from twodiscs.theory.weighted import constant
 
@@ -29,7 +30,7 @@ def momentum_per_hit(scene, event):
     For disc 1 at a wall and for the collisions of the discs. Raises ``InputError`` for anything
     that is not a ``Scene``, in a field, where it depends on the height, and for other events.
     """
-    one_of("event", event, ("right_wall", "top_wall", "disc_collision"))
+    one_of("event", event, (*WALLS, "disc_collision"))
     if a_scene(scene).field:
         raise InputError(f"field must be 0, not {scene.field!r}: momenta depend on the height")
     components = scene.velocity_components
@@ -44,12 +45,12 @@ def pressure_factor(scene, event):
 
     That is side × (momentum per hit)/kT, with kT = 1/D: the force of an ideal gas of one particle
     on the wall at a distance of ``side`` from the opposite one is kT/side. ``event`` is
-    right_wall or top_wall. Raises ``InputError`` for another one, for anything that is not a
+    one of ``WALLS``. Raises ``InputError`` for another one, for anything that is not a
     ``Scene``, and in a field.
     """
-    one_of("event", event, ("right_wall", "top_wall"))
+    one_of("event", event, WALLS)
     momentum = momentum_per_hit(scene, event)
-    side = scene.width if event == "right_wall" else scene.height
+    side = scene.side(DECLARED[event].axis)
     return side * scene.velocity_components * momentum
 
 

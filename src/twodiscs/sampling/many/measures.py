@@ -15,11 +15,13 @@ sums are unbiased integers, the same on every machine.
 """
 
 import math
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.model.checks import InputError, one_of, proportion, whole
+from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
@@ -35,11 +37,19 @@ UNITS = 2.0**20
 QUANTITIES = ("volume", "per_width", "per_height", "per_contact", "hops_x", "hops_y")
 
 
-#: What they are called in a point.
-NAMES = (
-    "volume", "right_wall_area", "top_wall_area", "disc_collision_area", "horizontal_hop_area",
-    "vertical_hop_area",
-)  # fmt: skip
+#: Which of the sums is that of an event; both walls of an axis have one.
+SUM_OF = by_kind(
+    "sampling/many/measures.py",
+    {
+        "hop": lambda event: QUANTITIES.index(f"hops_{event.axis}"),
+        "collision": lambda event: QUANTITIES.index("per_contact"),
+        "wall": lambda event: QUANTITIES.index("per_width" if event.axis == "x" else "per_height"),
+    },
+    SHELLS,
+)
+
+#: The same of the quantities of a point, in the order of the sums.
+SUMS = {"volume": 0} | {f"{event}_area": SUM_OF[event] for event in sorted(SUM_OF, key=SUM_OF.get)}
 
 #: How many times the time of a sample of the prism of two discs a disc takes, roughly.
 COST_RATIO = 10.0
@@ -274,7 +284,7 @@ def inserted(scene, quantities, shell, seed):
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
         wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}
-    rows = [k for k, name in enumerate(NAMES) if name in wanted]
+    sampled = {name: k for name, k in SUMS.items() if name in wanted}
     gas = scene.gas
 
     def count(first, stop):
@@ -289,13 +299,14 @@ def inserted(scene, quantities, shell, seed):
             "samples": samples,
             "unit": int(UNITS),
             "quantities": {
-                NAMES[k]: {
+                name: {
                     "sum": int(sums[k]), "squares": int(products[k, k]), "measure": measures[k],
                 }
-                for k in rows
+                for name, k in sampled.items()
             },
             "products": {
-                f"{NAMES[j]}*{NAMES[k]}": int(products[j, k]) for j in rows for k in rows if j < k
+                f"{a}*{b}": int(products[j, k])
+                for (a, j), (b, k) in combinations(sampled.items(), 2)
             },
         }  # fmt: skip
 
@@ -303,7 +314,7 @@ def inserted(scene, quantities, shell, seed):
 
 
 def _sampled_measures(gas):
-    """Return what a mean weight of 1 says of volume and areas, in the order of ``NAMES``.
+    """Return what a mean weight of 1 says of volume and areas, in the order of ``QUANTITIES``.
 
     Areas are those of ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
     """

@@ -8,7 +8,7 @@ which is not to say that an event is impossible.
 import math
 from functools import lru_cache
 
-from twodiscs.model.events import DECLARED, EVENTS
+from twodiscs.model.events import DECLARED, EVENTS, by_kind
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
 from twodiscs.theory.many import channel, three
@@ -79,13 +79,12 @@ def surfaces(gas, known):
     """
     root, discs = math.sqrt(2), gas.discs
     over = {
-        "vertical_hop": root * known.hops_y,
-        "horizontal_hop": root * known.hops_x,
-        "disc_collision": root * known.per_contact,
-        "right_wall": known.per_width / discs,
-        "top_wall": known.per_height / discs,
+        "hop": lambda event: root * (known.hops_y if event.axis == "y" else known.hops_x),
+        "collision": lambda event: root * known.per_contact,
+        "wall": lambda event: (known.per_width if event.axis == "x" else known.per_height) / discs,
+        "walls": lambda event: 2 * (known.per_width + known.per_height),
     }
-    return over | {"any_wall": 2 * (known.per_width + known.per_height)}
+    return by_kind("theory/many/exact.py", over)
 
 
 @lru_cache(maxsize=1024)

@@ -15,15 +15,8 @@ from twodiscs.pipeline.documents.numbers.rounding import (
     with_error,
 )
 
-#: Events as a narrow table names them.
-SHORT = {
-    "vertical_hop": "v. hop",
-    "horizontal_hop": "h. hop",
-    "disc_collision": "disc coll.",
-    "right_wall": "right wall",
-    "top_wall": "top wall",
-    "any_wall": "any wall",
-}
+#: Words that a narrow table cuts in the names of events.
+SHORT = {"vertical": "v.", "horizontal": "h.", "collision": "coll."}
 
 
 def _mean_times(rows, scene):
@@ -89,7 +82,7 @@ def powers_table(rows, scene, check):
 
     return {
         event: {
-            "event": Number(None, SHORT[event]),
+            "event": Number(None, " ".join(SHORT.get(word, word) for word in event.split("_"))),
             "points": whole(rows[event, "plain", "exponent"]["points"]),
             "plain": cell(event, "plain", "exponent"),
             "curve": significant(rows[event, "plain", "exponent"]["curve"], 5),

@@ -1,5 +1,6 @@
 """More than two discs: how theory, Monte Carlo and dynamics agree."""
 
+from twodiscs.model.many import CLASSES
 from twodiscs.pipeline.documents.numbers.agreement import scores
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
@@ -8,9 +9,6 @@ from twodiscs.pipeline.documents.numbers.rounding import (
     whole,
     with_error,
 )
-
-#: Events in the order of the columns.
-EVENTS = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
 
 
 def more_discs(rows):
@@ -54,7 +52,7 @@ def more_discs_table(rows):
             "radius": significant(radius, 3),
             "discs": whole(discs),
             "theory": Number(None, some["theory"].replace("none", "--")),
-            **{event: _cell(times.get(event)) for event in EVENTS},
+            **{event: _cell(times.get(event)) for event in CLASSES},
             "largest": at_most(scores(row for row in times.values() if row["z"] is not None)),
         }
     return cells
