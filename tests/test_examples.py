@@ -19,6 +19,7 @@ import pytest
 import yaml
 from checkout import REPOSITORY, fresh
 from fabricated import command
+from pages import same
 
 import twodiscs
 from twodiscs import cli
@@ -98,23 +99,6 @@ def with_examples():
 
 DEFAULT = REPOSITORY / "config" / "config.yaml"
 EXPECTED = REPOSITORY / "paper" / "expected"
-
-
-def same(shown, found):
-    """Say whether two texts are equal, numbers up to a few roundings.
-
-    The exact theory is right to 1e-13 on any machine, but its last digits depend on the math
-    library.
-    """
-    shown, found = shown.split(), found.split()
-    return len(shown) == len(found) and all(map(same_word, shown, found))
-
-
-def same_word(shown, found):
-    try:
-        return math.isclose(float(shown), float(found), rel_tol=1e-13)
-    except ValueError:
-        return shown == found
 
 
 # Pages ------------------------------------------------------------------------------------------

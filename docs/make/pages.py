@@ -3,16 +3,23 @@
     python docs/make/pages.py
 
 renews config/README.md, config/schema.json for editors, docs/reference.md, the end of
-results/README.md and the rows of studies in README.md, in the folder where it is called.
+results/README.md, the rows of studies in README.md, and what `twodiscs` prints in the pages of
+docs, in the folder where it is called.
 """
 
 import ast
 import json
+import math
 import re
+import shlex
+from contextlib import redirect_stdout
 from inspect import cleandoc
+from io import StringIO
 from pathlib import Path
+from unittest.mock import patch
 
 import twodiscs
+from twodiscs import cli
 from twodiscs.comparison import check
 from twodiscs.model.checks import InputError
 from twodiscs.pipeline.arguments import Parser, run
@@ -166,13 +173,48 @@ def renewed(text, new, start, end=None):
     return before + start + new + end + rest.partition(end)[2]
 
 
+#: A command that a page shows, and beneath it what it prints.
+COMMAND = re.compile(r"^\$ (twodiscs .+)\n((?:(?!```|\$ ).*\n)+)", re.MULTILINE)
+
+
+def same(shown, found):
+    """Say whether two texts are equal, numbers up to a few roundings.
+
+    The exact theory is right to 1e-13 on any machine, but its last digits depend on the math
+    library.
+    """
+    shown, found = shown.split(), found.split()
+    return len(shown) == len(found) and all(map(_same_word, shown, found))
+
+
+def _same_word(shown, found):
+    try:
+        return math.isclose(float(shown), float(found), rel_tol=1e-13)
+    except ValueError:
+        return shown == found
+
+
+def _tried(example):
+    """Return a command with what it prints, as it was if that is the ``same``."""
+    command, shown = example.groups()
+    with patch("sys.argv", shlex.split(command)), redirect_stdout(StringIO()) as printed:
+        cli._main()
+    found = printed.getvalue()
+    return example[0] if same(shown, found) else f"$ {command}\n{found}"
+
+
 def pages(folder):
     """Return {path below ``folder``: text} of the pages as they should be."""
     results, readme = (
         Path(folder, name).read_text(encoding="utf-8")
         for name in ("results/README.md", "README.md")
     )
+    shown = {
+        f"docs/{path.name}": path.read_text(encoding="utf-8")
+        for path in sorted(Path(folder, "docs").glob("*.md"))
+    }
     return {
+        **{name: COMMAND.sub(_tried, text) for name, text in shown.items() if COMMAND.search(text)},
         "config/README.md": document(),
         "docs/reference.md": reference(),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
