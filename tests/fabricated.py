@@ -8,7 +8,7 @@ import numpy as np
 
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS, HOPS, SHELLS
+from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
@@ -76,9 +76,12 @@ class Laws:
             if event in self.times:
                 mean = self.scene.multiplicity(event) * duration / self.times[event]
             counts[event] = rng.poisson(mean, replicas)
-        walls = {"right_wall", "top_wall", "any_wall"}
-        if walls <= {*events} and not self.scene.has_effects:  # as symmetry has it
-            counts["any_wall"] = counts["right_wall"] + counts["top_wall"]
+        if not self.scene.has_effects:  # as symmetry has it
+            first = {}
+            for wall in (event for event in events if event in WALLS):
+                counts[wall] = counts[first.setdefault(AXIS[wall], wall)]
+            if "any_wall" in events and len(first) == 2:
+                counts["any_wall"] = sum(counts[wall] for wall in first.values())
         return {
             "radius": self.scene.radius,
             "duration": duration,

@@ -4,20 +4,43 @@ import re
 
 import pytest
 
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS, by_kind
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS, Event, by_kind
 from twodiscs.model.scene import Scene
+
+#: What published tables have, in the order of their columns.
+PUBLISHED = (
+    Event("vertical_hop", "hop", "y"),
+    Event("horizontal_hop", "hop", "x"),
+    Event("disc_collision", "collision"),
+    Event("right_wall", "wall", "x", +1),
+    Event("top_wall", "wall", "y", +1),
+    Event("any_wall", "walls"),
+)
+
+
+def test_what_was_published_stays_and_keeps_its_order():
+    names = [event.name for event in PUBLISHED]
+    assert [event for event in DECLARED.values() if event.name in names] == [*PUBLISHED]
 
 
 def test_groups_of_events_follow_from_their_kinds():
-    # Published tables have their columns in this order.
-    assert EVENTS == (
-        "vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall"
-    )  # fmt: skip
-    assert (EVENTS[:2], EVENTS[3:5], EVENTS[:5]) == (HOPS, WALLS, SHELLS)
-    assert AXIS == {
-        "vertical_hop": "y", "horizontal_hop": "x", "right_wall": "x", "top_wall": "y"
-    }  # fmt: skip
-    assert [name for name, event in DECLARED.items() if event.sides == 2] == list(HOPS)
+    assert tuple(DECLARED) == EVENTS
+    groups = {"hop": HOPS, "wall": WALLS}
+    for name, event in DECLARED.items():
+        assert event.name == name
+        assert [kind for kind, group in groups.items() if name in group] == (
+            [event.kind] if event.kind in groups else []
+        )
+        assert (name in SHELLS) == (event.kind in ("hop", "collision", "wall"))
+        assert (
+            AXIS.get(name) == event.axis == {"hop": event.axis, "wall": event.axis}.get(event.kind)
+        )
+        assert event.side in {"wall": (-1, 1)}.get(event.kind, (0,))
+        assert event.sides == (2 if name in HOPS else 1)
+    for group in (HOPS, WALLS, SHELLS, tuple(AXIS)):
+        assert group == tuple(name for name in EVENTS if name in group)
+    places = [(event.kind, event.axis, event.side) for event in DECLARED.values()]
+    assert len({*places}) == len(places)
 
 
 @pytest.mark.parametrize("event", DECLARED.values(), ids=DECLARED)
@@ -40,7 +63,7 @@ def test_every_event_that_is_wanted_gets_what_the_maker_of_its_kind_returns():
     found = by_kind("here.py", MAKERS)
     assert tuple(found) == EVENTS
     assert tuple(by_kind("here.py", {"hop": MAKERS["hop"]}, HOPS)) == HOPS
-    assert found == {
+    assert {event.name: found[event.name] for event in PUBLISHED} == {
         "vertical_hop": "hop along y",
         "horizontal_hop": "hop along x",
         "disc_collision": "collision",

@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import ENERGY, Scene
 
 SCENES = [
@@ -140,8 +140,10 @@ def test_walls_that_are_reached(scene):
     centres = {
         f"{axis}{disc + 1}": grid(scene, axis, disc, 40) for axis, disc in product("xy", (0, 1))
     }
-    for event, axis in (("right_wall", "x"), ("top_wall", "y")):
-        held = centres | {axis + "1": centres[axis + "1"][-1:]}
+    for event in WALLS:
+        axis = AXIS[event]
+        last = centres[axis + "1"][[-1 if DECLARED[event].side > 0 else 0]]
+        held = centres | {axis + "1": last}
         mesh = np.meshgrid(*held.values(), indexing="ij", sparse=True)
         found = np.any(allowed(scene, **dict(zip(held, mesh, strict=True))))
         assert (found and axis in scene.walled) == scene.is_possible(event)
@@ -211,9 +213,9 @@ def test_momenta_that_are_conserved_and_0_do_not_count(effects, conserved, compo
 )
 def test_walls_of_one_rate_that_a_trajectory_reaches_are_counted_together(effects, right, top):
     scene = Scene(1.5, 1.0, **{"radius": 0.2} | effects)
-    others = {event for event in EVENTS if DECLARED[event].kind != "wall"}
-    expected = dict.fromkeys(others, 1) | {"right_wall": right, "top_wall": top}
-    assert {event: scene.multiplicity(event) for event in EVENTS} == expected
+    by_axis = {"x": right, "y": top}
+    for event in EVENTS:
+        assert scene.multiplicity(event) == (by_axis[AXIS[event]] if event in WALLS else 1)
 
 
 def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():

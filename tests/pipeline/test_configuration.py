@@ -16,7 +16,7 @@ from snakemake.utils import update_config
 from twodiscs.model import checks
 from twodiscs.model.box import Box
 from twodiscs.model.effects import EFFECTS
-from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline.configuration import load, schema
@@ -278,13 +278,14 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
 
 # Effects
 
+#: The events that have a place with walls along x or y only.
+ALONG = {axis: tuple(e for e in EVENTS if AXIS.get(e, axis) == axis) for axis in "xy"}
+
 #: What a scene may ask for, the events that have a place in it, and its hop histograms' radii.
 CALLS = [
     ({"radius_ratio": 0.5, "mass_ratio": 2}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
-    ({"periodic": ["x"]}, ("vertical_hop", "disc_collision", "top_wall", "any_wall"),
-     (0.0375, 0.112, 0.188, 0.262)),
-    ({"periodic": ["y"]}, ("horizontal_hop", "disc_collision", "right_wall", "any_wall"),
-     (0.025, 0.075, 0.125, 0.175)),
+    ({"periodic": ["x"]}, ALONG["y"], (0.0375, 0.112, 0.188, 0.262)),
+    ({"periodic": ["y"]}, ALONG["x"], (0.025, 0.075, 0.125, 0.175)),
     ({"periodic": ["y", "x"]}, ("disc_collision",), ()),
     ({"field": 1}, EVENTS, (0.0375, 0.112, 0.188, 0.262)),
     ({"moment_of_inertia": 0.5}, EVENTS, ()),
@@ -456,7 +457,7 @@ SCENES = {
     "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e+60, not 1e-70",
     "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
     "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
-    "accuracy: {left_wall: 1}": ".accuracy has an unknown key 'left_wall'; did you mean …?",
+    "accuracy: {rihgt_wall: 1}": ".accuracy has an unknown key 'rihgt_wall'; did you mean …?",
     "event_budget: 2.5": ".event_budget must be an integer from 1 to 1e15, not 2.5",
     "monte_carlo: 1e8": ".monte_carlo must be a block of two keys, …, not '1e8'",
     "montecarlo: {}": " has an unknown key 'montecarlo'; did you mean 'monte_carlo'?",
@@ -469,8 +470,8 @@ TOGETHER = {
         ".effects: moment_of_inertia must be left out in a box with a depth …, not 0.4"
     ),
     ("effects: {periodic: [x]}", "watch: {mean_times: [vertical_hop, horizontal_hop]}"): (
-        ".watch.mean_times must keep to what has a place in the scene, vertical_hop, "
-        "disc_collision, top_wall, any_wall, not 'horizontal_hop'"
+        ".watch.mean_times must keep to what has a place in the scene, "
+        f"{', '.join(ALONG['y'])}, not 'horizontal_hop'"
     ),
     ("effects: {periodic: [x]}", "watch: {hop_histogram: {event: horizontal_hop}}"): (
         ".watch.hop_histogram.event must have a place in the scene, as vertical_hop has, not "

@@ -9,7 +9,7 @@ from sampling.uniformity import FALSE_ALARM
 from scipy.special import bdtr
 
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.events import EVENTS, HOPS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.prism import prism_of
@@ -48,8 +48,12 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
 
 
 def test_blocks_add_up_and_are_independent_of_company():
-    # Squares of separations, then grains of the places of disc 1 at the walls.
-    ends = (2e-4, 2e-4, 0.42**2, *(2**32 - 2**26 for _ in WALLS))
+    # Squares of separations, and grains of the places of disc 1 at the walls.
+    ends = montecarlo.shell_ends(
+        [0.01] * len(SHELLS),
+        lambda thick: 0.42**2,
+        lambda axis, side, thick: 2**32 - 2**26 if side > 0 else 2**26,
+    )
     arguments = (PAPER.range_x, PAPER.range_y, PAPER.contact_distance, ends, True)
     whole = montecarlo.sample_blocks(np.uint64(3), 0, 4, *arguments)
     parts = [montecarlo.sample_blocks(np.uint64(3), a, b, *arguments) for a, b in ((0, 1), (1, 4))]
@@ -199,7 +203,7 @@ def test_only_what_is_watched_is_sampled_with_effects():
         assert [name for name, end in zip(EVENTS, ends, strict=True) if end is not None] == [event]
         counts = montecarlo.weighted_blocks(np.uint64(1), 0, 1, prism(scene), ends)
         assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
-    assert montecarlo.weighted_ends(scene, [0.0] * 6) is None
+    assert montecarlo.weighted_ends(scene, [0.0] * len(EVENTS)) is None
     point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
     assert point["quantities"].keys() == {"volume"}
     assert point["samples"] == montecarlo.BLOCK

@@ -19,6 +19,7 @@ from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
+from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs.pipeline.configuration.load import load
@@ -291,7 +292,7 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
 
     def lockstep(blocks, scene, events):
         watched[scene.has_effects, tuple(events)] = scene
-        return 2.0 if scene.has_effects else 4.0, 1.0 if len(events) == 6 else 0.5
+        return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
 
     monkeypatch.setattr(benchmark, "lockstep", lockstep)
     rows = benchmark.effects_rows(
@@ -301,4 +302,4 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
         "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0
     }  # fmt: skip
     assert (True, ("disc_collision",)) in watched
-    assert (False, ("right_wall", "top_wall", "any_wall")) in watched
+    assert (False, (*WALLS, "any_wall")) in watched

@@ -13,7 +13,7 @@ from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.monte_carlo import Volume
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.studies.stability import figure
@@ -186,7 +186,7 @@ def test_the_better_sampler_is_chosen():
 
 def test_conditioned_blocks_add_up():
     scene = PAPER.scene(0.38)
-    draw, shells = draw_constants(scene), (0.01,) * 5
+    draw, shells = draw_constants(scene), (0.01,) * len(SHELLS)
     whole = montecarlo.propose_blocks(np.uint64(3), 0, 3, draw, shells)
     parts = [
         montecarlo.propose_blocks(np.uint64(3), a, b, draw, shells) for a, b in ((0, 1), (1, 3))

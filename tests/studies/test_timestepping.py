@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics import ensemble
-from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.accuracy_cost import timestepping
+from twodiscs.studies.accuracy_cost import scalar, timestepping
 from twodiscs.theory import exact
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -19,7 +18,7 @@ def plain(scene, start, steps, step):
     """Return the counts of one trajectory, with vectors and branches."""
     x, v = np.array(start[:4]).reshape(2, 2), np.array(start[4:]).reshape(2, 2)
     half = np.array([scene.range_x, scene.range_y]) / 2
-    counts = dict.fromkeys(EVENTS, 0)
+    counts = dict.fromkeys(scalar.COUNTED, 0)
     for _ in range(steps):
         before = x[0] - x[1]
         x = x + v * step
@@ -37,7 +36,7 @@ def plain(scene, start, steps, step):
             counts["disc_collision"] += 1
             kick = approach / (apart @ apart) * apart
             v = v + np.array([-kick, kick])
-    return [int(counts[event]) for event in EVENTS]
+    return [int(counts[event]) for event in scalar.COUNTED]
 
 
 @pytest.mark.parametrize(("radius", "step"), [(0.2, 0.05), (0.24, 0.01), (0.3, 0.02)])

@@ -11,7 +11,7 @@ from mpmath import mp, mpf
 from theory.antiderivatives import DIGITS, lengths, reference, reference_times, relative_error
 
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import AXIS, EVENTS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.numerics import reference as reference_module
 from twodiscs.theory.numerics.reference import (
@@ -58,11 +58,14 @@ def test_volume_and_areas_are_the_integrals_they_stand_for(scene):
 
             return mp.quad(column, edges)
 
+        walls = {
+            "x": 2 * over_rectangle(lambda u, v: b - v),
+            "y": 2 * over_rectangle(lambda u, v: a - u),
+        }
         angles = [mp.acos(min(a / s, 1)), mp.asin(min(b / s, 1))]
         expected = {
             "volume": 4 * over_rectangle(lambda u, v: (a - u) * (b - v)),
-            "right_wall": 2 * over_rectangle(lambda u, v: b - v),
-            "top_wall": 2 * over_rectangle(lambda u, v: a - u),
+            **{wall: walls[AXIS[wall]] for wall in WALLS},
             # Two centres on the arc: length element σ/√2 dθ, common motion √2 (A − u) √2 (B − v).
             "disc_collision": 4 * mp.sqrt(2) * s * mp.quad(
                 lambda q: (a - s * mp.cos(q)) * (b - s * mp.sin(q)), angles

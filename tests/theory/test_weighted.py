@@ -264,7 +264,7 @@ def test_torus():
         free = 1.5 * 1.0 - math.pi * 0.4**2
         assert exact.mean_times(scene)["disc_collision"] == pytest.approx(free / (2 * 0.4 * speed))
         assert exact.mean_times(scene) == exact.mean_times(scene) | dict.fromkeys(
-            (*HOPS, "right_wall", "top_wall", "any_wall")
+            event for event in EVENTS if event != "disc_collision"
         )
     # In three dimensions πσ² g over the free volume.
     scene = Scene(1.5, 1.0, 0.2, depth=1.2, periodic="xyz")
@@ -300,9 +300,8 @@ def test_balls():
         "vertical_hop": hop(b, a, c),
         "horizontal_hop": hop(a, b, c),
         "disc_collision": -mp.sqrt(2) * sides[3],
-        "right_wall": sides[0] / 2,
-        "top_wall": sides[1] / 2,
         "any_wall": 2 * sum(sides[:3]),
+        **{wall: sides["xy".index(AXIS[wall])] / 2 for wall in WALLS},
     }  # fmt: skip
     assert_close(numbers(scene), expected)
 
@@ -526,9 +525,9 @@ def flux(scene, event, epsilon, count, seed):
         speed = np.abs(np.sum(gaps * moving, axis=0)) / distance
         found = weight * within * speed / (2 * relative * epsilon)
     else:
-        walls = (
-            product(scene.walled, (0, 1), (0, 1)) if event == "any_wall" else [(AXIS[event], 0, 1)]
-        )
+        walls = [(AXIS.get(event), 0, DECLARED[event].side > 0)]
+        if event == "any_wall":
+            walls = product(scene.walled, (0, 1), (0, 1))
         found = 0.0
         for axis, disc, high in walls:
             gap = centres[axis][disc] - scene.radii[disc]
