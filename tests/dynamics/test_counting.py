@@ -3,7 +3,6 @@
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 from dynamics.rates import check_rates
 
-import twodiscs
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import PASSES, REPLICAS, relative_errors
 from twodiscs.model.box import Box
@@ -93,46 +91,6 @@ def test_the_bits_do_not_depend_on_the_processor(generic_output):
     here = subprocess.run([sys.executable, "-c", GENERIC], check=True, capture_output=True).stdout
     assert generic_output == here
     assert len(json.loads(here)) == 4
-
-
-SEVENTH = """
-import math
-from twodiscs.dynamics import counting
-from twodiscs.model.events import EVENTS
-from twodiscs.model.scene import Scene
-from twodiscs.theory.exact import mean_times
-scene = Scene(1.5, 1.0, 0.3)
-assert EVENTS.index("another_wall") >= counting.FIELDS
-duration = counting.replica_duration(scene)
-sums, products = counting.run_blocks(scene, EVENTS, 5, 0, 8, duration)
-replicas = 8 * counting.REPLICAS
-for e, event in enumerate(EVENTS):
-    time = mean_times(scene)[event]
-    mean = sums[e] / replicas
-    if time is None:
-        assert mean == 0
-        continue
-    error = math.sqrt((products[e, e] / replicas - mean**2) / replicas)
-    assert abs(mean - scene.multiplicity(event) * duration / time) <= 5 * error, event
-"""
-
-
-@pytest.mark.slow
-def test_an_event_more_than_a_double_has_room_for_is_counted(tmp_path):
-    """Declared in a copy of the package, the near wall has its exact rate, and no other changes."""
-    package = shutil.copytree(twodiscs.__path__[0], tmp_path / "twodiscs")
-    events = package / "model" / "events.py"
-    text = events.read_text(encoding="utf-8")
-    last = '        Event("any_wall", "walls"),\n'
-    assert last in text
-    new = '        Event("another_wall", "wall", "x", -1),\n'
-    events.write_text(text.replace(last, last + new), encoding="utf-8")
-    environment = os.environ | {
-        "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")
-    }  # fmt: skip
-    command = [sys.executable, "-c", SEVENTH]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
 
 
 def test_packed_counts_do_not_run_over():
