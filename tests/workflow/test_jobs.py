@@ -28,7 +28,7 @@ def test_touching_everything_reruns_nothing(built):
 def test_edits_of_comments_and_docstrings_rerun_nothing(built):
     source = "src/twodiscs"
     built.edit(f"{source}/dynamics/counting.py", "# a remark\n")
-    built.edit(f"{source}/figures/hop_histogram.py", "\n\n# a remark\n")
+    built.edit(f"{source}/figures/motion/hop_histogram.py", "\n\n# a remark\n")
     law = '"""Return the ``Law`` of a ``Scene``."""'
     built.replace(f"{source}/dynamics/law.py", law, '"""The law\n\n    of a scene."""')
     meaning = '"""expectation − exact: what the thickness of the shell adds"""'
@@ -73,7 +73,7 @@ def test_edit_of_a_figure_redraws_that_figure_and_what_contains_it(built, module
 
 
 def test_a_figure_whose_edited_source_has_an_older_time_stamp_is_drawn_again(built):
-    path = "src/twodiscs/figures/hop_histogram.py"
+    path = "src/twodiscs/figures/motion/hop_histogram.py"
     built.edit(path, CODE)
     os.utime(built.path / path, (1e9, 1e9))
     drawn = ("figure", SIX, "figure=hop_histogram")

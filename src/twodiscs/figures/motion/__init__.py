@@ -1,1 +1,1 @@
-"""Figures of a trajectory: where the discs went, and the discs as they move."""
+"""Figures of the motion: where the discs went, how often they met a wall, when they hopped."""

@@ -3,8 +3,8 @@
 import numpy as np
 from figure_cases import PAPER, draw, tables_of
 
-from twodiscs.figures import hop_histogram
 from twodiscs.figures.kit import style
+from twodiscs.figures.motion import hop_histogram
 
 
 def test_densities_at_zero_are_marked():
