@@ -6,6 +6,9 @@ What the areas mean is tested by throwing discs and velocities (``test_flux``).
 """
 
 import math
+import os
+import subprocess
+import sys
 from fractions import Fraction
 from itertools import pairwise, product
 
@@ -198,6 +201,36 @@ REFERENCES = [
 def test_reference(scene):
     """All volumes and areas agree with the reference."""
     assert_close(numbers(scene), reference(scene))
+
+
+BITS = """
+import sys
+from twodiscs.model.scene import Scene
+from twodiscs.theory.exact import measures
+step, *scenes = sys.argv[1:]
+print(sorted((text, measures(eval(text))) for text in scenes[:: int(step)]))
+"""
+
+
+def test_the_bits_depend_on_neither_processor_nor_process():
+    """One with narrow vectors finds the same, in another order, with other hashes and threads."""
+    radii = 0.02, 0.1, 0.15, 0.2, 0.3, 0.34, 0.36
+    scenes = [*map(repr, SCENES), *(repr(Scene(1.5, 1.0, r, field=1.5)) for r in radii)]
+    vectors = np.show_config("dicts")["SIMD Extensions"].get("found", [])
+    usual = {"PYTHONHASHSEED": "1"}
+    other = {"PYTHONHASHSEED": "2", "OPENBLAS_NUM_THREADS": "1"}
+    other |= {"NPY_DISABLE_CPU_FEATURES": " ".join(vectors)}
+    jobs = [
+        subprocess.Popen(
+            [sys.executable, "-c", BITS, step, *scenes],
+            env=os.environ | env,
+            stdout=subprocess.PIPE,
+        )
+        for step, env in (("1", usual), ("-1", other))
+    ]
+    one, two = (job.communicate()[0] for job in jobs)
+    assert one == two
+    assert one.count(b"disc_collision") == len(scenes)
 
 
 # Closed forms -----------------------------------------------------------------------------------

@@ -48,6 +48,17 @@ def constant(components):
     return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)
 
 
+# Functions of arrays -----------------------------------------------------------------------------
+
+# NumPy's own have other last digits on a processor with AVX-512; those of the C library do not.
+_pow, _arctan2 = (np.vectorize(function, otypes=[float]) for function in (math.pow, math.atan2))
+
+
+def _power(x, n):
+    """Return ``x``ⁿ of an array for an integer n ≥ 0, the same bits on every processor."""
+    return _pow(x, n) if n > 2 else x**n
+
+
 # Quadrature ---------------------------------------------------------------------------------------
 
 
@@ -129,12 +140,12 @@ class Branch:
         alpha = np.sqrt(bottom)
         order = round(2 * self.power) + 2
         if not flat:
-            return alpha ** (order - 2)
+            return _power(alpha, order - 2)
         # ∫ (bottom − slope q)₊^p dq = (α^order − β^order)/((p + 1) slope), and α² − β² is slope
         # times the length with energy left: a sum of positive terms, for any slope.
         slope = upper + lower
         beta = np.sqrt(np.maximum(bottom - slope * open_length, 0.0))
-        total = sum(alpha ** (order - 1 - j) * beta**j for j in range(order))
+        total = sum(_power(alpha, order - 1 - j) * _power(beta, j) for j in range(order))
         within = np.minimum(open_length, bottom / slope)
         return within * total / ((self.power + 1) * np.maximum(alpha + beta, 1e-300))
 
@@ -245,11 +256,11 @@ def _outside(branches, square, room, surface, less=None):
     # The same as angles from where the arc begins.
     k = np.sqrt(k0_square + y * (t0 + t))
     sine = y * (t0 + t) / np.maximum(t0 * k + t * k0, 1e-300)
-    angles = np.arctan2(sine, (t0 * t + k0 * k) / square[..., None])
+    angles = _arctan2(sine, (t0 * t + k0 * k) / square[..., None])
     angles = angles if square.ndim else np.unique(angles)
     angle, weights = _nodes(angles, SINGULAR if first.curved or len(rest) > 1 else SMOOTH)
     t0, k0, rho, room0 = (part[..., None] for part in (t0, k0, rho[..., None], room0))
-    begin = np.arctan2(k0, t0)
+    begin = _arctan2(k0, t0)
     y = 2 * rho * np.sin(angle / 2) * np.sin(begin + angle / 2)
     k = rho * np.sin(begin + angle)
     inner = _outside(rest, k * k, room0 - y * (2 * t0 - y), surface)
