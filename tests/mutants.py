@@ -20,6 +20,9 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
+#: The tests of a folder that are not under its name: what the face returns.
+ELSEWHERE = {"comparison/measured": "tests/test_results.py"}
+
 #: Seconds: a run of tests that takes longer hangs, which is noticed as well.
 PATIENCE = 1200
 
@@ -58,7 +61,9 @@ MUTANTS = [
     ("theory/tails.py", "power of a drift's chance", "volume(scene) * time**2)", "volume(scene) * time)"),
     ("theory/laws.py", "sign for small discs", "(4 * along / across - 2) * r", "(4 * along / across + 2) * r"),
     ("theory/laws.py", "factor near jamming", "root * left / (4 * (last_x + last_y))", "root * left / (2 * (last_x + last_y))"),
-    ("theory/virial.py", "sign of the virial", "-scene.contact_distance / math", "scene.contact_distance / math"),
+    ("theory/virial.py", "sign of the virial", "-scene.contact_distance / pairs", "scene.contact_distance / pairs"),
+    ("theory/many/three.py", "slope of a far pair", "np.where(bent, most**2 / 2, across**2 / 2)", "np.where(bent, most**2, across**2 / 2)"),
+    ("theory/many/channel.py", "one disc too few across", "per_height = n / channel.height", "per_height = (n - 1) / channel.height"),
     ("sampling/streams.py", "two blocks, one stream", "np.uint64(block) * MIX_2", "np.uint64(block // 2) * MIX_2"),
     ("sampling/separations.py", "law of the flux through a hop", "rest = largest_of(state, 3)", "rest = largest_of(state, 2)"),
     ("sampling/separations.py", "orders of x and y as one", "else (1 if bits & np.uint64(1 << 61) else -1)", "else (1 if bits & np.uint64(1 << 62) else -1)"),
@@ -70,6 +75,8 @@ MUTANTS = [
     ("sampling/blocks/rounds.py", "a block left out", "for first in range(0, blocks, per_piece)", "for first in range(1, blocks, per_piece)"),
     ("sampling/montecarlo.py", "thickness of a hop's shell", "2.0 * (thick * thick)", "1.0 * (thick * thick)"),
     ("sampling/montecarlo.py", "number of walls", '"walls": 4 * len(scene.walled)', '"walls": 2 * len(scene.walled)'),
+    ("sampling/many/initial.py", "power of the room in a channel", "for _ in range(discs):\n        ratio *= left", "for _ in range(discs - 1):\n        ratio *= left"),
+    ("sampling/many/measures.py", "covariance with the volume", "- 2 * ratios * covariance[0, 1:]", "- ratios * covariance[0, 1:]"),
     ("dynamics/law.py", "height of a flight", "square - 2.0 * gravity * above", "square - gravity * above"),
     ("dynamics/law.py", "wrong mass at a jump", "q2 += math.copysign(wrap[2], relative)", "q2 += math.copysign(wrap[1], relative)"),
     ("dynamics/law.py", "wrong mass in a collision", "divided(2.0, m2, m1)", "divided(2.0, m1, m2)"),
@@ -82,6 +89,8 @@ MUTANTS = [
     ("dynamics/strip.py", "paths end too soon", "<= fastest * left else", "<= 0.5 * fastest * left else"),
     ("dynamics/intervals.py", "off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
     ("dynamics/intervals.py", "age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),
+    ("dynamics/many.py", "wrong image on a ring", "dx - math.copysign(ring[0], dx)", "dx + math.copysign(ring[0], dx)"),
+    ("dynamics/many.py", "squares of two classes counted twice", "products + np.triu(products, 1).T", "products + products.T"),
     ("comparison/estimates.py", "products of two events", "(1 if a == b else 2) * w[a]", "w[a]"),
     ("comparison/estimates.py", "clusters in a bound", "(CLUSTER * -math.log1p", "(-math.log1p"),
     ("comparison/estimates.py", "curvature at zero", "np.array([7, -1]) / 6", "np.array([3, -1]) / 2"),
@@ -89,6 +98,11 @@ MUTANTS = [
     ("comparison/scores.py", "sign of a score", "(expected - count) / error", "(count - expected) / error"),
     ("comparison/scores.py", "two tails", "alarm) / (2 * comparisons)", "alarm) / comparisons"),
     ("comparison/check.py", "half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
+    ("comparison/measured/scan.py", "a budget is lost", "result.more(error, budget, None, cores, progress)", "result.more(error, None, None, cores, progress)"),
+    ("comparison/measured/watching.py", "what is done counts again", "bar.update(done - bar.n)", "bar.update(done)"),
+    ("studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
+    ("studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
+    ("studies/passages/file.py", "length of a ring for a disc", "per_disc = gas.width / gas.discs", "per_disc = gas.width / 2"),
     ("pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
 ]
 # fmt: on
@@ -116,7 +130,7 @@ def tiers(file):
         *path.parent.glob(f"test_{path.stem}*"),
         *path.parents[1].glob(f"test_{path.parent.name}*"),
     }
-    yield sorted(map(str, own))
+    yield sorted({*map(str, own), *filter(None, [ELSEWHERE.get(str(Path(file).parent))])})
     yield [f"tests/{path.parts[1]}"]
 
 

@@ -124,6 +124,13 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
         td.scan(1.5, 1.0, [])
 
 
+def test_a_scan_goes_on_to_a_larger_budget():
+    asked = {"error": 1e-3, "seed": 5, "events": ["any_wall"]}
+    less, more = (td.scan(1.5, 1.0, [0.1, 0.2], budget=budget, **asked) for budget in (1e5, 2e7))
+    assert [result["any_wall"].status for result in less] == ["budget", "budget"]
+    assert bits(less.more(budget=2e7)) == bits(more) != bits(less)
+
+
 def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
     from matplotlib import backend_bases
 
@@ -163,6 +170,22 @@ def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
     assert said.out == ""
     assert ("simulate r = 0.2" in said.err) == (progress is True)
     assert ("trajectory r = 0.2" in said.err) == (progress is True)
+
+
+def test_a_bar_is_where_the_work_is(monkeypatch):
+    auto = pytest.importorskip("tqdm.auto", reason="tqdm shows progress")
+    bars = []
+
+    class Bar(auto.tqdm):
+        def __init__(self, *given, **options):
+            super().__init__(*given, **options)
+            bars.append(self)
+
+    monkeypatch.setattr(auto, "tqdm", Bar)
+    with watching.watched(True, "work") as watch:
+        for done in (2, 5, None, 9):
+            watch(done, 10)
+        assert [(bar.n, bar.total) for bar in bars] == [(9, 10)]
 
 
 def test_progress_is_true_or_false():

@@ -117,6 +117,17 @@ def test_two_discs_are_those_of_the_engine_of_two(radius):
     check(gas, found, errors, expected, {event: spread[at[event]] for event in CLASSES})
 
 
+def test_counts_of_events_are_those_of_their_classes():
+    """Replica by replica: hits of all walls are those of both classes of them."""
+    by_class = np.random.default_rng(1).integers(0, 50, (100, len(CLASSES)))
+    columns = dict(zip(CLASSES, by_class.T, strict=True))
+    columns["any_wall"] = columns["right_wall"] + columns["top_wall"]
+    by_event = np.array([columns[event] for event in EVENTS]).T
+    sums, products = many.of_events(by_class.sum(axis=0), np.triu(by_class.T @ by_class))
+    assert np.array_equal(sums, by_event.sum(axis=0))
+    assert np.array_equal(products, np.triu(by_event.T @ by_event))
+
+
 BITS = """
 import hashlib
 from twodiscs.dynamics import many

@@ -139,6 +139,20 @@ def test_hops_in_a_file_are_those_of_monte_carlo():
     assert abs(hops.value - sampled.value) < 5 * math.hypot(hops.stderr, sampled.stderr)
 
 
+def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):
+    """Then a disc is displaced by 2 ν t ℓ² in the square, at ν hops in either direction."""
+    gas, hops = Gas(3, 2.25, 1.0, 0.2, "x"), 12
+
+    def follow(states, lanes, times, law, squares, crossings):
+        crossings[:] = hops * gas.discs / 2  # two discs hop at each of them
+        squares[:, 1] = hops / 2 * (gas.width / gas.discs) ** 2
+
+    monkeypatch.setattr(file, "follow", follow)
+    moved, rate = file.diffusion(gas, 16.0, 2, 3)
+    assert moved.value == pytest.approx(1, rel=1e-12)
+    assert rate.value == pytest.approx(hops / 32, rel=1e-12)
+
+
 def test_discs_that_cannot_pass_stay_in_their_file():
     gas, replicas = Gas(3, 2.25, 1.0, 0.26, "x"), 64
     states = file.initial.states(gas, replicas, 5)
@@ -168,8 +182,11 @@ def small(monkeypatch):
         monkeypatch.setattr(measure, name, value)
 
 
-def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small):
+def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypatch):
+    seeds, seed_of = [], measure.seed_of
+    monkeypatch.setattr(measure, "seed_of", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     rows = written(tmp_path, Passages, **PARAMETERS)
+    assert len({*seeds}) == len(seeds) > 20  # every estimate has streams of its own
     z = [row["z"] for row in rows if row["z"] is not None]
     assert max(map(abs, z)) < 5
     by_quantity = {row["quantity"] for row in rows}
@@ -182,6 +199,19 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small):
     kappa = [row for row in rows if row["quantity"] == "coefficient"]
     for time, fraction in zip(times, kappa, strict=True):
         assert time["estimate"] * fraction["estimate"] == pytest.approx(time["exact_mean"])
+    # What vanishes at the threshold, 1 − κ or κ of rough discs, does so with its exponent.
+    left = {
+        (row["event"], rough, row["distance"]): row["estimate"] if rough else 1 - row["estimate"]
+        for row in kappa
+        for rough in [row["moment_of_inertia"]]
+    }
+    exponents = [row for row in rows if row["quantity"] == "exponent"]
+    assert len(exponents) > 2
+    for row in exponents:
+        near, far = (
+            left[row["event"], row["moment_of_inertia"], n * row["distance"]] for n in (1, 2)
+        )
+        assert far / near == pytest.approx(2 ** row["estimate"])
     with style.context():
         drawn = figure.draw(BOX, {"passages": rows})
     curves, powers, between, diffusion, residuals = drawn.axes
