@@ -212,8 +212,8 @@ print(sorted((text, measures(eval(text))) for text in scenes[:: int(step)]))
 """
 
 
-def test_the_bits_depend_on_neither_processor_nor_process():
-    """One with narrow vectors finds the same, in another order, with other hashes and threads."""
+def test_the_bits_depend_on_neither_vectors_nor_process():
+    """Without AVX the same is found, in another order, with other hashes and threads."""
     radii = 0.02, 0.1, 0.15, 0.2, 0.3, 0.34, 0.36
     scenes = [*map(repr, SCENES), *(repr(Scene(1.5, 1.0, r, field=1.5)) for r in radii)]
     vectors = np.show_config("dicts")["SIMD Extensions"].get("found", [])

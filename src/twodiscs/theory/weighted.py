@@ -48,14 +48,14 @@ def constant(components):
     return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)
 
 
-# Functions of arrays -----------------------------------------------------------------------------
+# Functions of arrays ------------------------------------------------------------------------------
 
-# NumPy's own have other last digits on a processor with AVX-512; those of the C library do not.
+# NumPy's own have other last digits on a processor with AVX-512 than on one without.
 _pow, _arctan2 = (np.vectorize(function, otypes=[float]) for function in (math.pow, math.atan2))
 
 
 def _power(x, n):
-    """Return ``x``ⁿ of an array for an integer n ≥ 0, the same bits on every processor."""
+    """Return ``x``ⁿ of an array for an integer n ≥ 0."""
     return _pow(x, n) if n > 2 else x**n
 
 
