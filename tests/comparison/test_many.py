@@ -282,3 +282,10 @@ def test_the_exact_table_of_more_discs():
     frame = td.exact_table(3.5, 0.6, [0.1, 0.18], discs=8)
     assert math.isnan(frame["volume"][0.1])
     assert frame["volume"][0.18] == exact.volume(SCENES["eight in a channel"])
+    assert frame["ergodic_components"].tolist() == [1, math.factorial(8)]
+
+
+def test_parts_of_configuration_space_may_be_more_than_64_bits_hold(tmp_path):
+    table, parts = SCENE_TABLES["grid"], [1, math.factorial(64)]
+    table.write(tmp_path / "grid.csv", table.rows(Box(40.0, 0.6, discs=64), [0.1, 0.2]))
+    assert td.load(tmp_path)["grid"]["ergodic_components"].tolist() == parts

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 import pytest
+from scipy import ndimage
+from scipy.sparse import csgraph
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
@@ -166,3 +168,99 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
 def test_what_does_not_go_with_more_discs_is_refused(values, message):
     with pytest.raises(InputError, match=message):
         Scene(**{"width": 1.5, "height": 1.0, "radius": 0.1} | values)
+
+
+# Parts of configuration space ---------------------------------------------------------------------
+
+
+def channel(discs, height, length):
+    """Return a channel with the ranges A = ``length`` and B = ``height`` in units of σ."""
+    radius = 0.1
+    return Gas(discs, 0.2 * (length + 1), 0.2 * (height + 1), radius)
+
+
+def total_of(heights, axis=0):
+    """Return Σ √(1 − Δ²) of neighbours along an ``axis``."""
+    return np.sqrt(1 - np.diff(heights, axis=axis) ** 2).sum(axis=axis)
+
+
+#: Discs, B and A in σ: two zigzags alone, a level pair that is stuck at an end, all that can move.
+CHANNELS = [
+    (2, 0.8, 0.9), (2, 0.8, 1.1), (3, 0.8, 1.5), (3, 0.8, 1.7), (3, 0.8, 1.9), (3, 0.8, 2.1),
+    (4, 0.85, 2.0), (4, 0.85, 2.2), (4, 0.85, 2.5), (4, 0.85, 2.8), (4, 0.85, 3.5),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("discs", "height", "length"), CHANNELS)
+def test_parts_of_a_channel_are_those_of_its_heights(discs, height, length):
+    """All heights on a lattice with room for them, and which of them hang together."""
+    gas, lattice = channel(discs, height, length), np.linspace(0, height, 41)
+    assert gas.is_ordered
+    fitting = total_of(np.array(np.meshgrid(*[lattice] * discs, sparse=False))) < length
+    parts = ndimage.label(fitting)[1]
+    assert gas.ergodic_components == math.factorial(discs) * parts
+    if length > discs - 1:
+        assert parts == 1
+
+
+@pytest.mark.parametrize(("discs", "height"), [(5, 0.5), (5, 0.86), (6, 0.8), (7, 0.86), (9, 0.8)])
+def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
+    """Each disc on a wall, and paths on which one of them crosses, at every length of a box."""
+    corners = np.array(list(itertools.product([0, height], repeat=discs))).T
+    index = np.arange(corners.shape[1])
+    highest, found = [], set()
+    for disc in range(discs):
+        paths = np.repeat(corners[:, :, None], 61, axis=2)
+        paths[disc] = np.linspace(0, height, 61)
+        highest.append(total_of(paths).max(axis=1))
+    totals = total_of(corners)
+    for length in np.linspace(totals.min() + 0.003, discs - 0.9, 60):
+        graph = np.zeros((index.size, index.size), bool)
+        for disc in range(discs):
+            crosses = highest[disc] < length
+            graph[index, index ^ (1 << (discs - 1 - disc))] = crosses
+        inside = totals < length
+        parts = csgraph.connected_components(graph[np.ix_(inside, inside)])[0]
+        gas = channel(discs, height, length)
+        assert gas.ergodic_components == math.factorial(discs) * parts, length
+        found.add(parts)
+    assert {1, 2} < found
+
+
+def test_a_channel_on_its_side_has_the_same_parts():
+    for discs, height, length in CHANNELS:
+        gas = channel(discs, height, length)
+        assert gas.turned().ergodic_components == gas.ergodic_components
+
+
+@pytest.mark.parametrize(
+    ("gas", "parts"),
+    [
+        (Gas(3, 1.5, 1.0, 0.15), 1),
+        (Gas(8, 4.8, 0.6, 0.155), math.factorial(8)),  # next neighbours may touch here
+        (Gas(8, 4.8, 0.6, 0.14), 1),
+        (Gas(64, 40.0, 0.6, 0.2), math.factorial(64)),
+        (Gas(4, 0.6, 2.5, 0.2), 24),
+        (Gas(4, 3.0, 0.6, 0.2, "x"), 6),
+        (Gas(2, 1.5, 0.6, 0.2, "x"), 1),
+        (Gas(4, 3.0, 1.0, 0.2, "x"), 1),
+        (Gas(4, 1.0, 3.0, 0.2, "x"), 1),
+        (Gas(3, 1.5, 1.0, 0.28), 12),  # two zigzags of each order
+        (Gas(3, 1.5, 1.0, 0.26), None),
+        (Gas(8, 2.0, 1.5, 0.2), None),
+        (Gas(4, 1.5, 0.6, 0.195, "x"), None),
+    ],
+    ids=repr,
+)
+def test_parts_that_are_known(gas, parts):
+    assert gas.ergodic_components == parts
+
+
+@pytest.mark.parametrize("periodic", ["", "x"])
+@pytest.mark.parametrize("width", [0.7, 0.85, 1.1, 1.5, 3.0])
+@pytest.mark.parametrize("radius", [0.1, 0.15, 0.2, 0.24, 0.26, 0.3, 0.36])
+def test_two_discs_have_the_parts_of_a_scene(width, radius, periodic):
+    if radius >= largest_radius(2, width, 1.0, periodic):
+        pytest.skip("no room")
+    gas = Gas(2, width, 1.0, radius, periodic)
+    assert gas.ergodic_components == Scene(width, 1.0, radius, periodic=periodic).ergodic_components

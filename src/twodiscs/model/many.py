@@ -93,6 +93,48 @@ class Gas:
         """
         return not self.periodic and self.height <= (2 + math.sqrt(3)) * self.radius
 
+    @cached_property
+    def ergodic_components(self):
+        """The number of disjoint parts of configuration space; None where it is not known here.
+
+        Where all discs fit side by side along an axis, they can always be drawn apart along it:
+        places that go linearly, in their order, to σ or more from neighbour to neighbour never come
+        nearer to each other than √(σ² − Δ²), Δ what the pair is apart along the other axis. Then
+        neighbours can be exchanged if that other axis has more room than σ, and all is one part.
+        Else there is one for each order, N! of them, on a ring (N − 1)! up to a cyclic shift. In an
+        ordered channel too short for that the heights have parts of their own (``_zigzags``).
+        """
+        n, sigma = self.discs, 2 * Fraction(self.radius)
+        ring, a, b = bool(self.periodic), self.exact_range_x, self.exact_range_y
+        if Fraction(self.width) > n * sigma if ring else a > (n - 1) * sigma:
+            return 1 if b > sigma else math.factorial(n - ring)
+        if b > (n - 1) * sigma:
+            return 1 if ring or a > sigma else math.factorial(n)
+        if self.is_ordered:
+            return math.factorial(n) * self._zigzags()
+        return None if ring or not self.turned().is_ordered else self.turned().ergodic_components
+
+    def _zigzags(self):
+        """Return how many disjoint parts the heights of one order have in an ordered channel.
+
+        They are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave: so
+        each part has a corner of that cube, and two corners are in one part if a path along edges
+        joins them, for what is cut out is convex. At a corner k neighbours are level, with d = σ,
+        and all others d₀ = √(σ² − B²) apart. A level pair comes and goes at the ends of the row,
+        or with one next to it; it moves by one disc where A allows for two pairs halfway,
+        2 √(σ² − B²/4).
+        """
+        n, sigma, a = self.discs, self.contact_distance, self.range_x
+        least = math.sqrt((sigma - self.range_y) * (sigma + self.range_y))
+        most = max(k for k in range(n) if k == 0 or k * sigma + (n - 1 - k) * least < a)
+        if most == 0:
+            return 2
+        midway = 2 * math.sqrt(sigma**2 - self.range_y**2 / 4)
+        if most == n - 1 or (most - 1) * sigma + (n - 2 - most) * least + midway < a:
+            return 1
+        # The others stay where they are: neither at an end nor next to each other.
+        return (2 if most == 1 else 1) + 2 * math.comb(n - 2 - most, most)
+
     def can_be_level(self, axis):
         """Say whether geometry lets two discs be level along ``axis``, "x" or "y", with a third.
 

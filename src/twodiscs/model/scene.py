@@ -432,14 +432,15 @@ class Scene:
         return "horizontal-hops" if self.horizontal_hops else "no-hops"
 
     @cached_property
-    def ergodic_components(self) -> int:
+    def ergodic_components(self) -> int | None:
         """The number of disjoint parts of configuration space.
 
-        Each hop that is blocked between walls doubles it. A periodic axis has a way around. None
-        for more than two discs, of which it is not known.
+        Each hop that is blocked between walls doubles it. A periodic axis has a way around. Of more
+        than two discs see ``many.Gas``: N! where they keep their order, (N − 1)! on a ring, 1 where
+        all of them pass each other with room to spare, and None where it is not known.
         """
         if self.discs > 2:
-            return None
+            return self.gas.ergodic_components
         return 2 ** (len(self.walled) - len(self._passed))
 
     def _confined(self, axis):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
         """All exact numbers of a scene."""
 
         regime: str
-        ergodic_components: int
+        ergodic_components: int | None
         largest_radius: float
         volume: float
         areas: dict[str, float]

@@ -384,6 +384,9 @@ def exact_table(width, height, radii, effects):
         for scene in scenes
     ]
     frame = pd.DataFrame(rows).set_index("radius")
+    if box.discs > 2:  # None among integers of any length
+        parts = [scene.ergodic_components for scene in scenes]
+        frame["ergodic_components"] = pd.Series(parts, frame.index, object)
     times = [f"{event}_time" for event in EVENTS]
     known = ["volume", *(f"{event}_area" for event in EVENTS), *times]
     frame[known] = frame[known].astype(float)

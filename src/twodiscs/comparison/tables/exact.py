@@ -12,7 +12,7 @@ class Grid(Table):
     regime: TEXT
     """all-hops, vertical-hops, horizontal-hops or no-hops"""
     ergodic_components: COUNT
-    """disjoint parts of configuration space; empty for more than two discs"""
+    """disjoint parts of configuration space; empty where it is not known of more than two discs"""
     largest_radius: LENGTH
     """radius at which the discs have no room left, as far as an arrangement of them is known"""
 

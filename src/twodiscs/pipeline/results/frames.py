@@ -33,6 +33,9 @@ def read(path, table):
     table = table.of(rows[0] if rows else ())
     columns = table.columns()
     kinds = {name: KINDS[column.kind] for name, column in columns.items()}
+    # N! parts of configuration space may be more than 64 bits hold.
+    whole = [name for name, kind in kinds.items() if kind == KINDS[int]]
+    kinds |= {n: "object" for n in whole if max((row[n] or 0 for row in rows), default=0) >= 2**63}
     configuration = _configuration(path)
     # Floats with all their digits: pandas' own parser may be off in the last one.
     frame = pd.DataFrame(rows, columns=list(columns)).astype(kinds)
