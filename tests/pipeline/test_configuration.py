@@ -697,7 +697,7 @@ def test_more_discs_are_a_scene_of_their_own():
     assert request.watch.trajectory == 0.125  # half of h/4
     assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
     ring = one(discs=3, radii=[0.1], effects={"periodic": "x"})
-    assert ring.watch.trajectory is None
+    assert ring.watch.trajectory == 0.143  # half of the largest radius
     configuration = load.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
     assert configuration.plain == ()
 
@@ -714,15 +714,6 @@ def test_more_discs_are_a_scene_of_their_own():
         (
             {"discs": 3, "radii": [0.1], "watch": {"hop_histogram": [0.1]}},
             "watch.hop_histogram must be false with 3 discs",
-        ),
-        (
-            {
-                "discs": 3,
-                "radii": [0.1],
-                "effects": {"periodic": "x"},
-                "watch": {"trajectory": 0.1},
-            },
-            "watch.trajectory must be false, for trajectories of 3 discs are those between walls",
         ),
     ],
 )

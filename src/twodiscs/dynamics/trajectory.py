@@ -185,60 +185,64 @@ def columns(scene):
 
 
 def events_of_many(scene, state, duration):
-    """Yield (time, event, first, second, state) of more than two discs between walls.
+    """Yield (time, event, first, second, state) of more than two discs.
 
     ``state`` is an array of 4N numbers, as a column of ``starts.states``; events are as in
     ``events_of``, but for a wall, which is called by its axis, wall_x or wall_y. ``first`` and
-    ``second`` are the numbers of the discs that the event is of, None where there is none.
+    ``second`` are the numbers of the discs that the event is of, None where there is none. On a
+    ring places go on beyond the cell, and there is no event in that.
     """
     from twodiscs.dynamics import many  # a kernel that two discs have no use for
 
     n, law, time = scene.discs, many.law_of(scene.gas), 0.0
     x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
+    ring = law.ring[0] if law.ring else None
+    # By so much places are beyond the cell that the kernel keeps to.
+    beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
+    x -= beyond
     old_x, old_y, counts = np.zeros_like(x), np.zeros_like(y), np.zeros((many.N, 1))
     remaining, times, codes, speeds = (np.full(1, float(duration)) for _ in range(4))
     pairs = [(j, i) for i in range(n) for j in range(i)]
-    yield time, "start", None, None, np.ravel([x, y, u, v])
+    along = ((n, "vertical_hop"), (0, "horizontal_hop"))
+    along = [(start, hop) for start, hop in along if hop in scene.events]
+    yield time, "start", None, None, np.ravel([x + beyond, y, u, v])
     while True:
-        before, speed = np.ravel([x, y]), np.ravel([u, v])
+        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v])
         many.find_events(x, y, u, v, remaining, times, codes, speeds, law)
         flight, code = float(times[0]), int(codes[0])
         many.advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
-        after, hops = np.ravel([x, y]), []
-        for start, name in ((n, "vertical_hop"), (0, "horizontal_hop")):
+        if ring:
+            beyond = ring * np.round(((before + flight * speed)[:n, None] - x) / ring)
+        after, hops = np.ravel([x + beyond, y]), []
+        for start, name in along:
             for i, j in pairs:
                 a, b = start + i, start + j
                 apart = before[a] - before[b]
                 if crosses(apart, after[a] - after[b]):
                     hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
         for until, name, i, j in sorted(hops):
-            places = before + until * speed
-            yield time + until, name, i + 1, j + 1, np.concatenate([places, speed])
-        time, now = time + flight, np.ravel([x, y, u, v])
+            then = before + until * speed
+            yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
+        time, now = time + flight, np.ravel([x + beyond, y, u, v])
         if code == int(END_OF_TIME):
             yield float(duration), "end", None, None, now
             return
         if code > 2 * n:
             i, j = pairs[code - 2 * n - 1]
             yield time, "disc_collision", i + 1, j + 1, now
-        else:
+        elif code > 0:
             yield time, f"wall_{'xy'[(code - 1) % 2]}", (code - 1) // 2 + 1, None, now
 
 
 def followed_many(scene, seed, start=None, duration=None, watch=None):
     """Return the rows of ``events_of_many`` as a list, as ``followed`` does of two discs.
 
-    They need walls, a ``start`` is one of ``starts.states``, and without a ``duration`` they last
-    some ``LONGEST_OF_MANY`` events.
+    A ``start`` is one of ``starts.states``, and without a ``duration`` they last some
+    ``LONGEST_OF_MANY`` events.
     """
     from twodiscs.dynamics import many
 
     seed = whole("seed", seed, 0)
-    if scene.periodic:
-        raise InputError(
-            f"periodic must be left out for a trajectory of {scene.discs} discs, not "
-            f"{scene.periodic!r}"
-        )
     rate = many.expected_event_rate(scene)
     if duration is None:
         duration = nearest_power_of_two(LONGEST_OF_MANY / rate)
@@ -276,7 +280,8 @@ def _state_of_many(scene, start):
     if state.size != len(names) or not np.isfinite(state).all():
         raise InputError(f"start must be the numbers {', '.join(names)}, not {start!r:.80}")
     (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
-    for axis, centres in (("x", x), ("y", y)):
+    for axis in scene.walled:
+        centres = x if axis == "x" else y
         reach = scene.side(axis) / 2 - scene.radius
         if (disc := int(np.argmax(np.abs(centres)))) >= 0 and abs(centres[disc]) > reach + (
             ROUNDING * scene.side(axis)
@@ -285,7 +290,10 @@ def _state_of_many(scene, start):
                 f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} between "
                 f"{-reach!r} and {reach!r}, not {float(centres[disc])!r}"
             )
-    apart = np.hypot(x[:, None] - x, y[:, None] - y)[np.triu_indices(n, 1)].min()
+    dx = x[:, None] - x
+    if scene.periodic:
+        dx -= scene.width * np.round(dx / scene.width)
+    apart = np.hypot(dx, y[:, None] - y)[np.triu_indices(n, 1)].min()
     if apart < scene.contact_distance * (1 - ROUNDING):
         raise InputError(
             f"start must have the discs apart, with {scene.contact_distance!r} or more between "

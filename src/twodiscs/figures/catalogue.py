@@ -12,6 +12,7 @@ from twodiscs.figures.kit.captions import (
     longer_than,
     of_many,
     of_two,
+    on_ring,
     plain,
     plain_square,
     said,
@@ -212,6 +213,7 @@ FIGURES = {
                 """,
                 of_many,
             ),
+            Sentence("On the periodic axis places go on beyond the box.", on_ring),
         ),
         "figures.motion.hopping_trajectory",
         tables=("trajectory",),
@@ -459,6 +461,13 @@ ANIMATION = Entry(
             Traces are the latest paths of the centres. Beneath, where they are along that side.
             """,
             of_many,
+        ),
+        Sentence(
+            """
+            What leaves at a dotted end comes in at the opposite one; beneath, places go on beyond
+            the box.
+            """,
+            on_ring,
         ),
         Sentence(
             """

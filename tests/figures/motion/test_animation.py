@@ -188,3 +188,24 @@ def test_paths_with_effects_are_those_of_the_dynamics(effects):
         inside = stage.folded(places)
         assert (np.abs(inside).max(axis=0) < [0.7501, 0.5001]).all()
     stage.show(stage.centre)
+
+
+def test_what_leaves_a_ring_comes_in_at_the_other_end():
+    """Of four discs: all in the box, an image of each a period away, no trace across the box."""
+    box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)
+    rows = Trajectory.rows(box, 0.15, 1)
+    with style.context():
+        stage = animation.StageOfMany(box, 0.15, rows)
+    beyond = 0
+    for time in stage.times:
+        stage.show(time)
+        for disc in range(1, 5):
+            x, y = stage.moving[f"disc {disc}"].center
+            assert abs(x) <= 0.75
+            assert abs(y) <= 0.35 + 1e-12
+            image = x - np.copysign(1.5, x), y
+            assert stage.moving[f"disc {disc} x"].center == pytest.approx(image)
+            beyond += abs(stage.places(disc, [time])[0, 0]) > 0.75
+            for (x1, _), (x2, _) in stage.moving[f"trace {disc}"].get_segments():
+                assert abs(x1 - x2) < 0.5
+    assert beyond

@@ -34,6 +34,11 @@ def of_many(shown):
     return "discs" in shown.effects
 
 
+def on_ring(shown):
+    """Say whether the scene has more discs than two, on a ring."""
+    return of_many(shown) and "periodic" in shown.effects
+
+
 def of_two(shown):
     """Say whether the scene has two discs."""
     return not of_many(shown)

@@ -181,11 +181,7 @@ class Stage:
         x0, x1, y0, y1 = extent
         artists = {}
         for disc, (face, edge) in enumerate(drawing.DISCS, 1):
-            # On a periodic axis a disc at an end of the box shows at the other one, too.
-            images = [""] + [f" {axis}" for axis in self.scene.periodic if axis in self.sides]
-            for image in images:
-                circle = Circle((0, 0), self.scene.radii[disc - 1], fc=face, ec=edge, lw=1.2)
-                artists[f"disc {disc}{image}"] = self.box.add_patch(circle)
+            artists |= self._circles(disc, self.scene.radii[disc - 1], face, edge)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
             (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
@@ -205,26 +201,42 @@ class Stage:
         (artists["now"],) = self.strip.plot([], [], "o", color=BLACK, ms=3.5, mew=0)
         return artists
 
+    def _circles(self, disc, radius, face, edge):
+        """Return the artists of a disc: on a periodic axis it shows at both ends of the box."""
+        images = [""] + [f" {axis}" for axis in self.scene.periodic if axis in self.sides]
+        return {
+            f"disc {disc}{image}": self.box.add_patch(
+                Circle((0, 0), radius, fc=face, ec=edge, lw=1.2)
+            )
+            for image in images
+        }
+
+    def _show_disc(self, disc, edge, past, time):
+        """Move a disc, its trace over the times ``past`` and its number; return its place."""
+        moving = self.moving
+        places = self.folded(self.places(disc, past))
+        segments = np.stack([places[:-1], places[1:]], axis=1)
+        fading = np.array([to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]])
+        if self.scene.periodic:  # what goes out at one end and comes in at the other is no path
+            near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(self.sides.values()) / 2
+            segments, fading = segments[near], fading[near]
+        moving[f"trace {disc}"].set(segments=segments, colors=fading)
+        moving[f"disc {disc}"].center = places[-1]
+        for axis in filter(self.sides.get, self.scene.periodic):
+            image = places[-1].copy()
+            column = "xy".index(axis)
+            image[column] -= np.copysign(self.sides[axis], image[column])
+            moving[f"disc {disc} {axis}"].center = image
+        moving[f"number {disc}"].xy = places[-1]
+        return places[-1]
+
     def show(self, time):
         """Move everything to where it is at ``time``."""
         moving = self.moving
         past = self.path(max(time - self.trace, self.times[0]), time)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
-            places = self.folded(self.places(disc, past))
-            segments = np.stack([places[:-1], places[1:]], axis=1)
-            fading = np.array([to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]])
-            if self.scene.periodic:  # what goes out at one end and comes in at the other is no path
-                near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(self.sides.values()) / 2
-                segments, fading = segments[near], fading[near]
-            moving[f"trace {disc}"].set(segments=segments, colors=fading)
-            moving[f"disc {disc}"].center = places[-1]
-            for axis in filter(self.sides.get, self.scene.periodic):
-                image = places[-1].copy()
-                column = "xy".index(axis)
-                image[column] -= np.copysign(self.sides[axis], image[column])
-                moving[f"disc {disc} {axis}"].center = image
-            moving[f"centre {disc}"].set_data(*places[-1:].T)
-            moving[f"number {disc}"].xy = places[-1]
+            place = self._show_disc(disc, edge, past, time)
+            moving[f"centre {disc}"].set_data(*place[:, None])
         since = time - self.centre if self.hop else -1
         moving["line"].set_visible(since == 0)
         moving["text"].set_visible(0 <= since < self.marked)
@@ -253,8 +265,9 @@ class StageOfMany(Stage):
         axis, side = many.along(self.of), max(self.of.width, self.of.height)
         self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
         times = self.path(self.times[0], self.times[-1])
-        self.strip.set(xlim=(times[0], times[-1]), ylim=(-side / 2, side / 2), xlabel="time $t$")
-        self.strip.set_ylabel(f"${axis}$")
+        self.strip.set(xlim=(times[0], times[-1]), ylabel=f"${axis}$", xlabel="time $t$")
+        if axis not in self.scene.periodic:  # where places go on beyond the box
+            self.strip.set_ylim(-side / 2, side / 2)
         for disc, colour in enumerate(self.colours, 1):
             places = self.places(disc, times)[:, "xy".index(axis)]
             self.strip.plot(times, places, color=colour, lw=0.8)
@@ -263,9 +276,7 @@ class StageOfMany(Stage):
         artists = {}
         for disc, colour in enumerate(self.colours, 1):
             face = tuple(0.45 * part + 0.55 for part in colour)
-            artists[f"disc {disc}"] = self.box.add_patch(
-                Circle((0, 0), self.scene.radius, facecolor=face, edgecolor=colour, linewidth=1.2)
-            )
+            artists |= self._circles(disc, self.scene.radius, face, colour)
         for disc in range(1, self.of.discs + 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
             artists[f"number {disc}"] = drawing.label(
@@ -278,13 +289,7 @@ class StageOfMany(Stage):
         """Move everything to where it is at ``time``."""
         past = self.path(max(time - self.trace, self.times[0]), time)
         for disc, colour in enumerate(self.colours, 1):
-            places = self.places(disc, past)
-            fading = [to_rgba(colour, 1 - (time - t) / self.trace) for t in past[1:]]
-            self.moving[f"trace {disc}"].set(
-                segments=np.stack([places[:-1], places[1:]], axis=1), colors=fading
-            )
-            self.moving[f"disc {disc}"].center = places[-1]
-            self.moving[f"number {disc}"].xy = places[-1]
+            self._show_disc(disc, colour, past, time)
         self.moving["now"].set_data([time, time], self.strip.get_ylim())
 
 

@@ -48,12 +48,16 @@ def world_lines(box, rows, radius=None):
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     shades = colours(box, rows[0])
-    for axes, width in ((whole, THIN), (close, THICK)):
-        axes.set(ylabel=f"${axis}$", ylim=(-side / 2, side / 2))
-        for disc, colour in enumerate(shades, 1):
-            axes.plot(times, [row[f"{axis}{disc}"] for row in rows], color=colour, lw=width)
     whole.set_xlim(times[0], times[-1])
     close.set_xlim(times[0], times[0] + CLOSE * (times[-1] - times[0]))
+    places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
+    for axes, width in ((whole, THIN), (close, THICK)):
+        shown = places[:, times <= axes.get_xlim()[1]]
+        goes_on = axis in box.effects.get("periodic", "")
+        low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
+        axes.set(ylabel=f"${axis}$", ylim=(low, high))
+        for line, colour in zip(places, shades, strict=True):
+            axes.plot(times, line, color=colour, lw=width)
     close.set_xlabel("time $t$")
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)

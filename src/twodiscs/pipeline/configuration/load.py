@@ -175,7 +175,7 @@ def _scene(block, path, common):
     if watched is None:
         watched = dict.fromkeys(Watch.__dataclass_fields__, True)
         many = scene.discs > 2
-        watched["trajectory"] = bool(_hops(scene)) and not (many and scene.periodic)
+        watched["trajectory"] = bool(_hops(scene))
         watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and not many
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     watch = Watch(
@@ -302,10 +302,6 @@ def _trajectory(asked, box, scene, path):
         return None
     if not _hops(scene):
         raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
-    if scene.discs > 2 and scene.periodic:
-        raise ConfigError(
-            f"{path} must be false, for trajectories of {scene.discs} discs are those between walls"
-        )
     if asked is not True:
         radius = asked
     elif not box.is_plain:
