@@ -316,6 +316,63 @@ def test_colours_follow_the_order_along_the_longer_side():
     assert colours(box, {"x1": -1.0, "x2": 0.0, "x3": 1.0}) == [b, c, a]
 
 
+# What is observed -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["three", "four on a ring"])
+def test_what_is_observed_are_trajectories(name):
+    """The states of a replica are those of the trajectory from its start, beyond the cell too."""
+    scene, times, kept = SCENES[name], [1.0, 3.0], []
+
+    def seen(start, now):
+        kept.append((start[:100].copy(), now[:100].copy()))
+        return now["x1"] - start["x1"]
+
+    td.observe(scene, seen, times, 10)
+    gone = 0
+    for time, (starts_of, states) in zip(times, kept, strict=True):
+        for start, now in zip(starts_of, states, strict=True):
+            path = td.trajectory(scene, start=start, duration=3.0)
+            (state,) = path.states_at([time])
+            assert [*state] == pytest.approx([*now], abs=1e-5)
+            gone += any(abs(now[f"x{k}"]) > scene.width / 2 for k in range(1, scene.discs + 1))
+    assert bool(gone) == bool(scene.periodic)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        SCENES["three"],
+        SCENES["four on a ring"],
+        Scene(1.5, 1.0, 0.24, discs=4),  # its states are drawn by chains
+    ],
+    ids=repr,
+)
+def test_averages_stay_and_have_honest_errors(scene):
+    """Five sigma: ⟨v²⟩ of D components is 1/D, and what places are on average does not change."""
+    first = {}
+
+    def seen(start, now):
+        energy = sum(now[f"{q}{disc}"] ** 2 for disc in range(1, scene.discs + 1) for q in "uv")
+        first.setdefault("y1", start["y1"])
+        nearest = abs(now["y1"] - now["y2"]) - abs(start["y1"] - start["y2"])
+        walls = now["y1"] ** 2 - start["y1"] ** 2
+        return np.stack([energy, now["v1"] ** 2, nearest, walls], axis=1)
+
+    found = td.observe(scene, seen, [0.0, 0.7, 4.0], 4096, seed=5)
+    components = scene.velocity_components
+    assert found.mean[:, 0] == pytest.approx(1, abs=1e-11)
+    assert (np.abs(found.mean[:, 1] - 1 / components) < 5 * found.stderr[:, 1]).all()
+    assert (np.abs(found.mean[:, 2:]) <= 5 * found.stderr[:, 2:]).all()
+    # ⟨v⁴⟩ = 3/(D (D + 2)); the error of an error from 4096 states is some per cent.
+    spread = 3 / (components * (components + 2)) - 1 / components**2
+    assert found.stderr[0, 1] == pytest.approx(math.sqrt(spread / 4096), rel=0.1)
+    # Replicas are independent: so are neighbours.
+    assert abs(np.corrcoef(first["y1"][1:], first["y1"][:-1])[0, 1]) < 5 / math.sqrt(4095)
+    again = td.observe(scene, seen, [0.0, 0.7, 4.0], 4096, seed=5, cores=2)
+    assert np.array_equal(again.mean, found.mean)
+
+
 # What is refused ---------------------------------------------------------------------------------
 
 

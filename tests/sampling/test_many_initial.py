@@ -125,3 +125,20 @@ def test_mean_room_in_a_channel():
         true = exact.measures(gas, hops=False).per_width / gas.discs
         # The inverse has a finite variance for N ≥ 2.
         assert abs(seen.mean() - true) < 5 * seen.std() / math.sqrt(seen.size)
+
+
+@pytest.mark.parametrize("name", ["channel", "channel, upright", "chain", "ring"])
+def test_each_disc_is_any_of_them(name):
+    """Five sigma on how often a disc is in which place of the row; the first states stay."""
+    gas, number = GASES[name], 400 if name == "chain" else 4000
+    found = initial.labelled(gas, number, 6)
+    assert np.array_equal(initial.labelled(gas, 50, 6), found[:, :50])
+    x, y, *_ = parts(gas, found)
+    ranks = np.argsort(np.argsort(y if gas.height > gas.width else x, axis=0), axis=0)
+    counts = np.array([np.bincount(rank, minlength=gas.discs) for rank in ranks])
+    share = 1 / gas.discs
+    assert np.all(np.abs(counts - number * share) < 5 * math.sqrt(number * share * (1 - share)))
+    # Nothing else has changed.
+    same = parts(gas, initial.states(gas, number, 6))
+    assert np.array_equal(np.sort(x, axis=0), np.sort(same[0], axis=0))
+    assert np.array_equal(found[2 * gas.discs :], np.vstack(same[2:]))

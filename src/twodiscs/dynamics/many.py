@@ -264,6 +264,39 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
             advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x)
 
 
+@optional(lambda laps, x, u, times, ring: None)
+def count_laps(laps, x, u, times, ring):
+    """Add to ``laps`` (N, lanes) the rounds that flights complete, as ``nearest`` undoes them."""
+    for i in range(laps.shape[0]):
+        for l in range(laps.shape[1]):
+            then = x[i, l] + u[i, l] * times[l]
+            laps[i, l] += (1.0 if then > ring[1] else 0.0) - (1.0 if then < -ring[1] else 0.0)
+
+
+@compiled
+def advance_all(states, laps, time, law, lanes=LANES):
+    """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
+
+    On a ring the rounds of discs are added to ``laps`` (N, replicas).
+    """
+    discs, replicas = laps.shape
+    for first in range(0, replicas, lanes):
+        stop = min(first + lanes, replicas)
+        some = states[:, first:stop].copy()
+        x, y = some[:discs], some[discs : 2 * discs]
+        u, v = some[2 * discs : 3 * discs], some[3 * discs :]
+        old_x, old_y, rounds = np.zeros_like(x), np.zeros_like(y), np.zeros_like(x)
+        remaining, times = np.full(stop - first, time), np.zeros(stop - first)
+        codes, speeds = np.zeros(stop - first), np.zeros(stop - first)
+        counts = np.zeros((N, stop - first))
+        while np.max(remaining) > 0.0:
+            find_events(x, y, u, v, remaining, times, codes, speeds, law)
+            count_laps(rounds, x, u, times, law.ring)
+            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None)
+        states[:, first:stop] = some
+        laps[:, first:stop] += rounds
+
+
 def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
     """Count all classes of events of a ``Gas`` in the blocks ``first`` … ``stop`` − 1.
 

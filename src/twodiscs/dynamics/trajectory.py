@@ -125,8 +125,12 @@ def advance_all(states, wraps, time, law):
 def unwrapped(scene, columns, wraps):
     """Add to places what jumps of a periodic separation took from them, so that paths go on.
 
-    ``columns`` are arrays by name, ``wraps`` those of ``advance_all``.
+    ``columns`` are arrays by name, ``wraps`` those of ``advance_all``, or of ``many.advance_all``.
     """
+    if scene.discs > 2:
+        for disc, laps in enumerate(wraps, 1):
+            columns[f"x{disc}"] += scene.width * laps
+        return
     law = law_of(scene)
     for k, axis in enumerate("xyz"):
         if axis in scene.periodic:

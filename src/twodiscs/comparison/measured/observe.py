@@ -9,13 +9,13 @@ import numpy as np
 
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.watching import watched
+from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
 from twodiscs.model.checks import InputError, count, shown
-from twodiscs.model.scene import two_discs
+from twodiscs.model.scene import a_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
-from twodiscs.theory import exact
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,25 +86,30 @@ def _seen(function, start, now):
 
 def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
     """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
-    two_discs(scene, "averages of observables")
-    stream, times = seed_of(scene, "observe", seed, name), _times(times)
+    stream, times = seed_of(a_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must be one of two arrays of states, not {shown(function)}")
     blocks = -(-count("replicas", replicas, most=10**9) // BLOCK)
-    if blocks * BLOCK < 2 or times[-1] * exact.event_rate(scene) > MOST_EVENTS:
+    rate = expected_event_rate(scene)
+    if times[-1] * rate > MOST_EVENTS:
         raise InputError(
-            f"times must be below {MOST_EVENTS / exact.event_rate(scene):.3g}, where "
-            f"{MOST_EVENTS:g} events are due, not {shown(times[-1])}"
+            f"times must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are due, "
+            f"not {shown(times[-1])}"
         )
-    law = law_of(scene)
+    if scene.discs == 2:
+        advance, law, wrapped = advance_all, law_of(scene), 3
+    else:
+        from twodiscs.dynamics import many  # a kernel that two discs have no use for
+
+        advance, law, wrapped = many.advance_all, many.law_of(scene.gas), scene.discs
 
     def snapshots(block):
         """Return the states of a block at time 0, and at all times."""
-        filled, wraps = states(scene, BLOCK, stream, block), np.zeros((3, BLOCK))
+        filled, wraps = states(scene, BLOCK, stream, block), np.zeros((wrapped, BLOCK))
         yield as_records(scene, filled)
         for step in np.diff(times, prepend=0.0):
             if step:
-                advance_all(filled, wraps, step, law)
+                advance(filled, wraps, step, law)
             now = as_records(scene, filled)
             unwrapped(scene, now, wraps)
             yield now

@@ -334,6 +334,30 @@ def draw_states(state, initial, states):
             states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
 
 
+@compiled
+def exchange_labels(state, states):
+    """Give the centres of each column of ``states`` (4N, number) to the discs at random."""
+    n = states.shape[0] // 4
+    for k in range(states.shape[1]):
+        for i in range(n - 1, 0, -1):
+            j = np.int64(next_bits(state) % np.uint64(i + 1))
+            for row, other in ((i, j), (n + i, n + j)):
+                states[row, k], states[other, k] = states[other, k], states[row, k]
+
+
+def labelled(gas, number, seed, block=0):
+    """Return ``states`` of which each disc is any of them with the same probability.
+
+    A channel has its discs in order, and a chain may not get far from the order it starts with.
+    That is of no concern to what all discs do together. Labels have a stream of their own, so that
+    the first states are the same however many there are.
+    """
+    drawn = states(gas, number, seed, block)
+    if method(gas) != "rejection":
+        exchange_labels(open_stream(~np.uint64(seed), block), drawn)
+    return drawn
+
+
 def states(gas, number, seed, block=0, by=None):
     """Return ``number`` states of the invariant measure of a ``Gas``, one a column of (4N, number).
 
