@@ -220,10 +220,12 @@ def intervals(
 ) -> Intervals:
     """Draw ``number`` intervals between hops of one kind: their mean, bins and density at 0.
 
-    ``hop`` is "vertical_hop" or "horizontal_hop". Numbers are rounded up to whole blocks of 2¹⁶,
-    as far as 1e11 events allow. Times are in time, densities in 1/time. ``seed``, ``cores`` and
-    ``progress`` are as in ``simulate``; ``more(number=…)`` of the result goes on from it. Raises
-    ``InputError`` for a hop that is blocked, and for rough discs.
+    ``hop`` is "vertical_hop" or "horizontal_hop", of more than two discs one of any pair. Numbers
+    are rounded up to whole blocks of 2¹⁶ (of more than two discs of about that or up to twice as
+    many), as far as 1e11 events allow. Times are in time, densities in 1/time. ``seed``, ``cores``
+    and ``progress`` are as in ``simulate``; ``more(number=…)`` of the result goes on from it.
+    Raises ``InputError`` for a hop that is blocked, for rough discs, and for more than two discs of
+    whose hops nothing is known.
 
     Example:
 
@@ -251,7 +253,8 @@ def transmission(
     rounded up to whole blocks, are followed both ways in time for the one, and forwards for the
     other. ``seed``, ``cores`` and ``progress`` are as in ``simulate``; ``more(hops=…)`` of the
     result goes on from it. Raises ``InputError`` for a hop that is blocked or along a periodic
-    axis.
+    axis, and for more than two discs: the next hop of any pair may be of another one, and then it
+    undoes nothing.
 
     Example:
 
@@ -273,9 +276,11 @@ def starts(
     """Draw ``number`` states of the invariant measure: an array (number,) with named columns.
 
     x1, y1, x2, y2 are the centres, from that of the box; u1, v1, u2, v2 the velocities. Balls have
-    z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their surfaces. ``number`` is an
-    integer up to 10⁸; ``seed`` and ``progress`` are as in ``simulate``. Raises ``InputError`` for
-    a number out of range, and where starts cannot be drawn.
+    z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their surfaces; N discs have x1 …
+    xN, then y, u and v. ``number`` is an integer up to 10⁸; ``seed`` and ``progress`` are as in
+    ``simulate``. States are independent; those of N discs too dense for anything else are the ends
+    of chains of trial moves, one each. Raises ``InputError`` for a number out of range, and where
+    starts cannot be drawn.
 
     Example:
 
@@ -299,8 +304,8 @@ def trajectory(
 
     It starts where the first one of ``starts`` with this seed is, or at the state ``start``, whose
     discs must be inside and apart, at an energy of 1/2. Without a ``duration``, a time, it lasts
-    some eight mean times of the rarest open hop, or some 6000 events. Hops are events here. On
-    periodic axes places go on beyond the cell.
+    some eight mean times of the rarest open hop, or some 6000 events, of more than two discs 1500.
+    Hops are events here. On periodic axes places go on beyond the cell.
 
     The table is a pandas ``DataFrame``, with columns as in ``starts``; ``attrs["scene"]`` is the
     scene, and ``states_at(times)`` has the states between the rows. Raises ``InputError`` for a

@@ -14,7 +14,7 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.exact import Theory
-from twodiscs.dynamics import counting, many
+from twodiscs.dynamics import counting, intervals, many
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.figures.motion.many import colours
 from twodiscs.model.box import Box
@@ -373,13 +373,53 @@ def test_averages_stay_and_have_honest_errors(scene):
     assert np.array_equal(again.mean, found.mean)
 
 
+# Intervals -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["three", "four"])
+def test_intervals_have_a_result_a_table_and_a_figure(name, tmp_path):
+    scene, hop = SCENES[name], "vertical_hop"
+    found = td.intervals(scene, hop, 1e5, seed=2, name=name)
+    known = name in KNOWN
+    assert (found.mean.exact is not None) == (found.mean.z is not None) == known
+    assert found.mean.status == "sampled"
+    assert ("not known" in str(found.mean)) == (not known)
+    assert found.intervals == sum(found.counts) + found.overflow >= 10**5
+    first, second = found.density[:2]
+    assert found.at_zero.value == pytest.approx((3 * first - second) / 2, rel=1e-12)
+    assert (found.at_zero.status, found.at_zero.exact) == ("extrapolated", None)
+    more = found.more(3e5)
+    assert more.rows == td.intervals(scene, hop, 3e5, seed=2, name=name).rows
+    found.save(tmp_path / "found.json")
+    assert td.load_result(tmp_path / "found.json").rows == found.rows
+    td.plot(more, tmp_path / "intervals.png")
+    table = SCENE_TABLES["hop_histogram"]
+    table.write(tmp_path / "hop_histogram.csv", more.rows)
+    assert table.read(tmp_path / "hop_histogram.csv") == more.rows
+
+
+@pytest.mark.parametrize("name", ["three", "four"])
+def test_the_mean_interval_is_compared_where_it_is_known(name):
+    scene, box = SCENES[name], Box.of(SCENES[name])
+    point = intervals.hop_intervals(scene, "vertical_hop", 10**5, 6)
+    theory = Theory.rows(box, [scene.radius])
+    (row,) = (
+        row
+        for row in Check.rows(box, theory, {"intervals": [json.loads(json.dumps(point))]})
+        if row["comparison"] == "hop_interval"
+    )
+    if name in KNOWN:
+        assert row["passed"] is row["independent"] is True
+    else:
+        assert (row["status"], row["z"], row["passed"]) == ("counted", None, None)
+
+
 # What is refused ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda s: td.intervals(s, "vertical_hop"), "discs must be 2 for intervals between hops"),
         (lambda s: td.transmission(s, "vertical_hop"), "discs must be 2 for passages, not 3"),
         (lambda s: exact.shell_expectation(s, "vertical_hop", 0.01), "discs must be 2 for shells"),
         (lambda s: td.plot(s), "scene must be plain to be drawn, but it has discs"),

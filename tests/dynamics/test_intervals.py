@@ -1,17 +1,24 @@
 """Intervals between hops: exact draws, whose mean and density at zero are known."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
 
-from twodiscs.dynamics import intervals
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.hop_histogram import HopHistogram
+from twodiscs.dynamics import intervals, many, trajectory
 from twodiscs.dynamics.law import law_of
+from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.sampling.blocks import rounds
+from twodiscs.sampling.many import initial, measures
 from twodiscs.sampling.starts import origins
 from twodiscs.theory.exact import mean_times
+from twodiscs.theory.many.rates import rates
 from twodiscs.theory.tails import density_at_zero
 
 PAPER = Scene(1.5, 1.0, 0.2)
@@ -61,8 +68,8 @@ def test_hop_chains_do_not_depend_on_lanes():
             sums, np.ones(1, np.bool_),
         )  # fmt: skip
         results.append((totals, sums))
-    for few, many in zip(*results, strict=True):
-        assert np.array_equal(few, many)
+    for few, more in zip(*results, strict=True):
+        assert np.array_equal(few, more)
 
 
 def test_squares_are_those_of_the_counts_of_each_chain():
@@ -95,3 +102,97 @@ def test_wide_bins_widen():
 def test_a_blocked_hop_has_no_intervals():
     with pytest.raises(ValueError, match="blocked"):
         intervals.hop_intervals(PAPER.with_radius(0.3), "horizontal_hop", 1, 1)
+
+
+# More than two discs -----------------------------------------------------------------------------
+
+
+MANY = {
+    "three": (Scene(1.5, 1.0, 0.15, discs=3), "vertical_hop"),
+    "three, across": (Scene(1.5, 1.0, 0.15, discs=3), "horizontal_hop"),
+    "four in a channel": (Scene(1.6, 0.6, 0.18, discs=4), "vertical_hop"),
+    "four": (Scene(1.5, 1.0, 0.12, discs=4), "vertical_hop"),
+    "four on a ring": (Scene(1.5, 1.0, 0.15, periodic="x", discs=4), "vertical_hop"),
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [name if "ring" not in name else pytest.param(name, marks=pytest.mark.slow) for name in MANY],
+)
+def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
+    """Five sigma: the first interval of a replica, or one cut off at an end, would show."""
+    scene, event = MANY[name]
+    found = intervals.hop_intervals(scene, event, 2_000_000, 4)
+    mean, error = mean_times(scene)[event], 0.0
+    if mean is None:
+        known, spread = (rates(scene.gas, part) for part in measures.sample(scene.gas, 10**6, 5))
+        mean, error = 1 / known[event], spread[event] / known[event] ** 2
+    assert abs(found["mean"] - mean) <= 5 * math.hypot(found["stderr"], error)
+    assert found["stderr"] < 1.5e-3 * mean
+    assert sum(found["counts"]) + found["overflow"] == found["intervals"] >= 2_000_000
+
+
+@pytest.mark.parametrize("name", ["three", "three, across", "four on a ring"])
+def test_intervals_of_many_are_those_of_trajectories(name):
+    """All that begin within the window, to their end, counted from the rows of each replica."""
+    scene, event = MANY[name]
+    replicas, window, width = 5, 16.0, 0.125
+    wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
+    going = np.ones(1, np.bool_)
+    times, numbers = many.run_intervals(
+        scene.gas, event, 7, 3, 4, replicas, window, (width, wide), sums, going
+    )
+    due = np.zeros((3, 66), np.int64)
+    for k, state in enumerate(initial.states(scene.gas, replicas, 7, 3).T):
+        rows = trajectory.events_of_many(scene, state, 4 * window)
+        at = np.array([time for time, name, *_ in rows if name == event])
+        own = np.diff(at)[at[:-1] < window]
+        assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-12))
+        bins = np.minimum(own / width, 64).astype(int)
+        c = np.bincount(np.concatenate([bins, wide[bins]]), minlength=66)
+        due += [c, c * c, c * own.size]
+    assert np.array_equal(sums, due)
+
+
+def test_errors_of_intervals_of_many_are_those_of_repetitions():
+    """The spread of 60 estimates over the mean error, of the mean and in bins: five sigma."""
+    scene, event = MANY["three"]
+    theory = Theory.rows(Box.of(scene), [scene.radius])
+    points = [intervals.hop_intervals(scene, event, 1, seed) for seed in range(60)]
+    tables = []
+    for point in points:
+        some = {name: point[name][:20] for name in ("counts", "squares", "products")}
+        some["wide"] = {name: values[:20] for name, values in point["wide"].items()}
+        some["wide"]["edges"] = point["wide"]["edges"][:21]
+        tables.append(HopHistogram.rows(theory, {"intervals": [point | some]}))
+    for k in (0, 1, 10, 20, 35, 39):  # the last ones are wide
+        densities = [rows[k]["density"] for rows in tables]
+        errors = np.array([rows[k]["stderr"] for rows in tables])
+        ratio = np.std(densities, ddof=1) / math.sqrt((errors**2).mean())
+        assert abs(ratio - 1) < 5 / math.sqrt(2 * 59), k
+    errors = np.array([point["stderr"] for point in points])
+    ratio = np.std([point["mean"] for point in points], ddof=1) / math.sqrt((errors**2).mean())
+    assert abs(ratio - 1) < 5 / math.sqrt(2 * 59)
+
+
+def test_intervals_of_many_do_not_depend_on_who_draws_them():
+    run = intervals.IntervalRun(*MANY["three"], 150_000, 3)
+    (part,) = run.parts.values()
+    assert part.planned == 3
+    pieces = [
+        {"first": a, "stop": b, "sums": [array.tolist() for array in part.work(a, b)]}
+        for a, b in ((0, 1), (1, 3))
+    ]
+    joined = rounds.joined(part, json.loads(json.dumps(pieces)))
+    assert run.point({"all": joined}) == run.alone()
+
+
+def test_what_is_not_known_of_many_is_refused():
+    scene = Scene(1.5, 1.0, 0.13, discs=16)
+    with pytest.raises(ValueError, match="leaves 16 discs so little room that nothing is known"):
+        intervals.hop_intervals(scene, "vertical_hop", 1, 1)
+    with pytest.raises(ValueError, match="blocked"):
+        intervals.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)
+    with pytest.raises(ValueError, match="budget must allow for 65536 intervals"):
+        intervals.hop_intervals(*MANY["three"], 1, 1, budget=1000)

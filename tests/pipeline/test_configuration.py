@@ -698,6 +698,8 @@ def test_more_discs_are_a_scene_of_their_own():
     assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
     ring = one(discs=3, radii=[0.1], effects={"periodic": "x"})
     assert ring.watch.trajectory == 0.143  # half of the largest radius
+    histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
+    assert histogram.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     configuration = load.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
     assert configuration.plain == ()
 
@@ -712,8 +714,12 @@ def test_more_discs_are_a_scene_of_their_own():
         ({"discs": 3, "radii": [0.31]}, "radii: radius 0.31 does not fit: of 3 discs"),
         ({"discs": 3, "effects": {"field": 1}}, "effects: field must be left out with 3 discs"),
         (
-            {"discs": 3, "radii": [0.1], "watch": {"hop_histogram": [0.1]}},
-            "watch.hop_histogram must be false with 3 discs",
+            {
+                "discs": 3,
+                "radii": [0.1],
+                "watch": {"hop_histogram": {"event": "horizontal_hop", "radii": [0.26]}},
+            },
+            "watch.hop_histogram must keep to radii below 0.25, where horizontal_hop is possible",
         ),
     ],
 )

@@ -41,7 +41,7 @@ CALLED = {
     "channel": ALL - {"horizontal_hop_area"},
     "field": ALL - {"pressure"},
     "rough": ALL - {"hop_histogram"},
-    "three": ALL - {"hop_histogram"},
+    "three": ALL,
     "channel-of-eight": ALL - {"hop_histogram"},
 }
 

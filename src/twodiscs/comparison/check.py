@@ -130,6 +130,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
         values = _normal_values(
             radius, row["exact_mean"], row["mean"], row["mean_stderr"], row["z"]
         )
+        if row["exact_mean"] is None:
+            values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in by_radius(dynamics):
         scene = box.scene(point["radius"])

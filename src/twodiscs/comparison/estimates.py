@@ -406,11 +406,14 @@ def density_at_zero(counts, intervals, width):
     return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
 
 
-def density_of_chains_at_zero(densities, errors):
+def density_of_chains_at_zero(densities, errors, linear=False):
     """Return the density at 0 as ``density_at_zero`` does, and its error.
 
     ``densities`` of the first two bins have ``errors`` of their own, such as those of the spread
-    between chains of intervals; they are taken as uncorrelated.
+    between chains of intervals; they are taken as uncorrelated. If ``linear`` it is that of a
+    straight line instead.
     """
     (first, second), (error, other) = densities, errors
+    if linear:
+        return (3 * first - second) / 2, math.hypot(3 * error, other) / 2
     return (7 * first - second) / 6, math.hypot(7 * error, other) / 6

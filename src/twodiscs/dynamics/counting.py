@@ -427,7 +427,7 @@ class CountingRun:
             block_events,
             budget,
             on_grid(min(planned, budget / block_events) if scene.discs > 2 else planned),
-            _cost_ratio(scene),
+            cost_ratio(scene),
         )
 
     def point(self, progress):
@@ -471,7 +471,7 @@ def work_per_event(scene):
     return max(exact.work_per_event(scene), _proposals(scene) / strip.PROPOSALS_PER_EVENT)
 
 
-def _cost_ratio(scene):
+def cost_ratio(scene):
     """Return the time of an event over that of one of the plain ensemble, starts included."""
     if scene.discs > 2:
         return 1 + PAIR * scene.discs * (scene.discs - 1) / 2

@@ -1,15 +1,19 @@
 """Intervals between hops, each of them an exact draw.
 
 Chains start on the surface of a hop, weighted by the flux through it, and record the next returns:
-no window could cut one off.
+no window could cut one off. Chains of more than two discs start anywhere, and record to their end
+all intervals that begin within a window of time. That has no favourites: what these are in all over
+how many they are is, in the mean, what an interval is (Palm's formula).
 """
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
 
+from twodiscs.dynamics.counting import cost_ratio, expected_event_rate
 from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
@@ -24,7 +28,7 @@ from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of, whole
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Scene, two_discs
+from twodiscs.model.scene import Scene, a_scene
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
@@ -157,7 +161,7 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     upright, horizontal = scene, None
     if event == "horizontal_hop" and scene.has_effects:
         horizontal = True
-    elif event == "horizontal_hop":
+    elif event == "horizontal_hop" and scene.discs == 2:
         # That is a vertical hop of the box on its side.
         upright = Box.of(scene).turned().scene(scene.radius)
     edges = wide_edges()
@@ -165,13 +169,40 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     beyond = BINS + len(edges)
     wide = np.full(BINS + 1, beyond)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    sums = np.zeros((2, beyond + 1), np.int64)
+    sums = np.zeros((2 if scene.discs == 2 else 3, beyond + 1), np.int64)
+    going = np.ones(1, np.bool_) if going is None else going
+    if scene.discs > 2:
+        from twodiscs.dynamics import many  # a kernel that two discs have no use for
+
+        stop, window, bins = first + blocks, _window(scene, event), (_width(scene, event), wide)
+        totals = many.run_intervals(
+            scene.gas, event, seed, first, stop, chains, window, bins, sums, going
+        )
+        return totals, sums
     totals = record_returns(
         np.uint64(seed), first, first + blocks, chains, LANES, returns, law_of(upright),
-        *origins(upright), horizontal, _width(scene, event), wide, sums,
-        np.ones(1, np.bool_) if going is None else going,
+        *origins(upright), horizontal, _width(scene, event), wide, sums, going,
     )  # fmt: skip
     return totals, sums
+
+
+def _mean(scene, event):
+    """Return the mean interval, of more than two discs maybe within a few per cent only."""
+    if scene.discs == 2:
+        return exact.mean_times(scene)[event]
+    from twodiscs.dynamics import many
+
+    if not (rate := many.expected_rates(scene).get(event)):
+        raise InputError(
+            f"radius {scene.radius!r} leaves {scene.discs} discs so little room that nothing is "
+            f"known of the time between two events {event}"
+        )
+    return 1 / rate
+
+
+def _window(scene, event):
+    """Return a time in which ``RETURNS`` intervals of more than two discs begin, or up to twice."""
+    return 2.0 ** math.ceil(math.log2(RETURNS * _mean(scene, event)))
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -186,8 +217,10 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
     number of intervals and of chains, and the mean with its standard error over chains. With c
     intervals of a chain in a bin, squares are Σ c² over the chains; wide has edges (in bins),
-    counts and squares of bins that widen with time. Raises ``InputError`` for a hop that is unknown
-    or blocked, or a number out of range.
+    counts and squares of bins that widen with time. Chains of more than two discs have n intervals
+    each, which differs: then products are Σ c n, and intervals_squared is Σ n². Raises
+    ``InputError`` for a hop that is unknown or blocked, one of which nothing is known, or a number
+    out of range.
     """
     return IntervalRun(scene, event, intervals, seed, budget).alone()
 
@@ -203,7 +236,7 @@ class IntervalRun:
     budget: int = BUDGET
 
     def __post_init__(self):
-        scene = two_discs(self.scene, "intervals between hops")
+        scene = a_scene(self.scene)
         one_of("event", self.event, HOPS)
         if not scene.is_possible(self.event):
             raise InputError(
@@ -221,7 +254,10 @@ class IntervalRun:
 
     @property
     def _events(self):
-        return exact.events_per_interval(self.scene, self.event)
+        if self.scene.discs == 2:
+            return exact.events_per_interval(self.scene, self.event)
+        # Of a chain as if it had no more than it is meant to have.
+        return _window(self.scene, self.event) * expected_event_rate(self.scene) / RETURNS
 
     @property
     def _blocks(self):
@@ -242,26 +278,49 @@ class IntervalRun:
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
-        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains.
+        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains; of
+        more than two discs, with n intervals in a chain, Σ t n, Σ n and Σ n² besides.
         """
 
         def work(first, stop):
             totals, sums = recorded(
                 self.scene, self.event, stop - first, CHAINS, RETURNS, self.seed, first, self._going
             )
+            totals, *numbers = np.atleast_2d(totals)
             times = [int(time) for time in totals / self._grain]
-            return sums, np.array([sum(times), sum(time * time for time in times)], object)
+            moments = [sum(times), sum(time * time for time in times)]
+            for number in numbers:
+                n = [int(each) for each in number]
+                joint = sum(time * each for time, each in zip(times, n, strict=True))
+                moments += [joint, sum(n), sum(each * each for each in n)]
+            return sums, np.array(moments, object)
 
-        return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events)}
+        ratio = 1.0 if self.scene.discs == 2 else cost_ratio(self.scene)
+        return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events, ratio)}
 
     def point(self, progress):
         """Return the dict for a JSON file, given {"all": its ``Progress``}."""
-        (sums, (total, squares)), blocks = progress["all"][:2]
+        (sums, (total, squares, *more)), blocks = progress["all"][:2]
         n, total, squares = blocks * CHAINS, int(total), int(squares)
+        if more:
+            return self._of_windows(sums, n, total, squares, *map(int, more))
         unit = self._grain / RETURNS
         variance = (n * squares - total * total) / (n * n * (n - 1))
         mean, stderr = total / n * unit, math.sqrt(variance) * unit
         return _summary(self.scene, self.event, sums, n, mean, stderr)
+
+    def _of_windows(self, sums, chains, total, squares, joint, intervals, intervals_squared):
+        """Return the dict of more than two discs: the mean is a ratio."""
+        mean = Fraction(total, intervals)
+        spread = squares - 2 * mean * joint + mean**2 * intervals_squared
+        stderr = math.sqrt(spread * chains / (chains - 1)) / intervals
+        values = float(mean) * self._grain, stderr * self._grain
+        found, products = (
+            _summary(self.scene, self.event, sums[:2], chains, *values), sums[2].tolist()
+        )  # fmt: skip
+        found["wide"]["products"] = products[BINS + 1 : -1]
+        more = {"intervals": intervals, "intervals_squared": intervals_squared}
+        return found | more | {"products": products[:BINS]}
 
     def alone(self, watch=None, cores=1, kept=None):
         """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
@@ -273,7 +332,7 @@ class IntervalRun:
 
 
 def _width(scene, event):
-    return nearest_power_of_two(exact.mean_times(scene)[event] / 16)
+    return nearest_power_of_two(_mean(scene, event) / 16)
 
 
 def _summary(scene, event, sums, chains, mean, stderr):

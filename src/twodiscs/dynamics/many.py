@@ -297,6 +297,85 @@ def advance_all(states, laps, time, law, lanes=LANES):
         laps[:, first:stop] += rounds
 
 
+@compiled
+def hops_in_flight(before, after, l, time, when):
+    """Fill ``when`` with the times at which two discs came to be level, and return how many.
+
+    ``before`` and ``after`` (N, lanes) are coordinates at the ends of a flight of lane ``l``.
+    """
+    n = 0
+    for i in range(before.shape[0]):
+        for j in range(i):
+            start, end = before[i, l] - before[j, l], after[i, l] - after[j, l]
+            if crosses(start, end):
+                # In the order of time, a short list.
+                at, k = time * (start / (start - end)), n
+                while k > 0 and when[k - 1] > at:
+                    when[k] = when[k - 1]
+                    k -= 1
+                when[k] = at
+                n += 1
+    return n
+
+
+@compiled
+def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, bins, sums, going):
+    """Record the intervals between hops of any pair in the blocks ``first`` … ``stop`` − 1.
+
+    The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. Each
+    replica starts in the invariant measure; all intervals that begin within a ``window`` of time
+    are followed to their end. ``bins`` are (width, wide) of ``intervals.record_returns``; with c of
+    the n intervals of a replica in a bin, Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins;
+    int64). Returns their total time and number, (2, replicas of all blocks) doubles.
+    """
+    discs, width, wide = initial.discs, bins[0], bins[1]
+    states, totals = np.zeros((4 * discs, replicas)), np.zeros((2, (stop - first) * replicas))
+    when, per_width = np.zeros(discs * (discs - 1) // 2), 1.0 / width
+    for block in range(first, stop):
+        draw_states(open_stream(seed, block), initial, states)
+        for start in range(0, replicas, LANES):
+            some = states[:, start : start + LANES].copy()
+            x, y = some[:discs], some[discs : 2 * discs]
+            u, v = some[2 * discs : 3 * discs], some[3 * discs :]
+            lanes, own = some.shape[1], totals[:, (block - first) * replicas + start :]
+            old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
+            endless, times = np.full(lanes, np.inf), np.zeros(lanes)
+            codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+            # Of the last hop, negative before the first one: when it was, and how long ago.
+            elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
+            counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
+            vertical = VERTICAL, old_y, y
+            hop, before, after = vertical if hops_x is None else (HORIZONTAL, old_x, x)
+            while busy and going[0]:
+                busy = False
+                for _ in range(PASSES):
+                    find_events(x, y, u, v, endless, times, codes, speeds, law)
+                    advance(x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x)
+                    for l in range(lanes):
+                        at = 0.0
+                        if hits[hop, l] > seen[l]:
+                            seen[l] = hits[hop, l]
+                            for k in range(hops_in_flight(before, after, l, times[l], when)):
+                                interval = age[l] + (when[k] - at)
+                                if 0.0 <= last[l] < window:
+                                    index = min(np.int64(interval * per_width), wide.size - 1)
+                                    counts[l, index] += 1
+                                    counts[l, wide[index]] += 1
+                                    own[0, l] += interval
+                                    own[1, l] += 1.0
+                                age[l], at = 0.0, when[k]
+                                last[l] = elapsed[l] + at
+                        age[l] += times[l] - at
+                        elapsed[l] += times[l]
+                        busy |= (elapsed[l] < window) | ((last[l] >= 0.0) & (last[l] < window))
+            for l in range(lanes):
+                for k in range(sums.shape[1]):
+                    sums[0, k] += counts[l, k]
+                    sums[1, k] += counts[l, k] * counts[l, k]
+                    sums[2, k] += counts[l, k] * np.int64(own[1, l])
+    return totals
+
+
 def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
     """Count all classes of events of a ``Gas`` in the blocks ``first`` … ``stop`` − 1.
 
@@ -308,6 +387,15 @@ def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LAN
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, gas.discs, law_of(gas),
         initial_of(gas), hops_x,
+    )  # fmt: skip
+
+
+def run_intervals(gas, event, seed, first, stop, replicas, window, bins, sums, going):
+    """Record the intervals between hops of a ``Gas`` as ``record_intervals`` does."""
+    hops_x = True if event == "horizontal_hop" else None
+    return record_intervals(
+        np.uint64(seed), first, stop, replicas, window, law_of(gas), initial_of(gas), hops_x, bins,
+        sums, going,
     )  # fmt: skip
 
 

@@ -389,6 +389,7 @@ FIGURES = {
             with t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; error
             bars are one standard error.
             """,
+            Sentence("Hops are those of any pair; τ is measured where it is not known.", of_many),
             Sentence(
                 """
                 Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is

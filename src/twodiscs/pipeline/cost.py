@@ -62,7 +62,7 @@ def _most(scene, stage):
     return {
         "monte_carlo": sample * scene.monte_carlo["samples"],
         "dynamics": event * scene.event_budget,
-        "intervals": scene.histogram["event_budget"],
+        "intervals": (1.0 if discs == 2 else event) * scene.histogram["event_budget"],
     }[stage]
 
 

@@ -25,7 +25,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, accuracy, count, one_of, proportion, shown
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import Scene, a_scene, two_discs
+from twodiscs.model.scene import Scene, a_scene
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
@@ -192,8 +192,9 @@ class Intervals(Result):
     ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
     and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
     ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
-    estimate is a parabola through the first two bins, so it has no z. Intervals of one chain are
-    correlated, so that all errors are those of the spread between chains.
+    estimate is a parabola through the first two bins, so it has no z; of more than two discs, of
+    which another pair may hop next, it is a straight line. Intervals of one chain are correlated,
+    so that all errors are those of the spread between chains.
     """
 
     hop: str
@@ -223,8 +224,9 @@ class Intervals(Result):
         )  # fmt: skip
         bins = self.rows[:2]
         at_zero, spread = density_of_chains_at_zero(
-            [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins]
-        )
+            [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins],
+            linear=scene.discs > 2,
+        )  # fmt: skip
         few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if not scene.is_plain else tails.density_at_zero(scene, self.hop)
         error, status = (None, "too-few") if few else (spread, "extrapolated")
@@ -343,7 +345,7 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Intervals`` between hops (see the face)."""
     one_of("hop", hop, HOPS)
-    if two_discs(scene, "intervals between hops").moment_of_inertia is not None:
+    if a_scene(scene).moment_of_inertia is not None:
         raise InputError(
             "scene must have smooth discs, for rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"

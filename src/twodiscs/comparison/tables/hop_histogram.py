@@ -25,13 +25,13 @@ class HopHistogram(Table):
     """count/(intervals × width of the bin)"""
     stderr: RATE
     """
-    its standard error from the spread between independent chains, each of 256 successive intervals;
-    empty for an empty bin
+    its standard error from the spread between independent chains, each of 256 successive intervals
+    or, of more than two discs, of all that begin within a window of time; empty for an empty bin
     """
     intervals: COUNT
     """intervals in all, those beyond the last bin included"""
     exact_mean: TIME
-    """exact mean interval"""
+    """exact mean interval, empty where none is known"""
     mean: TIME
     """mean of all intervals"""
     mean_stderr: TIME
@@ -75,14 +75,22 @@ def _bin_rows(point):
     """Yield the rows of the bins of a point, equal ones and wide ones."""
     from twodiscs.comparison import estimates
 
-    width, chains = point["bin_width"], point["chains"]
+    width, chains, intervals = point["bin_width"], point["chains"], point["intervals"]
     equal = {"edges": range(len(point["counts"]) + 1), **point}
     for bins, histogram in (("equal", equal), ("wide", point["wide"])):
-        columns = pairwise(histogram["edges"]), histogram["counts"], histogram["squares"]
-        for (left, right), count, squares in zip(*columns, strict=True):
-            per_chain = chains / (point["intervals"] * (right - left) * width)
-            sums = {"n": per_chain}, {"n": count}, {"n*n": squares}
-            density = estimates.combination(*sums, chains)
+        names = [name for name in ("counts", "squares", "products") if name in histogram]
+        columns = pairwise(histogram["edges"]), *(histogram[name] for name in names)
+        for (left, right), count, squares, *product in zip(*columns, strict=True):
+            per_chain = chains / (intervals * (right - left) * width)
+            weights, totals, products = {"n": per_chain}, {"n": count}, {"n*n": squares}
+            density = estimates.combination(weights, totals, products, chains)
+            if product:
+                # Of counts over all intervals of a chain, whose number varies.
+                weights |= {"all": -per_chain * count / intervals}
+                products |= {"n*all": product[0], "all*all": point["intervals_squared"]}
+                totals |= {"all": intervals}
+                error = estimates.combination(weights, totals, products, chains).stderr
+                density = estimates.Estimate(density.value, error, chains)
             yield {
                 "bins": bins,
                 "left": left * width,

@@ -30,7 +30,7 @@ APART, APART_SHORT = 1.2, 0.4
 
 
 def draw(box, tables):
-    """Draw the densities of hop_histogram.csv, in units of the exact mean interval."""
+    """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
     rows = tables["hop_histogram"]
     figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP)
     whole = panels.add_panel(figure, panels.BOTTOM + SHORT + GAP, ALL)
@@ -53,7 +53,7 @@ def draw(box, tables):
             axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
-        if not box.effects:
+        if box.is_plain:
             _mark_zero(short, box, group[0], colour)
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
@@ -78,14 +78,19 @@ def _mark_zero(axes, box, row, colour):
         axes.plot([-DASH, DASH], [value, value], color=colour, lw=1.8, clip_on=False, zorder=5)
 
 
+def unit_of(row):
+    """Return the exact mean interval of a row or, where that is not known, the measured one."""
+    return row["exact_mean"] or row["mean"]
+
+
 def curve(rows, fewest):
-    """Return (edges, density, standard error) in units of the exact mean interval.
+    """Return (edges, density, standard error) in units of the mean interval (``unit_of``).
 
     ``rows`` are successive bins of one radius. The first one with fewer than ``fewest`` intervals
     is left out, and all that come after it.
     """
     shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
-    mean = rows[0]["exact_mean"]
+    mean = unit_of(rows[0])
     edges = [rows[0]["left"], *(row["right"] for row in shown)]
     values = ([row[name] * mean for row in shown] for name in ("density", "stderr"))
     return np.array(edges) / mean, *map(np.array, values)

@@ -174,9 +174,8 @@ def _scene(block, path, common):
     watched = block.get("watch")
     if watched is None:
         watched = dict.fromkeys(Watch.__dataclass_fields__, True)
-        many = scene.discs > 2
         watched["trajectory"] = bool(_hops(scene))
-        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and not many
+        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and scene.discs == 2
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     watch = Watch(
         volume=watched["volume"],
@@ -193,7 +192,7 @@ def _scene(block, path, common):
             box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
-    for radius in watch.hop_histogram:
+    for radius in watch.hop_histogram if scene.discs == 2 else ():
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(
@@ -269,11 +268,6 @@ def _histogram(asked, box, scene, path):
     event = asked.get("event", next(iter(hops), None))
     if asked.get("radii") == []:
         return {**asked, "radii": (), "event": event}
-    if scene.discs > 2:
-        raise ConfigError(
-            f"{path} must be false with {scene.discs} discs, for intervals between hops are those "
-            "of two; watch mean_times instead"
-        )
     if not _is_smooth(scene):
         raise ConfigError(
             f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
