@@ -11,10 +11,10 @@ import scalar_many
 
 from twodiscs.dynamics import counting, many
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
-from twodiscs.model.events import EVENTS
+from twodiscs.model.events import AXIS, EVENTS, WALLS
 from twodiscs.model.many import CLASSES, Gas
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import measures
+from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
@@ -122,10 +122,39 @@ def test_counts_of_events_are_those_of_their_classes():
     by_class = np.random.default_rng(1).integers(0, 50, (100, len(CLASSES)))
     columns = dict(zip(CLASSES, by_class.T, strict=True))
     columns["any_wall"] = columns["right_wall"] + columns["top_wall"]
+    of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
+    columns |= {wall: of_axis[AXIS[wall]] for wall in WALLS}
     by_event = np.array([columns[event] for event in EVENTS]).T
     sums, products = many.of_events(by_class.sum(axis=0), np.triu(by_class.T @ by_class))
     assert np.array_equal(sums, by_event.sum(axis=0))
     assert np.array_equal(products, np.triu(by_event.T @ by_event))
+
+
+@pytest.mark.parametrize(
+    "gas",
+    [
+        EXACT["three"],
+        EXACT["four in a channel"],
+        EXACT["four, upright"],
+        Gas(4, 3.0, 0.6, 0.14, "x"),
+        Gas(4, 3.0, 0.6, 0.2, "x"),
+    ],
+    ids=repr,
+)
+def test_orders_are_those_of_the_ergodic_components(gas):
+    """From one of them, of labels along the longer side, all are reached that are in one part."""
+    n, start = gas.discs, 0 if gas.width > gas.height else gas.discs
+    states = initial.states(gas, 2000, 3)
+    order = np.argsort(states[start : start + n], axis=0)
+    for k in range(2):
+        part = states[k * n : (k + 1) * n]
+        part[:] = np.take_along_axis(part, order, axis=0)
+    many.advance_all(states, np.zeros((n, 2000)), 200.0, many.law_of(gas))
+    order = np.argsort(states[start : start + n], axis=0)
+    if gas.periodic:  # up to a cyclic shift
+        order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)
+    orders = math.factorial(n) // (n if gas.periodic else 1)
+    assert np.unique(order, axis=1).shape[1] * gas.ergodic_components == orders
 
 
 BITS = """
