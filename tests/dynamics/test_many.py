@@ -79,6 +79,8 @@ def test_monte_carlo_and_dynamics_agree(name):
     found, errors, _ = counted(gas, 4, seed=2)
     known, spread = measures.sample(gas, 300_000, 3)
     expected = rates(gas, known)
+    if gas.periodic:
+        del expected["horizontal_hop"]  # along the ring, where it is no event
     error_of = rates(gas, spread)
     check(gas, found, errors, expected, error_of)
 

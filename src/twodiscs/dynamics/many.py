@@ -422,7 +422,7 @@ def expected_rates(scene):
         return {"disc_collision": _guessed_rate(gas) / 2, "any_wall": _guessed_rate(gas) / 2}
     by_class = rates(gas, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
-    return {event: rate for event, rate in summed.items() if rate}
+    return {event: rate for event, rate in summed.items() if rate and event in scene.events}
 
 
 def expected_event_rate(scene):

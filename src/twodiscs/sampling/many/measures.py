@@ -229,7 +229,7 @@ def estimate(gas, sums, products, samples):
     """Return (``Measures``, their standard errors as ``Measures``) of so many ``samples``.
 
     Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a
-    ring hops in x and the walls of x are 0. Raises ``InputError`` where not a sample had room.
+    ring the walls of x are 0. Raises ``InputError`` where not a sample had room.
     """
     n, a, b = gas.discs, gas.range_x, gas.range_y
     if sums[0] == 0:
@@ -244,7 +244,7 @@ def estimate(gas, sums, products, samples):
         [n / a, n / b, pairs * 2 * math.pi * gas.contact_distance / (a * b), pairs / a, pairs / b]
     )
     if gas.periodic:
-        factors[[0, 3]] = 0.0
+        factors[0] = 0.0
     ratios = mean[1:] / mean[0]
     spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]

@@ -50,7 +50,8 @@ class Measures(NamedTuple):
 def rates(gas, measures):
     """Return {class of events: rate}, of all events of the class, given the ``Measures``.
 
-    For a ``Gas``. Hops that are None there have no entry.
+    For a ``Gas``. Hops that are None there have no entry. Those along a ring, which are no events,
+    have one: how often two discs pass each other.
     """
     c = constant(gas.velocity_components)
     rates = {
