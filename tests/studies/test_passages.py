@@ -19,12 +19,10 @@ from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.many import Gas
-from twodiscs.sampling.many import measures
 from twodiscs.sampling.starts import state_in
 from twodiscs.studies.passages import exclusion, figure, file, measure
 from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact
-from twodiscs.theory.many.rates import rates
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
 
@@ -139,10 +137,6 @@ def test_hops_in_a_file_are_those_of_monte_carlo():
     sampled = file.sampled_rate(gas, 10**5, 4)
     assert sampled.stderr < 0.05 * sampled.value
     assert abs(hops.value - sampled.value) < 5 * math.hypot(hops.stderr, sampled.stderr)
-    # What all quantities are estimated by keeps hops along a ring, which are no events.
-    found, errors = (rates(gas, part) for part in measures.sample(gas, 10**5, 4))
-    assert sampled.value == pytest.approx(2 / 3 * found["horizontal_hop"], rel=1e-12)
-    assert sampled.stderr == pytest.approx(2 / 3 * errors["horizontal_hop"], rel=1e-12)
 
 
 def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):

@@ -15,7 +15,7 @@ from twodiscs.dynamics.many import N, advance, find_events, law_of, nearest
 from twodiscs.model.checks import ascending, whole
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
-from twodiscs.theory.weighted import constant
+from twodiscs.theory.many.rates import rates
 
 
 @compiled
@@ -84,22 +84,9 @@ def diffusion(gas, time, replicas, seed):
 
 
 def sampled_rate(gas, samples, seed):
-    """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo.
-
-    The rate of hops of all pairs is √2 c_D Σ ∫ δ(x_i − x_j)/V, see ``theory.many.rates``.
-    """
-    blocks = -(-whole("samples", samples) // measures.BLOCK)
-    sums, products = measures.run_blocks(gas, seed, 0, blocks)
-    level, volume = (measures.QUANTITIES.index(name) for name in ("hops_x", "volume"))
-    weight = float(sums[volume])
-    ratio = sums[level] / weight
-    # Σ (w_level − ratio w_volume)², over (Σ w_volume)².
-    squares = (
-        products[level, level]
-        - 2 * ratio * products[volume, level]
-        + ratio**2 * products[volume, volume]
+    """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo."""
+    found, error = (
+        rates(gas, part)["horizontal_hop"] for part in measures.sample(gas, samples, seed)
     )
-    variance = squares * measures.UNITS / weight**2
-    pairs = gas.discs * (gas.discs - 1) / 2 / gas.width
-    factor = 2 / gas.discs * math.sqrt(2) * constant(gas.velocity_components) * pairs
-    return Estimate(factor * ratio, factor * math.sqrt(variance), blocks * measures.BLOCK)
+    share = 2 / gas.discs  # a hop is that of both
+    return Estimate(share * found, share * error, whole("samples", samples))
