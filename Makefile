@@ -8,6 +8,8 @@ CORES ?= 2
 CONFIG ?=
 PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
+# What an activated .venv brings is gone when it is set up again.
+export PATH := $(subst $(CURDIR)/.venv/bin:,,$(PATH))
 PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 # Packages come as sources. Where Python is told to keep no bytecode, as in many containers, each of some hundred
@@ -16,7 +18,7 @@ export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: all test test-all
 
-all: .venv/ready
+all: .venv/ready $(CONFIG)
 	$(IN_VENV) snakemake --cores $(CORES) $(if $(CONFIG),--configfile $(CONFIG))
 
 test-all: WHICH = -m "slow or not slow"

@@ -1,5 +1,6 @@
 """``twodiscs``: exact numbers, measurements and trajectories for people and scripts."""
 
+import argparse
 import csv
 import json
 import sys
@@ -55,14 +56,19 @@ def _parser():
 
     command("exact", _exact, "exact volume, areas and mean times of one scene")
     some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
-    some.add_argument("--error", type=error, default=1e-3, help="relative, or a preset (1e-3)")
+    relative = some.add_argument(
+        "--error", type=error, default=1e-3, help=f"relative, or {', '.join(PRESETS)} (1e-3)"
+    )
+    relative.completer = argcomplete.ChoicesCompleter(PRESETS)
     some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
-    events = some.add_argument("--events", nargs="+", metavar="EVENT", help="what to watch (all)")
+    events = some.add_argument(
+        "--events", nargs="+", metavar="EVENT", help=f"of {', '.join(EVENTS)} (all)"
+    )
     events.completer = argcomplete.ChoicesCompleter(EVENTS)
     _seed(some)
     _cores(some)
     some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
-    some.add_argument("--samples", type=whole_number, default=10**7, help="at least (1e7)")
+    some.add_argument("--samples", type=whole_number, default=10**7, help="how many at least (1e7)")
     wanted = some.add_argument(
         "--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area"
     )
@@ -79,7 +85,7 @@ def _parser():
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
     targets = some.add_argument(
-        "targets", nargs="*", metavar="TARGET", help="such as volume or report (all)"
+        "targets", nargs="*", default=[], metavar="TARGET", help="such as volume or report (all)"
     )
     targets.completer = _targets
     some.set_defaults(work=_run)
@@ -92,7 +98,12 @@ def _parser():
 
 def error(text):
     """Return ``text`` as a number, or as it is if it is a preset, for ``type=`` of an argument."""
-    return text if text in PRESETS else number(text)
+    try:
+        return text if text in PRESETS else number(text)
+    except argparse.ArgumentTypeError:
+        allowed = ", ".join(PRESETS)
+        message = f"must be a number or one of {allowed}, not {text!r}"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def _cores(command):
@@ -112,19 +123,24 @@ def _targets(**_):
 
 
 def _run(options):
-    try:
-        import snakemake  # noqa: F401
-    except ImportError:
-        raise InputError("twodiscs run needs Snakemake: pip install twodiscs[workflow]") from None
-    from twodiscs.pipeline.jobs import build
-
-    return build.build(options.configuration, options.targets)
+    return _build().build(options.configuration, options.targets)
 
 
 def _new(options):
+    _build().new(options.configuration)
+
+
+def _build():
+    """Return the module that builds; raise ``InputError`` where only the library is installed."""
+    try:
+        import snakemake  # noqa: F401
+    except ImportError:
+        raise InputError(
+            f"twodiscs {sys.argv[1]} needs Snakemake: pip install '.[workflow]' in the repository"
+        ) from None
     from twodiscs.pipeline.jobs import build
 
-    build.new(options.configuration)
+    return build
 
 
 def _exact(scene, options):

@@ -498,8 +498,8 @@ TOGETHER = {
         ".radii: unequal discs in a field need room and energy to pass each other …"
     ),
     ("effects: {field: 1}", "radii: [0.1, 0.378]"): (
-        ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places, and a scene with "
-        "effects needs more room, 0.0001 of it"
+        ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places with "
+        "field 1.0, and at least 0.0001 of it is needed"
     ),
     ("effects: {radius_ratio: 2}", "radii: {smallest: 0.24}"): (
         ".radii: smallest must be below 0.225…, not 0.24"
@@ -591,7 +591,7 @@ def nested(value, depth):
     "text",
     [
         f"seed: {nested('a' * 30, 5)}\nscenes: [{{name: one, box: {{width: 1, height: 1}}}}]",
-        f"scenes: [{{name: {nested('a' * 30, 5)}, box: 1}}]",
+        f"scenes: [{{name: {nested('a' * 30, 5)}, box: {{width: 1, height: 1}}}}]",
         nested("a", 5),
         "a: *" + "b" * 70_000,
         "a: !" + "b" * 70_000 + " 1",
@@ -732,6 +732,6 @@ def test_all_mistakes_of_keys_and_values_are_told_at_once():
     bad = {"seeed": 1, "shard_events": 3, "scenes": [PLAIN["scenes"][0] | {"accuracy": 7}]}
     with pytest.raises(load.ConfigError) as caught:
         load.load(bad)
-    said = str(caught.value).split("; ")
-    assert said[0] == "the configuration has an unknown key 'seeed'"
-    assert [s.partition(" must")[0] for s in said[2:]] == ["shard_events", "scenes[0].accuracy"]
+    said = str(caught.value).split("\n")
+    assert said[0] == "the configuration has an unknown key 'seeed'; did you mean 'seed'?"
+    assert [s.partition(" must")[0] for s in said[1:]] == ["shard_events", "scenes[0].accuracy"]

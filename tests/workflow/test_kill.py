@@ -68,3 +68,18 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
         (checkout.path / JOB).write_text("{")  # as far as the job had come
         checkout.snakemake("--unlock")
     assert ("monte_carlo", ("scene=one", "radius=0.2")) in checkout.jobs(JOB)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
+def test_a_build_ends_with_twodiscs_run(tmp_path):
+    """Killed itself, it takes Snakemake along, and the jobs: nobody else works in the folder."""
+    checkout = fresh(tmp_path / "checkout")
+    checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
+    environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
+    command = [sys.executable, "-m", "twodiscs", "run", str(checkout.configuration), JOB]
+    run = subprocess.Popen(command, cwd=checkout.path, env=environment, stderr=subprocess.DEVNULL)
+    wait_until(lambda: processes(checkout.path))
+    run.kill()
+    run.wait(60)
+    wait_until(lambda: not processes(checkout.path), 30)

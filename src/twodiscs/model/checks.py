@@ -27,13 +27,14 @@ _SHORT.maxlevel = 2
 class InputError(ValueError):
     """What a user got wrong, in a sentence: an argument, a configuration, a file.
 
-    The command lines answer it with that sentence alone. Any other exception is a mistake in the
-    program, and keeps its traceback.
+    Several sentences stand on a line each. The command lines answer with them alone. Any other
+    exception is a mistake in the program, and keeps its traceback.
     """
 
-    def __init__(self, sentence):
-        text = " ".join(str(sentence).split())
-        super().__init__(text if len(text) <= LONGEST_SENTENCE else f"{text[:LONGEST_SENTENCE]}…")
+    def __init__(self, *sentences):
+        texts = (" ".join(str(sentence).split()) for sentence in sentences)
+        short = (t if len(t) <= LONGEST_SENTENCE else f"{t[:LONGEST_SENTENCE]}…" for t in texts)
+        super().__init__("\n".join(short))
 
 
 def shown(value):

@@ -146,8 +146,9 @@ def _option(name):
 
 
 def fail(message):
-    """Print ``message`` on one line of standard error and exit with status 2."""
-    print(f"error: {' '.join(str(message).split())}", file=sys.stderr)
+    """Print each line of ``message`` on standard error and exit with status 2."""
+    for line in str(message).strip().split("\n"):
+        print(f"error: {' '.join(line.split())}", file=sys.stderr)
     raise SystemExit(2)
 
 

@@ -47,15 +47,22 @@ def load(mapping):
     """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
 
     Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
-    with one sentence that names the key, what it may hold and what it holds, and the scene.
+    with one sentence that names the key, what it may hold and what it holds, and the scene; of
+    several mistakes with a line for each.
     """
     try:
         return _load(mapping)
     except ConfigError as error:
-        match = re.match(r"scenes\[(\d+)\](?!\.name)", str(error))
-        block = mapping["scenes"][int(match[1])] if match else None
-        name = block.get("name") if isinstance(block, Mapping) else None
-        raise ConfigError(f"{error} (scene {shown(name)})" if name else str(error)) from None
+        sentences = (_with_scene(sentence, mapping) for sentence in str(error).split("\n"))
+        raise ConfigError(*sentences) from None
+
+
+def _with_scene(sentence, mapping):
+    """Return a ``sentence`` on a mistake with the name of its scene, if it is in one."""
+    match = re.match(r"scenes\[(\d+)\](?!\.name)", sentence)
+    block = mapping["scenes"][int(match[1])] if match else None
+    name = block.get("name") if isinstance(block, Mapping) else None
+    return f"{sentence} (scene {shown(name)})" if name else sentence
 
 
 def check_results(results, home):
@@ -131,7 +138,7 @@ def _validate(settled):
     # Of each block or value what is wrong first, for the rest may follow from it.
     first = {tuple(error.absolute_path): error for error in reversed(errors)}
     if first:
-        raise ConfigError("; ".join(map(_sentence, reversed(first.values()))))
+        raise ConfigError(*map(_sentence, reversed(first.values())))
 
 
 def _sentence(error):
@@ -330,12 +337,16 @@ def _checked(radii, box, path):
         if two and scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
             raise ConfigError(
                 f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
-                f"places, and a scene with effects needs more room, {MIN_FRACTION:g} of it"
+                f"places with {_effects_of(box)}, and at least {MIN_FRACTION:g} of it is needed"
             )
         if radius in seen:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
         seen.add(radius)
     return tuple(sorted(radii))
+
+
+def _effects_of(box):
+    return ", ".join(f"{name} {value}" for name, value in box.effects.items())
 
 
 def _shared(asked, all_have_effects):

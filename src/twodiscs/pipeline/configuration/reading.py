@@ -17,7 +17,7 @@ BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
 
 
 class ConfigError(InputError):
-    """A mistake in a configuration, told in one sentence."""
+    """Mistakes in a configuration, each told in one sentence and on one line."""
 
 
 def read(path):
@@ -55,7 +55,7 @@ def or_exit(function, *arguments):
     try:
         return function(*arguments)
     except ConfigError as error:
-        sys.exit(f"Configuration: {error}")
+        sys.exit("\n".join(f"Configuration: {sentence}" for sentence in str(error).split("\n")))
 
 
 def shown(value):

@@ -3,6 +3,7 @@
 Quick to import: the Snakefile reads this.
 """
 
+import os
 import shlex
 import subprocess
 import sys
@@ -105,13 +106,16 @@ def build(path, targets):
         configuration = load(read(path))
     except ConfigError as error:
         # What cannot be read names its file already.
-        raise InputError(str(error) if str(path) in str(error) else f"{path}: {error}") from None
+        told = str(error).split("\n")
+        raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in told)) from None
     check_results(configuration.results, ".")
     # The Snakefile says how it ended only where there was something to do; here it is always said.
     words = command(path, targets, snakefile())
     print(shlex.join(words), flush=True)
+    # Snakemake ends when this process does, as its jobs end when it does.
+    environment = {**os.environ, "TWODISCS_WORKFLOW": str(os.getpid())}
     try:
-        done = subprocess.run([sys.executable, "-m", *words])
+        done = subprocess.run([sys.executable, "-m", *words], env=environment)
     except KeyboardInterrupt:
         return 130
     if done.returncode == 0:
