@@ -37,6 +37,9 @@ test: .venv/ready
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.
 .venv/ready: requirements.lock pyproject.toml
 	@echo "Setting up .venv"
+	@if [ -n "$(PYTHON)" ] && ! "$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then \
+	  echo "PYTHON must be a Python of 3.11 or newer, not $(PYTHON)" >&2; exit 1; \
+	fi
 	@if command -v uv > /dev/null; then \
 	  rm -rf .venv && uv venv --quiet --seed --python "$(or $(PYTHON),>=3.11)" .venv; \
 	else \

@@ -5,6 +5,7 @@ import yaml
 from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model.events import HOPS, WALLS
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.pipeline.configuration.request import STAGES
@@ -33,12 +34,19 @@ WATCHED = {
     "trajectory": (0.1, {"trajectory", "animate"}, set(), showing("trajectory")),
 }
 
-#: The figures that scenes with effects call for: all, but where something has no place.
 ALL = {name for name, figure in FIGURES.items() if figure.needs}
-HOPS = {"vertical_hop_area", "horizontal_hop_area", "mean_hop_time", "hopping_trajectory"}
+
+
+def about(*events):
+    """Return the names of the figures that show nothing else than some events."""
+    quantities = {f"{event}_{what}" for event in events for what in ("area", "time")}
+    return {name for name in ALL if FIGURES[name].needs <= quantities}
+
+
+#: The figures that scenes with effects call for: all, but where something has no place.
 CALLED = {
-    "torus": ALL - {*HOPS, "hop_histogram", "wall_area", "mean_wall_time", "pressure"},
-    "channel": ALL - {"horizontal_hop_area"},
+    "torus": ALL - about(*HOPS, *WALLS, "any_wall") - {"hopping_trajectory", "hop_histogram"},
+    "channel": ALL - about("horizontal_hop", "right_wall"),
     "field": ALL - {"pressure"},
     "rough": ALL - {"hop_histogram"},
     "three": ALL,

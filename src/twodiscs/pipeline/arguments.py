@@ -17,10 +17,20 @@ from twodiscs.model.effects import EFFECTS
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that answers a mistake with one sentence and exit status 2."""
+    """An argument parser that answers a mistake with one sentence and exit status 2.
+
+    It makes the folder of ``--output``, so that no work is done for a file that has no place.
+    """
 
     def __init__(self, **options):
         super().__init__(allow_abbrev=False, **options)
+
+    def parse_args(self, *args, **options):
+        parsed = super().parse_args(*args, **options)
+        outputs = getattr(parsed, "output", None) or []
+        for output in outputs if isinstance(outputs, list) else [outputs]:
+            Path(output).parent.mkdir(parents=True, exist_ok=True)
+        return parsed
 
     def error(self, message):
         fail(message)
