@@ -190,6 +190,21 @@ def test_paths_with_effects_are_those_of_the_dynamics(effects):
     stage.show(stage.centre)
 
 
+def test_paths_end_where_they_are_asked_to_whatever_the_width_of_the_box():
+    """Points between rows are a multiple of a float apart, which may not add up to the end."""
+    box = Box(5.0, 1.0, {"field": 0.6})
+    rows = Trajectory.rows(box, 0.2, 1)
+    with style.context():
+        stage = animation.Stage(box, 0.2, rows)
+    for width in np.linspace(1, 10, 901):
+        stage.trace = animation.TRACE * (width + 1) / animation.CROSSING
+        for end in stage.times[::20]:
+            start = max(end - stage.trace, stage.times[0])
+            path = stage.path(start, end)
+            assert (path[0], path[-1]) == (start, end)
+            assert np.diff(path).max(initial=0) <= stage.trace / 99
+
+
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
     """Of four discs: all in the box, an image of each a period away, no trace across the box."""
     box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)

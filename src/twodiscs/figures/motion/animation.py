@@ -157,7 +157,8 @@ class Stage:
         times = self.rows["time"]
         path = np.array([start, *times[(times > start) & (times < end)], end])
         if self.scene.field or self.scene.periodic:
-            path = np.union1d(path, np.arange(start, end, self.trace / 100))
+            between = np.arange(start, end, self.trace / 100)
+            path = np.union1d(path, between[between < end])  # the last may be beyond, by rounding
         return path
 
     def apart(self, times):
