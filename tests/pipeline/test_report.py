@@ -4,7 +4,8 @@ from pathlib import PurePosixPath
 
 import pytest
 
-from twodiscs.pipeline.documents.report import KEY, KEY_OF_ALL, key_figures, rules, short
+from twodiscs.pipeline.documents.report import KEY, KEY_OF_ALL, key_figures, page, rules, short
+from twodiscs.pipeline.results.verdict import summary
 
 DOT = """digraph snakemake_dag {
     graph[bgcolor=white, margin=0];
@@ -48,3 +49,10 @@ def test_other_figures_stand_in_for_those_that_are_not_there():
 )
 def test_large_numbers_are_written_as_powers_of_ten(number, text):
     assert short(number) == text
+
+
+@pytest.mark.parametrize("z", [2.41, -1.99, 0.03456, 12.345])
+def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
+    row = {"passed": True, "independent": True, "status": "sampled", "z": z}
+    said = page("largest |z| {{ largest | three_digits }};", {"largest": abs(z)})
+    assert said in summary("small", [row])

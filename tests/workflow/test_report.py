@@ -14,7 +14,6 @@ from browser import ABSENT, BROWSER
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.pipeline.documents.captions import caption
-from twodiscs.pipeline.documents.numbers.rounding import rounded_up
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: The scene that figures of no scene are about.
@@ -198,11 +197,11 @@ def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
     single = {n: sum(r["independent"] == "true" for r in some) for n, some in compared.items()}
     said = f"All {total} comparisons with the exact theory passed, {sum(single.values())} of them"
     assert said in plain(front["verdict"])
-    said = f"largest deviation is {rounded_up(max(largest.values())):f} standard"
+    said = f"largest deviation is {max(largest.values()):.3g} standard"
     assert said in plain(front["verdict"])
     six, walls = front["rows"][1:]
     counts = [str(len(compared["six"])), str(single["six"])]
-    assert six[:5] == ["six, 1.5 × 1", "6", *counts, f"{rounded_up(largest['six']):f}"]
+    assert six[:5] == ["six, 1.5 × 1", "6", *counts, f"{largest['six']:.3g}"]
     assert walls[:2] == ["walls, 3 × 1", "2"]
     events = sum(
         int(r["events"]) for r in rows(complete, "six/cost.csv") if r["stage"] == "dynamics"

@@ -22,7 +22,6 @@ from twodiscs.comparison.tables.exact import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs.pipeline.arguments import Parser, run
 from twodiscs.pipeline.documents.captions import caption
-from twodiscs.pipeline.documents.numbers.rounding import rounded_up
 from twodiscs.pipeline.results.provenance import commit, versions
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
@@ -234,7 +233,7 @@ def page(template, shown):
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.filters["short"] = short
-    environment.filters["rounded_up"] = lambda x: f"{rounded_up(x):f}"
+    environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
     return environment.from_string(template).render(shown)
 
 

@@ -1,4 +1,4 @@
-"""How results are rounded and written: the one rule of the manuscript and of the report.
+"""How results are rounded and written: the one rule of the manuscript.
 
 An estimate with its error has the digits that the error leaves. What is said to be the largest is
 rounded up, the smallest down, so that the sentence is true. Texts of a ``Number`` are markup of
