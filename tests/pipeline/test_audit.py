@@ -59,7 +59,7 @@ def run(monkeypatch):
 def test_undamaged_results_pass(results, monkeypatch, capsys):
     assert run(monkeypatch) == 0
     # Three tables and two points.
-    assert capsys.readouterr().out == "of 5 files 0 are not what their jobs wrote\n"
+    assert capsys.readouterr().out == "all 5 files are what their jobs wrote\n"
 
 
 @pytest.mark.parametrize(
@@ -89,6 +89,9 @@ def test_damage_is_named(results, monkeypatch, capsys, name, harm):
     assert status == 1
     gone = harm == "deleted" or (harm == "a folder" and "points" not in name)
     assert f"{path} {'is missing' if gone else 'is not what its job wrote'}" in said
+    last = said.splitlines()[-1]
+    assert last.endswith("not what their jobs wrote; delete them, and they are made again")
+    assert last.startswith(f"{said.count(str(results))} of ")
 
 
 def test_a_table_that_was_edited_before_the_manifest_was_written_is_named(

@@ -90,7 +90,11 @@ def main():
     if not (options.results / "manifest.sha256").exists():
         raise InputError(f"{options.results} has no manifest.sha256: results are built by make")
     wrong, files = audit(options.results.resolve(), load(parameters(options.configuration)))
-    print(*wrong, f"of {files} files {len(wrong)} are not what their jobs wrote", sep="\n")
+    said = f"all {files} files are what their jobs wrote"
+    if wrong:
+        said = f"{len(wrong)} of {files} files are not what their jobs wrote; "
+        said += "delete them, and they are made again"
+    print(*wrong, said, sep="\n")
     return bool(wrong)
 
 
