@@ -39,8 +39,12 @@ SIGMAS = 5
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """The path of the explorer, as its job writes it."""
-    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    words = [*TABLES, "--parts", *PARTS, "--scenes", json.dumps(SCENES)]
+    return written(tmp_path_factory.mktemp("explorer") / "explorer.html", SCENES)
+
+
+def written(path, scenes):
+    """Return ``path`` when the job has written the explorer of ``scenes`` there."""
+    words = [*TABLES, "--parts", *PARTS, "--scenes", json.dumps(scenes)]
     words = ["explorer", *words, "--seed", 1908, "--output", path]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.argv", [*map(str, words)])
@@ -146,8 +150,19 @@ def test_the_page_is_one_file_with_the_licence_of_its_library(page):
     text = page.read_text(encoding="utf-8")
     assert "Copyright (c) 2022 Leon Sorokin" in text
     assert not re.search(r"""(?:src|href)=["']|@import|url\(|fetch\(|XMLHttpRequest""", text)
-    assert "torus" not in text
     assert page.stat().st_size < 200_000
+
+
+@pytest.mark.parametrize(
+    ("scenes", "left_out", "example"),
+    [(SCENES, True, False), (SCENES[:1], False, False), (SCENES[1:], True, True)],
+)
+def test_scenes_that_are_left_out_are_named(tmp_path, scenes, left_out, example):
+    text = written(tmp_path / "explorer.html", scenes).read_text(encoding="utf-8")
+    data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.DOTALL)[1])
+    assert [scene["name"] for scene in data["scenes"]] == ["paper"] * (not example)
+    assert ("are not shown here: torus." in text) == ("torus" in text) == left_out
+    assert ("the box is an example" in text) == example
 
 
 # In a browser -------------------------------------------------------------------------------------

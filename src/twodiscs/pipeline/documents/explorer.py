@@ -69,12 +69,17 @@ def points(tables):
     }
 
 
-def explorer(parts, data):
-    """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``."""
+def explorer(parts, data, left_out=()):
+    """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``.
+
+    It names the scenes that are ``left_out``.
+    """
     from jinja2 import Environment, StrictUndefined
 
     shown = {
         "data": json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
+        "left_out": left_out,
+        "scenes": data["scenes"],
         "library_style": parts["uPlot.min.css"],
         "licence": parts["LICENSE"],
         "scripts": [parts[name] for name in SCRIPTS],
@@ -91,15 +96,17 @@ def main():
     parser.add_argument("--seed", type=int, required=True, help="of the random numbers in the page")
     parser.add_argument("--output", type=Path, required=True, metavar="HTML")
     options = parser.parse_args()
+    given = json.loads(options.scenes)
     scenes = [
         {key: scene[key] for key in ("name", "width", "height")}
         | {"points": points({t.stem: t for t in options.tables if t.parent.name == scene["name"]})}
-        for scene in json.loads(options.scenes)
+        for scene in given
         if not scene["effects"]
     ]
+    left_out = [scene["name"] for scene in given if scene["effects"]]
     data = {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": options.seed}
     parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
-    options.output.write_text(explorer(parts, data), encoding="utf-8", newline="\n")
+    options.output.write_text(explorer(parts, data, left_out), encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
