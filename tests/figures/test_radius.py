@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from figure_cases import PAPER, draw, simulated, tables_of
+from figure_cases import BOXES, PAPER, draw, simulated, tables_of
 
 from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
@@ -112,3 +112,30 @@ def test_the_legend_leaves_out_what_is_never_seen():
     ]  # fmt: skip
     shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
     assert shown == [style.SERIES[0], style.SERIES[2]]
+
+
+def covered(axes):
+    """Return the lines with a vertex, or a piece between two, beneath the legend of ``axes``."""
+    axes.figure.draw_without_rendering()
+    extent = axes.get_legend().get_window_extent()
+    lines = [line for line in axes.lines if line.get_zorder() > 1]  # those behind mark limits
+    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in lines]
+    return [line for line, path in paths if path.intersects_bbox(extent, filled=False)]
+
+
+@pytest.mark.parametrize("name", BOXES)
+def test_no_collision_time_lies_beneath_the_legend(name):
+    with style.context():
+        assert covered(draw("mean_collision_time", BOXES[name], tables_of(name)).axes[1]) == []
+
+
+def test_no_hop_time_lies_beneath_the_legend_where_it_ends_with_the_largest_radius():
+    box, event = Box(5.0, 1.0, {"periodic": "x", "field": 0.6}), "vertical_hop"
+    rng, rows = np.random.default_rng(4), []
+    for r in (0.1, 0.2, 0.3):
+        scene = box.scene(r)
+        time = mean_times(scene)[event]
+        rows.append(simulated(rng, scene, event, time, 3e-3))
+    with style.context():
+        figure = draw("mean_hop_time", box, {"mean_times": rows})
+        assert [covered(axes) for axes in figure.axes if axes.get_legend()] == [[], []]

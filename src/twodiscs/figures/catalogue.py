@@ -325,7 +325,7 @@ FIGURES = {
         {"disc_collision_time": "disc collisions"},
         note="simulated",
         label=r"mean time between collisions $\tau_{\mathrm{coll}}$",
-        loc="beside",
+        loc="best",
         single="MD",
         laws=("small", "last"),
     ),

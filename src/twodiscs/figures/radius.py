@@ -123,5 +123,5 @@ def _approach(axes, box, by_quantity):
     handles, _ = axes.get_legend_handles_labels()
     if box.is_plain:
         handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
-    axes.legend(handles=handles, loc="upper right" if box.discs == 2 else "best")
+    axes.legend(handles=handles, loc="upper right" if box.is_plain else "best")
     panels.letter(axes, "b")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from figure_cases import tables_of
+from figure_cases import tables_of, unclear
 
 from twodiscs.figures.kit import style
 from twodiscs.figures.motion import hopping_trajectory
@@ -43,3 +43,14 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
         assert list(dots.get_xdata()) == times
     texts = [" ".join(text.get_text() for text in one.axes[0].texts) for one in (figure, bare)]
     assert ["$r=0.24$" in text for text in texts] == [True, False]
+
+
+@pytest.mark.parametrize(
+    "effects", [{}, {"periodic": "x"}, {"periodic": "x", "field": 0.6}], ids=str
+)
+def test_effects_stand_clear_of_the_legend(effects):
+    rows = tables_of("paper")["trajectory"]
+    with style.context():
+        box = Box(1.5, 1.0, effects)
+        figure = hopping_trajectory.draw(box, {"trajectory": rows}, radius=0.24)
+        assert unclear(figure) == []

@@ -222,9 +222,8 @@ def legend(axes, box, series, loc, single=None, more=()):
     """Explain the symbols at a ``loc``; ``single`` names the method of the only series.
 
     ``more`` are (name, style) of lines besides. Series of which nothing is seen, of events that are
-    impossible, are left out. ``loc`` is a corner in matplotlib's words; "beside" is the top, short
-    of the radii where regimes end, which may lie as low as half of the largest; "best" is wherever
-    the curves leave room, and the place in a ``box`` with effects.
+    impossible, are left out. ``loc`` is a corner in matplotlib's words, or "best", wherever the
+    curves leave room: that is the place in a ``box`` with effects.
     """
     loc = loc if box.is_plain else "best"
     handles, names = [], []
@@ -242,10 +241,7 @@ def legend(axes, box, series, loc, single=None, more=()):
     for name, style in more:
         handles.append(Line2D([], [], **style))
         names.append(name)
-    if loc == "beside":
-        axes.legend(handles, names, loc="upper right", bbox_to_anchor=(0.49, 1))
-    else:
-        axes.legend(handles, names, loc=loc)
+    axes.legend(handles, names, loc=loc)
 
 
 def logarithmic(axes, radii, series):

@@ -31,7 +31,8 @@ def draw(box, tables, radius=None):
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP)
+    above = 0 if box.is_plain else panels.ABOVE  # points: effects are written above the legend
+    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + above / 72)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
@@ -56,7 +57,8 @@ def draw(box, tables, radius=None):
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
     whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
     whole.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)  # above, beside the box
-    panels.name_box(whole, box, f",  $r={radius:g}$" if radius else "")
+    more = f",  $r={radius:g}$" if radius else ""
+    panels.name_box(whole, box, more, up=above)
     return figure
 
 
