@@ -100,6 +100,26 @@ def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
     assert "begins to keep to one side" in FIGURES["mean_wall_time"].full_caption(EFFECTS)
 
 
+@pytest.mark.parametrize(
+    ("effect", "value", "words"),
+    [
+        ("periodic", "x", ("dotted end", "along a periodic axis")),
+        ("field", 1.5, ("In a field", "r_t")),
+        ("depth", 1.0, ("Balls",)),
+        ("moment_of_inertia", 0.5, ("spin",)),
+    ],
+)
+def test_captions_speak_of_an_effect_where_it_is(effect, value, words):
+    called = [ANIMATION, *(entry for entry in FIGURES.values() if entry.needs)]
+
+    def told(effects):
+        return " ".join(entry.full_caption(effects) for entry in called)
+
+    for word in words:
+        assert word in told({effect: value})
+        assert word not in told({"mass_ratio": 2.0})
+
+
 def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
     crosses = Sentence("Crosses are\n few.", mark=lambda row: row["count"] < 9)
     monkeypatch.setitem(NOTES, "note", (Sentence("All alike."), crosses))

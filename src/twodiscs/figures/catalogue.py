@@ -17,6 +17,7 @@ from twodiscs.figures.kit.captions import (
     plain_square,
     said,
     sentences,
+    with_effect,
     with_effects,
 )
 
@@ -104,13 +105,22 @@ LINES = (
     ),
     Sentence(
         """
-        Vertical lines mark the largest radius of disc 1 and where the scene changes before:
-        vertical hops end at r_v and horizontal ones at r_h; from r_t on discs reach the top wall,
-        and from r_x or r_y on disc 1 keeps to its side; discs with σ = r1 + r2 of half a side do
-        not pass each other in a channel or on a torus. In a field volumes and areas are weighted
-        with the invariant density.
+        Vertical lines mark the largest radius of disc 1 and, where they are named, radii at which
+        the scene changes before: vertical hops end at r_v and horizontal ones at r_h, and from r_x
+        or r_y on disc 1 keeps to its side.
         """,
         with_effects,
+    ),
+    Sentence(
+        "Discs with σ = r1 + r2 of half a side do not pass each other along a periodic axis.",
+        with_effect("periodic"),
+    ),
+    Sentence(
+        """
+        From r_t on discs reach the top wall. In a field volumes and areas are weighted with the
+        invariant density.
+        """,
+        with_effect("field"),
     ),
     Sentence(
         """
@@ -450,9 +460,9 @@ ANIMATION = Entry(
     (
         Sentence(
             """
-            The discs as they move, before and after a hop of the rarer kind. Traces are the latest
-            paths of the centres, and the picture stops at the moment of the hop. Beneath, the
-            separation of the discs against time: the hop changes its sign.
+            The discs as they move, before and after a hop, of the rarer kind where there are two.
+            Traces are the latest paths of the centres, and the picture stops at the moment of the
+            hop. Beneath, the separation of the discs against time: the hop changes its sign.
             """,
             of_two,
         ),
@@ -471,12 +481,12 @@ ANIMATION = Entry(
             on_ring,
         ),
         Sentence(
-            """
-            What leaves at a dotted end comes in at the opposite one. Balls are seen along z, so
-            that they may cover each other; the spin of rough discs is not shown.
-            """,
-            with_effects,
+            "What leaves at a dotted end comes in at the opposite one.", with_effect("periodic")
         ),
+        Sentence(
+            "Balls are seen along z, so that they may cover each other.", with_effect("depth")
+        ),
+        Sentence("The spin of rough discs is not shown.", with_effect("moment_of_inertia")),
     ),
     "figures.motion.animation",
     tables=("trajectory",),

@@ -49,6 +49,11 @@ def with_effects(shown):
     return bool(shown.effects) and not of_many(shown)
 
 
+def with_effect(name):
+    """Return the condition that the scene has the effect ``name``, of two discs."""
+    return lambda shown: name in shown.effects and not of_many(shown)
+
+
 def longer_than(ratio):
     """Return the condition that the longer side of the box is more than ``ratio`` shorter ones."""
     return lambda shown: shown.sides is None or max(shown.sides) > ratio * min(shown.sides)
