@@ -142,3 +142,13 @@ def test_each_disc_is_any_of_them(name):
     same = parts(gas, initial.states(gas, number, 6))
     assert np.array_equal(np.sort(x, axis=0), np.sort(same[0], axis=0))
     assert np.array_equal(found[2 * gas.discs :], np.vstack(same[2:]))
+
+
+def test_who_waits_hears_how_many_states_are_drawn():
+    """In pieces, which go on with the streams; more of them than one are told."""
+    gas, told = GASES["chain"], []
+    initial.labelled(gas, 200, 6, watch=lambda done, number: told.append((done, number)))
+    done = [drawn for drawn, _ in told if drawn is not None]
+    assert (done, done[-1]) == (sorted(done), 200)
+    assert len(done) > 5
+    assert {number for _, number in told} == {200}

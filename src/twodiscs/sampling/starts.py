@@ -204,7 +204,7 @@ def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
     if scene.discs > 2:
         from twodiscs.sampling.many import initial  # which others have no use for
 
-        return initial.labelled(scene.gas, number, seed, block)
+        return initial.labelled(scene.gas, number, seed, block, watch)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     state = open_stream(np.uint64(seed), block)

@@ -16,10 +16,12 @@ Nothing here needs more than + − × / and √.
 
 import math
 from functools import lru_cache
+from time import monotonic
 from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.measures import around
@@ -34,6 +36,10 @@ SWEEPS, SCALES = 4000, 8
 
 #: Weights of cells are at least those of exp(−z): (1 + z/64)^(−64).
 POWER = 64
+
+#: States that a call of a kernel draws at most for ``labelled``, and the seconds up to which a call
+#: is short.
+PIECE, SHORT = 2**13, 0.05
 
 
 class Cells(NamedTuple):
@@ -345,17 +351,39 @@ def exchange_labels(state, states):
                 states[row, k], states[other, k] = states[other, k], states[row, k]
 
 
-def labelled(gas, number, seed, block=0):
+def labelled(gas, number, seed, block=0, watch=None):
     """Return ``states`` of which each disc is any of them with the same probability.
 
     A channel has its discs in order, and a chain may not get far from the order it starts with.
     That is of no concern to what all discs do together. Labels have a stream of their own, so that
-    the first states are the same however many there are.
+    the first states are the same however many there are. ``watch``, if given, is called now and
+    then with how many are drawn (None: as before), and ``number``.
     """
-    drawn = states(gas, number, seed, block)
-    if method(gas) != "rejection":
-        exchange_labels(open_stream(~np.uint64(seed), block), drawn)
-    return drawn
+    filled, initial, exchanged = np.zeros((4 * gas.discs, number)), initial_of(gas), method(gas)
+    stream, labels = open_stream(np.uint64(seed), block), open_stream(~np.uint64(seed), block)
+    seconds = 0.0
+
+    def fill(first, stop):
+        nonlocal seconds
+        begin, some = monotonic(), np.zeros((4 * gas.discs, stop - first))
+        draw_states(stream, initial, some)
+        if exchanged != "rejection":
+            exchange_labels(labels, some)
+        filled[:, first:stop] = some
+        seconds = monotonic() - begin
+        return stop
+
+    def calls():
+        # A state takes a microsecond or a tenth of a second: calls grow while they are short.
+        first, step = 0, 1
+        while first < number:
+            yield first, min(first + step, number)
+            first, step = first + step, step if seconds > SHORT else min(2 * step, PIECE)
+
+    for done in in_threads(fill, calls(), waiting=lambda: watch and watch(None, number)):
+        if watch is not None:
+            watch(done, number)
+    return filled
 
 
 def states(gas, number, seed, block=0, by=None):
