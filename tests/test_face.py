@@ -177,6 +177,30 @@ def test_a_measurement_without_an_honest_error_has_no_interval():
     assert "> 0.5" in unseen.cells()[1]
 
 
+def test_nothing_is_compared_without_an_exact_value_or_an_estimate():
+    blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events=["horizontal_hop"], budget=1)
+    tiny = td.sample(td.Scene(1.5, 1.0, 1e-9), 1e5, quantities=["any_wall_area"])
+    for found in (blocked["horizontal_hop"], tiny["any_wall_area"]):
+        assert (found.value, found.z) == (None, None)
+        assert "z = " not in str(found)
+    assert "0.00" not in f"{blocked}{tiny}"
+
+
+@pytest.mark.parametrize("radius", [1e-9, 0.25, td.Box(1.5, 1.0).largest_radius * (1 - 1e-6)])
+def test_columns_of_a_printed_table_keep_apart(radius):
+    scene = td.Scene(1.5, 1.0, radius)
+    for result in (td.sample(scene, 1), td.simulate(scene, 1, budget=1)):
+        for line, found in zip(str(result).splitlines()[3:], result.values(), strict=True):
+            assert line.split() == " ".join(found.cells()).split()
+
+
+def test_an_unknown_key_is_answered_by_those_there_are(simulated):
+    with pytest.raises(KeyError, match="'vertical_hop_time' is none of vertical_hop, horizontal_h"):
+        simulated["vertical_hop_time"]
+    assert "vertical_hop_time" not in simulated
+    assert simulated.get("vertical_hop_time") is None
+
+
 def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
     """Five standard errors: one false alarm in two million."""
     assert abs(intervals.mean.z) < 5
@@ -282,6 +306,21 @@ def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_p
         (lambda some: td.simulate(SCENE, events="any_wall"), "events must be a list of"),
         (lambda some: td.Scene(1.5, 1.0, 0.2, field=-1), "positive, finite number, or 0, not -1.0"),
         (lambda some: td.load("src"), "folder must hold tables of results, but 'src' has none"),
+        (lambda some: td.load("nothere"), "tables of results, but 'nothere' does not exist"),
+        (
+            lambda some: td.exact_table(1.5, 1, [0.1], gravity=1),
+            "gravity is no effect; effects are",
+        ),
+        (lambda some: td.Scene(1.5, 1, 0.1, periodic="x,y"), "axes x and y (z needs a depth), "),
+        (lambda some: td.Scene(1.5, 1, 0.2, discs=20), "20 discs in a box of 1.5 × 1.0 need a "),
+        (
+            lambda some: td.animate(td.trajectory(SCENE, duration=0.01), "a.gif"),
+            "trajectory must last two frames",
+        ),
+        (
+            lambda some: td.trajectory(SCENE, duration=3)[["time", "x1"]].states_at([1]),
+            "rows without y1, x2, y2, u1, v1, u2, v2",
+        ),
     ],
 )
 def test_what_cannot_be_shown_is_refused(call, said, simulated):

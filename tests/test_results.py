@@ -92,6 +92,8 @@ def test_files_of_something_else_are_refused(content, said, tmp_path):
 def test_a_result_goes_on_by_its_own_settings_alone():
     with pytest.raises(td.InputError, match="samples must be left out for a result of simulate"):
         td.simulate(SCENE, 0.5, budget=1).more(samples=10)
+    with pytest.raises(td.InputError, match="give samples= to go on"):
+        td.sample(SCENE, 1).more(1e7)
 
 
 def test_presets_are_those_of_a_configuration():
@@ -270,9 +272,15 @@ def test_what_is_observed_is_a_trajectory():
     [
         ({"times": [1, 1]}, "times must be ascending numbers from 0 on, not [1, 1]"),
         ({"times": [-1]}, "times must be ascending numbers from 0 on, not [-1]"),
-        ({"times": [1e9]}, "times must be below "),
+        ({"times": [1e9]}, "events are due, not 1e+09"),
         ({"function": 1}, "function must be one of two arrays of states, not 1"),
-        ({"function": lambda start, now: 1.0}, "function must return a number, or as many of them"),
+        ({"function": lambda start, now: 1.0}, "function must return a real number, or as many of"),
+        ({"function": lambda start, now: None}, "4096 replicas, not None: is its return missing?"),
+        ({"function": lambda start, now: "x1"}, "4096 replicas, not 'x1'"),
+        ({"function": lambda start, now: now}, "an array with the fields x1, y1, x2, y2, u1, v1"),
+        ({"function": lambda start, now: [now["x1"], [0.0]]}, "4096 replicas, not [array("),
+        ({"function": lambda start, now: now["x1"].astype(str)}, "of shape (4096,) and kind <U"),
+        ({"function": lambda start, now: now["x1"] + 1j}, "real and imaginary part as two columns"),
         ({"replicas": 0}, "replicas must be an integer"),
     ],
 )

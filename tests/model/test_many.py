@@ -70,7 +70,7 @@ def test_names():
         ((1, 1.5, 1.0, 0.1), "discs must be an integer from 2 to 64, not 1"),
         ((65, 1.5, 1.0, 0.1), "discs must be an integer from 2 to 64, not 65"),
         ((3.0, 1.5, 1.0, 0.1), "discs must be an integer"),
-        ((3, 1.5, 1.0, 0.31), "radius 0.31 does not fit: of 3 discs in a box of 1.5 × 1.0"),
+        ((3, 1.5, 1.0, 0.31), "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
         ((3, 1.5, -1.0, 0.1), "height must be a positive"),
         ((3, 1.5, 1.0, 0.1, "y"), "periodic must be left out or x for more than two discs"),
         ((2, 1.5, 1.0, 0.376, "x"), "radius 0.376 does not fit"),
@@ -161,7 +161,7 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
         ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
         ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
         ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two discs"),
-        ({"discs": 4, "radius": 0.4}, "radius 0.4 does not fit: of 4 discs"),
+        ({"discs": 4, "radius": 0.4}, "radius 0.4 does not fit: 4 discs"),
         ({"discs": 64, "width": 1e5}, "width and height must be in a unit of length in which"),
     ],
 )

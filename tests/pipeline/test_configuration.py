@@ -453,7 +453,7 @@ SCENES = {
     "watch: {trajectory: 0.5}": ".watch.trajectory: radius 0.5 does not fit: …",
     "effects: {periodic: [x, x]}": ".effects.periodic must be a list of …, not ['x', 'x']",
     "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",
-    "effects: {periodic: [z]}": ".effects: periodic must be some of the axes xy, not 'z'",
+    "effects: {periodic: [z]}": ".effects: periodic must be … axes x and y (z needs a depth), …",
     "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e+60, not 1e-70",
     "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
     "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
@@ -711,7 +711,7 @@ def test_more_discs_are_a_scene_of_their_own():
         ({"discs": 65}, "discs must be an integer from 2 to 64, not 65"),
         ({"discs": 2.5}, "discs must be an integer from 2 to 64, not 2.5"),
         ({"discs": True}, "discs must be an integer from 2 to 64, not True"),
-        ({"discs": 3, "radii": [0.31]}, "radii: radius 0.31 does not fit: of 3 discs"),
+        ({"discs": 3, "radii": [0.31]}, "radii: radius 0.31 does not fit: 3 discs"),
         ({"discs": 3, "effects": {"field": 1}}, "effects: field must be left out with 3 discs"),
         (
             {

@@ -36,9 +36,13 @@ class Box:
         for name in ("width", "height"):
             object.__setattr__(self, name, length(name, getattr(self, name)))
         effects = self.effects
-        if not isinstance(effects, dict) or not effects.keys() <= EFFECTS.keys():
-            known = ", ".join(EFFECTS)
+        known = ", ".join(EFFECTS)
+        if not isinstance(effects, dict):
             raise InputError(f"effects must be a dict of some of {known}, not {shown(effects)}")
+        for name in effects:
+            if name not in EFFECTS:
+                name = name if isinstance(name, str) else shown(name)
+                raise InputError(f"{name:.80} is no effect; effects are {known}")
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)

@@ -49,9 +49,9 @@ class Gas:
             )
         if self.radius >= self.largest_radius:
             raise InputError(
-                f"radius {self.radius!r} does not fit: of {self.discs} discs in a box of "
-                f"{self.width!r} × {self.height!r} no arrangement is known here from "
-                f"{self.largest_radius!r} on"
+                f"radius {self.radius!r} does not fit: {self.discs} discs in a box of "
+                f"{self.width!r} × {self.height!r} need a radius below {self.largest_radius!r}, as "
+                "far as arrangements are known here"
             )
 
     @cached_property

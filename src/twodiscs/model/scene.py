@@ -115,10 +115,12 @@ class Scene:
             # Six lengths are multiplied.
             for name in ("depth", "width", "height", "radius"):
                 settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
-        allowed = "".join(self.axes)
-        if len(set(self.periodic)) != len(self.periodic) or not set(self.periodic) <= {*allowed}:
+        repeated = len(set(self.periodic)) != len(self.periodic)
+        if repeated or not set(self.periodic) <= {*self.axes}:
+            allowed = "x and y (z needs a depth)" if self.depth is None else "x, y and z"
             raise InputError(
-                f"periodic must be some of the axes {allowed}, not {shown(self.periodic)}"
+                f"periodic must be some of the axes {allowed}, each once and no other letter, not "
+                f"{shown(self.periodic)}"
             )
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:

@@ -78,9 +78,9 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     times, hop, centre = animation.moments(at((3.0, "disc_collision"), end=9.5), 1.0)
     assert (hop, centre) == (None, 0.0)
     assert times.tolist() == list(range(10))
-    with pytest.raises(ValueError, match=r"rows must last two frames, a time of 1, not 0\.5"):
+    with pytest.raises(ValueError, match=r"trajectory must last two frames, a time of 1, not 0\.5"):
         animation.moments(at(end=0.5), 1.0)
-    with pytest.raises(ValueError, match="rows must be those of a trajectory, not none"):
+    with pytest.raises(ValueError, match="trajectory must have rows, not none"):
         animation.animate(BOX, RADIUS, [], ["a.gif"])
     with pytest.raises(ValueError, match=r"path must be a \.gif or \.png file, not 'a\.mp4'"):
         animation.animate(BOX, RADIUS, [], ["a.gif", "a.mp4"])

@@ -44,11 +44,13 @@ class Measurement:
 
     ``stderr`` is the standard error; it is None where there is too little for an honest one, and
     ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
-    and where the ``status`` is impossible. ``z`` is None without an exact value, and else it is the
-    standard normal deviate of the estimate from what it is an estimate of: the exact value or, for
-    an area, the exact ``expectation`` of its shell. ``count`` is how many events, or hits, are
-    behind it; ``status`` is as in the tables, and ``bound`` a lower bound on the mean time where
-    none was seen.
+    and where the ``status`` is impossible. ``z`` is None without an exact value or an estimate,
+    and else it is the standard normal deviate of the estimate from what it is an estimate of: the
+    exact value or, for an area, the exact ``expectation`` of its shell. ``count`` is how many
+    events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none was
+    seen. ``status`` is as in the tables: "too-few" without an honest error, for which there must be
+    100 hits and, of a volume, 100 misses too: discs so small that all of 1048576 draws are hits
+    have none.
     """
 
     quantity: str
@@ -61,6 +63,11 @@ class Measurement:
     unit: str
     expectation: float | None = None
     bound: float | None = None
+
+    def __post_init__(self):
+        if self.value is None or self.exact is None:
+            # In the tables it is then 0 where nothing was due, which is no comparison to read.
+            object.__setattr__(self, "z", None)
 
     @property
     def relative_stderr(self) -> float | None:
@@ -108,7 +115,10 @@ def _with_error(value, error):
 
 
 def aligned(lines, widths):
-    """Return texts in columns of these widths, the last one open."""
+    """Return texts in columns of these widths, wider where a text needs it, the last one open."""
+    lines = [[*line] for line in lines]
+    longest = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    widths = [max(width, needed + 1) for width, needed in zip(widths, longest, strict=True)]
     return "\n".join(
         "".join(f"{text:<{width}}" for text, width in zip(line, widths, strict=True)).rstrip()
         for line in lines
@@ -130,6 +140,8 @@ class Measurements(Result, Mapping[str, Measurement]):
         }
 
     def __getitem__(self, name: str) -> Measurement:
+        if name not in self._measurements:
+            raise KeyError(f"{shown(name)} is none of {', '.join(self)}")
         return self._measurements[name]
 
     def __iter__(self) -> Iterator[str]:

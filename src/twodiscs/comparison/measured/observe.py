@@ -75,13 +75,31 @@ def _times(times):
 
 def _seen(function, start, now):
     """Return what the ``function`` sees of the replicas, an array with a row for each."""
-    seen = np.asarray(function(start, now), float)
-    if seen.shape[:1] != start.shape:
-        raise InputError(
-            f"function must return a number, or as many of them, for each of the {start.size} "
-            f"replicas, not an array of shape {seen.shape}"
+    returned = function(start, now)
+    try:
+        seen = np.asarray(returned)
+    except (TypeError, ValueError):  # lists of several lengths
+        seen = None
+    if seen is None or seen.dtype.kind not in "biuf" or seen.shape[:1] != start.shape:
+        allowed = (
+            f"function must return a real number, or as many of them, for each of the {start.size} "
+            "replicas"
         )
-    return seen
+        if returned is None:
+            found = "None: is its return missing?"
+        elif seen is None or not seen.shape:
+            found = shown(returned)
+        elif seen.dtype.names:
+            found = f"an array with the fields {', '.join(seen.dtype.names)}: choose one of them"
+        elif seen.dtype.kind == "c":
+            found = (
+                f"complex ones of shape {seen.shape}: return real and imaginary part as two "
+                "columns, np.stack((z.real, z.imag), axis=1)"
+            )
+        else:
+            found = f"an array of shape {seen.shape} and kind {seen.dtype}"
+        raise InputError(f"{allowed}, not {found}")
+    return seen.astype(float)
 
 
 def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
@@ -94,7 +112,7 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
             f"times must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are due, "
-            f"not {shown(times[-1])}"
+            f"not {times[-1]:g}"
         )
     if scene.discs == 2:
         advance, law, wrapped = advance_all, law_of(scene), 3

@@ -48,8 +48,8 @@ class Result:
         changes = {name: value for name, value in changes.items() if value is not None}
         if unknown := [name for name in changes if name not in self.settings]:
             raise InputError(
-                f"{unknown[0]} must be left out for a result of {self.kind}, which goes on to "
-                f"another {' or '.join(n for n in self.settings if n in MORE)}"
+                f"{unknown[0]} must be left out for a result of {self.kind}: give "
+                f"{' or '.join(f'{n}=' for n in self.settings if n in MORE)} to go on"
             )
         kept = {part: dict(sums) for part, sums in self.kept.items()}
         given = self.settings | changes

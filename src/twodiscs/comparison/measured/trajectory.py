@@ -43,8 +43,15 @@ class Trajectory(pd.DataFrame):
         """Return the states at ``times``, exactly: an array with the named columns of ``starts``.
 
         ``times`` are numbers in any order, from the first to the last one of the trajectory.
-        Raises ``InputError`` for others.
+        Raises ``InputError`` for others, and where columns of the trajectory are missing.
         """
+        names = components(self.scene)
+        missing = [name for name in ("time", *names) if name not in self]
+        if missing or self.empty:
+            raise InputError(
+                "trajectory must have a row at least and all of its columns for the states at a "
+                f"time, not {len(self)} rows without {', '.join(missing) or 'none'}"
+            )
         known = self["time"].to_numpy()
         try:
             at = np.atleast_1d(np.asarray(times, float))
@@ -55,7 +62,7 @@ class Trajectory(pd.DataFrame):
                 f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {shown(times)}"
             )
         row = np.searchsorted(known, at, side="right") - 1
-        since, names, field = at - known[row], components(self.scene), self.scene.field
+        since, field = at - known[row], self.scene.field
         states = np.empty(at.size, [(name, float) for name in names])
         for name in names:
             states[name] = self[name].to_numpy()[row]

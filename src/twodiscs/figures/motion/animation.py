@@ -61,7 +61,9 @@ def moments(rows, step):
     frames = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
     frames = frames[(frames >= start) & (frames <= end)]
     if len(frames) < 2:
-        raise InputError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
+        raise InputError(
+            f"trajectory must last two frames, a time of {step:g}, not {end - start:g}"
+        )
     return frames, hop, centre
 
 
@@ -258,7 +260,9 @@ class StageOfMany(Stage):
         frames = start + step * np.arange(BEFORE + AFTER + 1)
         frames = frames[frames <= end]
         if len(frames) < 2:
-            raise InputError(f"rows must last two frames, a time of {step:g}, not {end - start:g}")
+            raise InputError(
+                f"trajectory must last two frames, a time of {step:g}, not {end - start:g}"
+            )
         self.colours = many.colours(self.of, rows[0])
         return frames, None, start
 
@@ -306,7 +310,7 @@ def animate(box, radius, rows, paths):
         if not str(path).endswith((".gif", ".png")):
             raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
     if not rows:
-        raise InputError("rows must be those of a trajectory, not none")
+        raise InputError("trajectory must have rows, not none")
     stage = (Stage if box.discs == 2 else StageOfMany)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():

@@ -19,6 +19,9 @@ def load(folder):
     if not isinstance(folder, str | Path):
         raise InputError(f"folder must be the path of a folder, not {folder!r}")
     frames, folder = {}, Path(folder)
+    if not folder.is_dir():
+        what = "is no folder" if folder.exists() else "does not exist"
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} {what}")
     for path in sorted(folder.glob("*.csv")):
         if path.stem in TABLES:
             frames[path.stem] = read(path, TABLES[path.stem])
