@@ -62,9 +62,9 @@ class Scene:
       of the surfaces is reversed too, between discs and at walls. None means smooth.
 
     ``discs`` is their number, an integer from 2 to 64. More than two are equal and smooth, in the
-    plane, and of the effects only ``periodic`` "x" goes with them: see ``many.Gas``. A collision or
-    a hop is then that of any pair, a hit of the right or the top wall that of one disc, averaged
-    over all initial conditions.
+    plane, and of the effects only ``periodic`` "x" goes with them: the box is then a ring along x,
+    with a total momentum of 0 along it. A collision or a hop is then that of any pair, a hit of the
+    right or the top wall that of one disc, averaged over all initial conditions.
 
     Raises ``InputError`` for a value that is not of its kind, for a radius that leaves the discs no
     room or no motion at total energy 1/2, and for effects that do not go together.
@@ -327,8 +327,8 @@ class Scene:
     def largest_radius(self) -> float:
         """The radius of disc 1 at which the discs have no room left.
 
-        Of more than three discs it is that of the densest arrangement that is known here, but in an
-        ordered channel (see ``many.Gas``).
+        Of more than three discs it is that of the densest arrangement that is known here;
+        in a channel so narrow that only neighbours can touch there is no denser one.
         """
         if self.discs > 2:
             return self.gas.largest_radius
@@ -438,8 +438,9 @@ class Scene:
         """The number of disjoint parts of configuration space.
 
         Each hop that is blocked between walls doubles it. A periodic axis has a way around. Of more
-        than two discs see ``many.Gas``: N! where they keep their order, (N − 1)! on a ring, 1 where
-        all of them pass each other with room to spare, and None where it is not known.
+        than two discs there are N! where they keep their order, (N − 1)! on a ring, more in a short
+        channel where heights have parts of their own, 1 where all discs pass each other with room
+        to spare, and None where it is not known.
         """
         if self.discs > 2:
             return self.gas.ergodic_components

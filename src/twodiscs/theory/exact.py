@@ -61,8 +61,9 @@ def volume(scene: Scene) -> float:
     """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
     For N discs it is in length^2N, and None where no exact value is known. Within a few roundings
-    of the exact value for every box and radius. In a field it is weighted with the invariant
-    density (see ``weighted``). Raises ``InputError`` for anything that is not a ``Scene``.
+    of the exact value for every box and radius. In a field it is ∫ (1 − U/E)₊^(D/2 − 1) dq, with
+    the potential energy U, E = 1/2 and D = ``scene.velocity_components``. Raises ``InputError`` for
+    anything that is not a ``Scene``.
 
     Example:
 
@@ -76,8 +77,9 @@ def areas(scene: Scene) -> dict[str, float]:
 
     Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
     or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
-    balls, carries 1/√mass (1 for disc 1), and is weighted in a field (see ``weighted``). Of more
-    than two discs it is None where no exact value is known. Accuracy and errors as for ``volume``.
+    balls, carries 1/√mass (1 for disc 1), and has the weight (1 − U/E)₊^((D − 1)/2) in a field (see
+    ``volume``). Of more than two discs it is None where no exact value is known. Accuracy and
+    errors as for ``volume``.
 
     Example:
 
@@ -159,12 +161,12 @@ def events_per_interval(scene, hop):
 def mean_times(scene: Scene) -> dict[str, float | None]:
     """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
 
-    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the
-    event is impossible. Wall times are those of disc 1 on the trajectories that can reach the wall:
-    half of configuration space where ``Scene.confined``. Where a larger disc 1 keeps its side and
-    still reaches both walls, the time is one over the mean of its two rates. Of more than two discs
-    it is None where no exact value is known, too, and walls are averaged over all initial
-    conditions. Accuracy and errors as for ``volume``.
+    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the event is
+    impossible. Wall times are those of disc 1 on the trajectories that can reach the wall: half of
+    configuration space where a blocked hop keeps disc 1 from it in the other half. Where a larger
+    disc 1 keeps its side and still reaches both walls, the time is one over the mean of its two
+    rates. Of more than two discs it is None where no exact value is known, too, and walls are
+    averaged over all initial conditions. Accuracy and errors as for ``volume``.
 
     Example:
 
