@@ -309,7 +309,7 @@ def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_p
         (lambda some: td.load("nothere"), "tables of results, but 'nothere' does not exist"),
         (
             lambda some: td.exact_table(1.5, 1, [0.1], gravity=1),
-            "gravity is no effect; effects are",
+            "gravity is no effect; effects must be some of depth",
         ),
         (lambda some: td.Scene(1.5, 1, 0.1, periodic="x,y"), "axes x and y (z needs a depth), "),
         (lambda some: td.Scene(1.5, 1, 0.2, discs=20), "20 discs in a box of 1.5 × 1.0 need a "),

@@ -42,7 +42,7 @@ class Box:
         for name in effects:
             if name not in EFFECTS:
                 name = name if isinstance(name, str) else shown(name)
-                raise InputError(f"{name:.80} is no effect; effects are {known}")
+                raise InputError(f"{name:.80} is no effect; effects must be some of {known}")
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
