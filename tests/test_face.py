@@ -186,7 +186,7 @@ def test_nothing_is_compared_without_an_exact_value_or_an_estimate():
     assert "0.00" not in f"{blocked}{tiny}"
 
 
-@pytest.mark.parametrize("radius", [1e-9, 0.25, td.Box(1.5, 1.0).largest_radius * (1 - 1e-6)])
+@pytest.mark.parametrize("radius", [1e-9, td.Box(1.5, 1.0).largest_radius * (1 - 1e-6)])
 def test_columns_of_a_printed_table_keep_apart(radius):
     scene = td.Scene(1.5, 1.0, radius)
     for result in (td.sample(scene, 1), td.simulate(scene, 1, budget=1)):
