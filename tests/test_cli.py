@@ -4,7 +4,6 @@ import argparse
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -247,16 +246,3 @@ def test_a_shell_completes(tmp_path, line, proposed):
     }  # fmt: skip
     subprocess.run([sys.executable, "-c", program], env={**os.environ, **shell}, timeout=60)
     assert path.read_text().splitlines() == proposed
-
-
-@pytest.mark.parametrize("usual", [signal.SIG_IGN, signal.default_int_handler])
-def test_an_ignored_ctrl_c_stays_ignored(usual):
-    """A script that starts jobs in its background ignores it for them."""
-    before, during = signal.signal(signal.SIGINT, usual), []
-    try:
-        with pytest.raises(SystemExit):
-            arguments.run(lambda: during.append(signal.getsignal(signal.SIGINT)))
-        assert signal.getsignal(signal.SIGINT) == usual
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert during == [usual if usual is signal.SIG_IGN else signal.SIG_DFL]

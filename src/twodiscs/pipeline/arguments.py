@@ -192,14 +192,11 @@ def run(main):
 
     What a user got wrong, an ``InputError`` or a file that cannot be read, becomes one sentence on
     standard error and exit status 2. Any other exception keeps its traceback. Ctrl-C ends the
-    process at once, but where it is ignored, as in the background of a script: a kernel that runs
-    does not hear of Python's own handler. Who reads what it prints may stop, as ``head`` does: what
-    is left goes nowhere, in silence.
+    process at once: a kernel that runs does not hear of Python's own handler. Who reads what it
+    prints may stop, as ``head`` does: what is left goes nowhere, in silence.
     """
     end_with_workflow()
-    usual = signal.getsignal(signal.SIGINT)
-    if usual is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    usual = signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
         status = main()
         sys.stdout.flush()
