@@ -9,7 +9,7 @@ MISTAKES = {
     "a key given twice": ("seed: 1\nseed: 2\n", "second time"),
     "no room for starts": (
         "scenes: [{name: a, box: {width: 1, height: 1}, effects: {field: 900}}]\n",
-        "needs more room",
+        "of it is needed",
     ),
     "results in a file": ("results: Snakefile\n", "results must be"),
 }
