@@ -98,10 +98,10 @@ rule report:
         "{{ printf '%s\\n' {params.configuration:q} > {output.configuration};"
         ' again() {{ snakemake --snakefile "$TWODISCS_SNAKEFILE" --nolock --workflow-profile none'
         ' "$@" --configfile {output.configuration} -- {input.results}; }};'
-        " again --report {output.workflow} --report-stylesheet {input.style};"
+        " again --report {output.workflow} --report-stylesheet {input.style} & whole=$!;"
         " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results}"
         " --template {input.front} --scenes {params.scenes:q} --workflow report-workflow.html"
-        " --output {output.html}; }} > {log} 2>&1"
+        " --output {output.html} && wait $whole; }} > {log} 2>&1"
 
 
 rule manifest:
