@@ -205,8 +205,24 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     ]
     monkeypatch.chdir(build.snakefile().parent)
     assert "--snakefile" not in build.command("my.yaml", [], build.snakefile())
+    words = build.command("my.yaml", [], build.snakefile(), 3, True)
+    assert words[1:] == ["--cores", "3", "--no-hooks", "--dry-run", "--configfile", "my.yaml"]
+    with pytest.raises(InputError, match="cores must be"):
+        build.command("my.yaml", [], Path("Snakefile"), 0)
     with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
         build.command("my.yaml", ["volme"], Path("Snakefile"))
+
+
+def test_targets_may_stand_behind_options(monkeypatch, capsys):
+    given = []
+    monkeypatch.setattr(build, "build", lambda *words: given.append(words))
+    assert not command(
+        monkeypatch, cli, "run", "my.yaml", "volume", "-n", "pressure", "--cores", "2"
+    )
+    assert given == [("my.yaml", ["volume", "pressure"], 2, True)]
+    assert command(monkeypatch, cli, "run", "my.yaml", "--core", "2") == 2
+    assert "unrecognized arguments: --core" in capsys.readouterr().err
+    assert command(monkeypatch, cli, "exact", *cli.EXAMPLE.split(), "volume") == 2
 
 
 def test_targets_are_those_of_the_readme():

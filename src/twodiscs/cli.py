@@ -24,7 +24,11 @@ def main():
 def _main():
     parser = _parser()
     argcomplete.autocomplete(parser, always_complete_options="long")
-    options = parser.parse_args()
+    options, rest = parser.parse_known_args()
+    if options.command == "run" and not any(word.startswith("-") for word in rest):
+        options.targets += rest  # which argparse does not find behind an option
+    elif rest:
+        parser.error(f"unrecognized arguments: {' '.join(rest)}")
     if options.command is None:
         parser.print_help()
         return
@@ -88,6 +92,9 @@ def _parser():
         "targets", nargs="*", default=[], metavar="TARGET", help="such as volume or report (all)"
     )
     targets.completer = _targets
+    some.add_argument("--cores", type=whole_number, help="to work on (all)")
+    text = "say what would be done, and why, and do nothing"
+    some.add_argument("-n", "--dry-run", action="store_true", help=text)
     some.set_defaults(work=_run)
     text = "write a commented configuration"
     some = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
@@ -123,7 +130,7 @@ def _targets(**_):
 
 
 def _run(options):
-    return _build().build(options.configuration, options.targets)
+    return _build().build(options.configuration, options.targets, options.cores, options.dry_run)
 
 
 def _new(options):

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import twodiscs
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, whole
 from twodiscs.pipeline.configuration.load import check_results, load
 from twodiscs.pipeline.configuration.reading import ConfigError, read
 from twodiscs.studies.catalogue import STUDIES
@@ -80,11 +80,14 @@ def snakefile():
     raise InputError("the workflow is not installed: twodiscs comes without its Snakefile here")
 
 
-def command(path, targets, snakefile):
+def command(path, targets, snakefile, cores=None, dry_run=False):
     """Return the words that build ``targets`` of the configuration at ``path``, as one types them.
 
-    Raises ``InputError`` for a target that is neither a name nor a path.
+    They ask for so many ``cores``, or all; with ``dry_run`` they say what would be done, and do
+    nothing. Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores``
+    that are no integer ≥ 1.
     """
+    cores = "all" if cores is None else whole("cores", cores, 1)
     for target in targets:
         if target not in TARGETS and "/" not in target:
             near = get_close_matches(target, TARGETS, n=1)
@@ -95,13 +98,13 @@ def command(path, targets, snakefile):
             )
     here = Path("Snakefile")
     found = [] if here.exists() and here.samefile(snakefile) else ["--snakefile", str(snakefile)]
-    words = ["snakemake", *found, "--cores", "all", "--no-hooks"]
-    words += ["--configfile", str(path)]
+    words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
+    words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *targets] if targets else words
 
 
-def build(path, targets):
-    """Build ``targets`` of the configuration at ``path`` with Snakemake; return its exit status."""
+def build(path, targets, cores=None, dry_run=False):
+    """Run ``command`` of these arguments, with Snakemake; return its exit status."""
     try:
         configuration = load(read(path))
     except ConfigError as error:
@@ -110,7 +113,7 @@ def build(path, targets):
         raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in told)) from None
     check_results(configuration.results, ".")
     # The Snakefile says how it ended only where there was something to do; here it is always said.
-    words = command(path, targets, snakefile())
+    words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
     # Snakemake ends when this process does, as its jobs end when it does.
     environment = {**os.environ, "TWODISCS_WORKFLOW": str(os.getpid())}
@@ -118,7 +121,7 @@ def build(path, targets):
         done = subprocess.run([sys.executable, "-m", *words], env=environment)
     except KeyboardInterrupt:
         return 130
-    if done.returncode == 0:
+    if done.returncode == 0 and not dry_run:
         print(closing(configuration.results), end="")
     return done.returncode
 
