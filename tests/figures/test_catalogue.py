@@ -14,8 +14,11 @@ import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, NOTES, Entry
 from twodiscs.figures.kit.captions import Sentence, Shown
+from twodiscs.figures.kit.limits import LARGEST, limits
+from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
+from twodiscs.theory.virial import weights
 
 ALL = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
 QUANTITIES = {
@@ -79,11 +82,12 @@ def test_an_entry_is_complete(name):
 @pytest.mark.parametrize("name", ALL)
 def test_captions_are_plain_text_in_whole_sentences(name, effects):
     entry = ALL[name]
-    own, alike = entry.said(Shown(effects))
-    assert entry.full_caption(effects) == f"{own} {alike}".strip()
+    shown = Shown(Box(1.5, 1.0, effects))
+    own, alike = entry.said(shown)
+    assert entry.full_caption(shown) == f"{own} {alike}".strip()
     assert own.startswith(entry.caption[0].text)
     assert bool(alike) == bool(entry.note)
-    for caption in (own, entry.full_caption(effects)):
+    for caption in (own, entry.full_caption(shown)):
         assert caption.endswith(".")
         assert not re.search(r"[\\${}_]{2}|\\|\$|\s\s|\n|\.\.|\. [a-z]", caption)
 
@@ -91,29 +95,122 @@ def test_captions_are_plain_text_in_whole_sentences(name, effects):
 def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
     called = [entry for entry in FIGURES.values() if entry.needs]
     for entry in called:
-        plain, other = entry.full_caption(), entry.full_caption(EFFECTS)
+        plain, other = entry.full_caption(), entry.full_caption(Shown(Box(1.5, 1.0, EFFECTS)))
         assert not re.search(r"[wh]/4|square box|Dashed|four times", other)
-        assert ("lines mark h/4" in plain) == ("r_v and horizontal ones" in other)
+        assert ("lines mark h/4" in plain) == ("hops end at r_v" in other)
         assert ("lines mark h/4" in plain) == bool(entry.note)
         assert "r_v" not in plain
     assert sum("Dashed" in entry.full_caption() for entry in called) >= 4
-    assert "begins to keep to one side" in FIGURES["mean_wall_time"].full_caption(EFFECTS)
+    assert "of a wall halves" in caption("mean_wall_time", EFFECTS)
+
+
+def caption(name, effects, discs=2, sides=(1.5, 1.0), **more):
+    """Return the caption of a figure in a box with effects."""
+    return ALL[name].full_caption(Shown(Box(*sides, effects, discs), **more))
+
+
+@pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (3.0, 1.0)], ids=str)
+@pytest.mark.parametrize(
+    ("effects", "discs"),
+    [
+        ({"mass_ratio": 2.0}, 2),
+        ({"radius_ratio": 0.5}, 2),
+        ({"radius_ratio": 0.25, "periodic": "y"}, 2),
+        ({"periodic": "xy"}, 2),
+        ({"field": 1.5, "moment_of_inertia": 0.5}, 2),
+        ({"field": 0.5, "radius_ratio": 0.5, "mass_ratio": 2.0}, 2),
+        ({"depth": 1.2}, 2),
+        ({"depth": 1.2, "periodic": "xz"}, 2),
+        ({}, 3),
+        ({"periodic": "x"}, 3),
+        ({}, 4),
+    ],
+    ids=str,
+)
+def test_captions_explain_the_marked_radii_and_no_others(effects, discs, sides):
+    marked = " ".join(name for _, name in limits(Box(*sides, effects, discs)))
+    text = caption("volume", effects, discs, sides)
+    names = {name for name in ("v", "h", "x", "y", "t") if rf"r_{{\mathrm{{{name}}}}}" in marked}
+    assert {name.removeprefix("r_") for name in re.findall(r"r_\w\b", text)} == names
+    assert set(re.findall(r"[wh]/[24]", text)) == set(re.findall(r"[wh]/[24]", marked))
+    assert ("The vertical line marks" in text) == (marked == LARGEST)
+    assert ("Vertical lines mark" in text) == (marked != LARGEST)
+
+
+@pytest.mark.parametrize(
+    ("sides", "marked", "halve"),
+    [
+        ((1.5, 1.0), "h/4 and w/4, where hops", ["right", "top"]),
+        ((3.0, 1.0), "h/4, where horizontal hops", ["right"]),
+        ((1.0, 3.0), "w/4, where vertical hops", ["top"]),
+    ],
+)
+def test_captions_of_plain_boxes_name_the_hops_that_become_blocked(sides, marked, halve):
+    text = caption("mean_wall_time", {}, sides=sides)
+    assert f"Vertical lines mark {marked} become blocked" in text
+    assert re.findall(r"of the (\w+) wall halves", text) == halve
+    assert "right wall" not in caption("mean_wall_time", {}, quantities={"top_wall_time"})
+
+
+@pytest.mark.parametrize(
+    ("effects", "discs", "halves"),
+    [({}, 3, False), ({"periodic": "x"}, 2, True), ({"periodic": "xy"}, 2, False)],
+)
+def test_captions_of_wall_hits_speak_of_the_walls_that_there_are(effects, discs, halves):
+    """A mean time halves where disc 1 keeps to its side, if the figure shows that wall."""
+    box = Box(1.5, 1.0, effects, discs)
+    times = {f"{event}_time" for event in box.tiny.events}
+    text = caption("mean_wall_time", effects, discs, quantities=times)
+    assert "right" not in text
+    assert ("halves" in text) == halves
+    assert "halves" not in caption("mean_wall_time", effects, discs, quantities={"any_wall_time"})
+
+
+def test_what_is_said_of_volumes_is_not_said_of_times():
+    assert "In a field volumes" in caption("volume", EFFECTS)
+    assert "In a field volumes" not in caption("mean_wall_time", EFFECTS)
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "row", "other"),
+    [
+        ("hopping_trajectory", "Dots in (a)", {"event": "vertical_hop"}, {"event": "wall_x1"}),
+        ("animation", "stops at a hop", {"event": "vertical_hop"}, {"event": "wall_x1"}),
+        ("hop_histogram", "time is exact", {"exact_mean": 1.0}, {"exact_mean": None}),
+        ("vertical_hop_area", "at zero", {"exact": 0.0, "hits": 0}, {"exact": 1.0, "hits": 0}),
+        ("mean_wall_time", "in bursts", {"z": None}, {"z": 1.0}),
+        ("mean_wall_time", "too few events", {"z": 1.0}, {"z": None}),
+    ],
+)
+def test_what_only_some_rows_call_for_is_said_where_they_are(name, words, row, other):
+    rough = {"status": "too-few", "exact": 1.0, "replicas": 1, "z": None}
+    assert words in caption(name, {}, rows=[rough | other, rough | row])
+    assert words not in caption(name, {}, rows=[rough | other])
+
+
+def test_the_virials_are_explained_where_they_are_drawn():
+    for effects, discs in (({}, 2), ({"moment_of_inertia": 0.5}, 2), ({}, 3)):
+        assert "(b) The virials" in caption("pressure", effects, discs)
+    for effects, discs in (({"mass_ratio": 2.0}, 2), ({"depth": 1.0}, 2), ({"periodic": "x"}, 3)):
+        assert weights(Box(1.5, 1.0, effects, discs).tiny) is None
+        assert "(b)" not in caption("pressure", effects, discs)
 
 
 @pytest.mark.parametrize(
     ("effect", "value", "words"),
     [
-        ("periodic", "x", ("dotted end", "along a periodic axis")),
+        ("periodic", "x", ("dotted end", "do not pass each other along x")),
         ("field", 1.5, ("In a field", "r_t")),
-        ("depth", 1.0, ("Balls",)),
+        ("depth", 1.0, ("Balls", "are balls")),
         ("moment_of_inertia", 0.5, ("spin",)),
+        ("radius_ratio", 0.5, ("is that of disc 1", "r_x")),
     ],
 )
 def test_captions_speak_of_an_effect_where_it_is(effect, value, words):
     called = [ANIMATION, *(entry for entry in FIGURES.values() if entry.needs)]
 
     def told(effects):
-        return " ".join(entry.full_caption(effects) for entry in called)
+        return " ".join(entry.full_caption(Shown(Box(1.5, 1.0, effects))) for entry in called)
 
     for word in words:
         assert word in told({effect: value})
@@ -126,7 +223,7 @@ def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
     entry = Entry("a", "b", "One\n  two.", "c", note="note")
     assert entry.said(Shown(rows=[{"count": 1}])) == ("One two. Crosses are few.", "All alike.")
     assert entry.said(Shown(rows=[{"count": 9}])) == ("One two.", "All alike.")
-    assert entry.full_caption() == "One two. Crosses are few. All alike."
+    assert entry.full_caption() == "One two. If there are any, crosses are few. All alike."
 
 
 @pytest.mark.parametrize(
@@ -145,9 +242,9 @@ def test_captions_say_what_the_box_makes_of_a_figure(name, sentence, boxes):
     said = {
         sides
         for sides in ((1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5))
-        if sentence in " ".join(ALL[name].said(Shown(sides=sides, rows=[])))
+        if sentence in " ".join(ALL[name].said(Shown(Box(*sides), rows=[])))
     }
-    assert sentence in ALL[name].full_caption()
+    assert sentence.lower() in ALL[name].full_caption().lower()
     assert said == boxes
 
 

@@ -44,4 +44,7 @@ def test_the_box_and_the_effects_of_the_scene_are_those_of_the_figure(tmp_path):
     assert "In a square box" not in caption(entry, tmp_path, SCENE)
     own, alike = said(entry, tmp_path, SCENE | {"effects": {"field": 1.0}})
     assert "Dashed" not in own
-    assert "In a field volumes and areas are weighted" in alike
+    assert "From r_t on" in alike
+    assert "Hops are those of any pair" in caption(
+        entry, tmp_path, SCENE | {"effects": {"discs": 3}}
+    )

@@ -13,11 +13,19 @@ import pytest
 from browser import ABSENT, BROWSER
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.kit.captions import Shown
+from twodiscs.model.box import Box
 from twodiscs.pipeline.documents.captions import caption
 from twodiscs.studies.catalogue import STUDY_FIGURES
 
 #: The scene that figures of no scene are about.
 SIX = {"name": "six", "width": 1.5, "height": 1.0}
+
+#: What the figures of each scene show.
+SHOWN = {
+    "six": Shown(Box(1.5, 1.0)),
+    "walls": Shown(Box(3.0, 1.0), {"right_wall_time", "top_wall_time"}),
+}
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)
 
@@ -275,7 +283,8 @@ def test_every_figure_is_shown_with_its_caption_and_category(seen, complete):
         _, *scene, _, name = path.removesuffix(".png").split("/")
         entry, found = entries[name], seen["results"][path]
         more = f" Scene {scene[0]}." if scene else ""
-        assert plain(found["caption"]) == plain(entry.full_caption()) + more
+        shown = SHOWN[scene[0] if scene else "six"]
+        assert plain(found["caption"]) == plain(entry.full_caption(shown)) + more
         assert found["labels"] == entry.labels
         assert found["width"] > 300
         assert path in seen["categories"][entry.category][scene[0] if scene else "all scenes"]
@@ -307,4 +316,4 @@ def test_a_tall_figure_fits_the_window_beside_its_caption(seen):
     place = seen["placed"]
     assert min(place[side] for side in ("left", "top", "right", "bottom")) >= 0
     assert place["left"] > 300
-    assert plain(FIGURES["mean_hop_time"].full_caption()) in plain(place["caption"])
+    assert plain(FIGURES["mean_hop_time"].full_caption(SHOWN["six"])) in plain(place["caption"])

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.kit.captions import Shown
 from twodiscs.pipeline.arguments import (
     box_arguments,
     end_with_workflow,
@@ -146,7 +147,9 @@ def figure_tables(w, input):
 
 def caption(w):
     """Return the caption of a figure in Snakemake's report."""
-    return ENTRIES[w.figure].full_caption(getattr(about(w), "effects", ()))
+    scene = about(w)
+    shown = Shown(scene.box, scene.watch.quantities) if scene else Shown()
+    return ENTRIES[w.figure].full_caption(shown)
 
 
 def study_table(table):

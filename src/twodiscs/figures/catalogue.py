@@ -9,17 +9,29 @@ from dataclasses import dataclass, field
 from twodiscs.figures.kit.captions import (
     Sentence,
     Shown,
+    along_ring,
+    any_row,
+    both,
+    in_plane,
+    keeps_side,
     longer_than,
+    marked,
+    marked_alone,
     of_many,
     of_two,
-    on_ring,
+    other,
     plain,
     plain_square,
     said,
     sentences,
+    shows,
+    shows_any,
+    walled,
     with_effect,
     with_effects,
 )
+from twodiscs.figures.kit.limits import ACROSS_X, ACROSS_Y, HORIZONTAL, TOP, VERTICAL
+from twodiscs.model.events import HOPS
 
 
 @dataclass(frozen=True)
@@ -67,9 +79,9 @@ class Entry:
         own = [*self.caption, *(sentence for sentence in note if sentence.mark)]
         return said(own, shown), said([s for s in note if not s.mark], shown)
 
-    def full_caption(self, effects=()):
-        """Return all that may be said of the figure in a scene with ``effects`` or without."""
-        return " ".join(filter(None, self.said(Shown(effects))))
+    def full_caption(self, shown=None):
+        """Return the whole caption of what is ``shown``, or of a plain scene."""
+        return " ".join(filter(None, self.said(shown or Shown())))
 
     def __post_init__(self):
         object.__setattr__(self, "caption", sentences(self.caption))
@@ -84,9 +96,24 @@ class Entry:
 GEOMETRY, SPACE, DYNAMICS = "1 Geometry", "2 Volume and areas", "3 Mean times and hopping"
 
 SYMBOLS = "Error bars are one standard error, and hidden where smaller than the symbols."
+
+
+def _in_bursts(row):
+    """Say whether no law is known for the counts of a row of mean_times.csv."""
+    few = row.get("status") == "too-few"
+    return few and "replicas" in row and row["exact"] is not None and row["z"] is None
+
+
 CROSSES = Sentence(
     "Crosses are estimates from too few events for an error bar.",
-    mark=lambda row: row.get("status") == "too-few",
+    mark=lambda row: row.get("status") == "too-few" and not _in_bursts(row),
+)
+BURSTS = Sentence(
+    """
+    Crosses are estimates without an error bar where events come in bursts, of which the largest
+    may be yet to come.
+    """,
+    mark=_in_bursts,
 )
 ARROWS = Sentence(
     "Arrows start at 95 % lower bounds where no event was seen.",
@@ -99,56 +126,86 @@ STRIPS = Sentence(
     """,
     mark=lambda row: row.get("starts") == "strip",
 )
+
+
+def _of_other(name):
+    """Return the condition that a line is marked with a ``name`` that plain scenes do not have."""
+    return both(other, marked(name))
+
+
 LINES = (
     Sentence(
-        "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius.", plain
+        "Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius.",
+        both(plain, marked("h/4", "w/4")),
+    ),
+    *(
+        Sentence(
+            f"""
+            Vertical lines mark {name}, where {hops} hops become blocked, and the largest radius.
+            """,
+            both(plain, marked_alone(name)),
+        )
+        for name, hops in (("h/4", "horizontal"), ("w/4", "vertical"))
+    ),
+    Sentence("The vertical line marks the largest radius, r_max.", both(other, marked_alone())),
+    Sentence(
+        "Vertical lines mark the largest radius, r_max, and those at which something changes.",
+        both(other, lambda shown: not marked_alone()(shown)),
+    ),
+    Sentence("Vertical hops end at r_v.", _of_other(VERTICAL)),
+    Sentence("Horizontal hops end at r_h.", _of_other(HORIZONTAL)),
+    Sentence("From r_x on disc 1 keeps to its side of disc 2 along x.", _of_other(ACROSS_X)),
+    Sentence("From r_y on disc 1 keeps to its side of disc 2 along y.", _of_other(ACROSS_Y)),
+    Sentence("From r_t on disc 1 has the energy to reach the top wall.", _of_other(TOP)),
+    *(
+        sentence
+        for side, axis, place in (("h/2", "x", "above"), ("w/2", "y", "beside"))
+        for sentence in (
+            Sentence(
+                f"From σ = r1 + r2 = {side} on discs do not pass each other along {axis}.",
+                both(_of_other(side), in_plane),
+            ),
+            Sentence(
+                f"From σ = r1 + r2 = {side} on no ball has room straight {place} the other one.",
+                both(_of_other(side), with_effect("depth")),
+            ),
+        )
+    ),
+    Sentence("The radius r is that of disc 1.", with_effect("radius_ratio")),
+    Sentence("The discs are balls.", with_effect("depth")),
+    Sentence(
+        "Of larger discs no arrangement is known.", lambda shown: shown.effects.get("discs", 2) > 3
     ),
     Sentence(
-        """
-        Vertical lines mark the largest radius of disc 1 and, where they are named, radii at which
-        the scene changes before: vertical hops end at r_v and horizontal ones at r_h, and from r_x
-        or r_y on disc 1 keeps to its side.
-        """,
-        with_effects,
+        "Where no exact value is known there is no line and no residual.",
+        both(
+            of_many,
+            any_row(lambda row: row.get("exact") is None and row.get("estimate") is not None),
+        ),
     ),
-    Sentence(
-        "Discs with σ = r1 + r2 of half a side do not pass each other along a periodic axis.",
-        with_effect("periodic"),
-    ),
-    Sentence(
-        """
-        From r_t on discs reach the top wall. In a field volumes and areas are weighted with the
-        invariant density.
-        """,
-        with_effect("field"),
-    ),
-    Sentence(
-        """
-        Vertical lines mark where vertical hops (r_v) and horizontal ones (r_h) of any pair of discs
-        are excluded, and the largest radius at which an arrangement is known. A hit of a wall is
-        that of one disc, averaged over all initial conditions. Where no exact value is known there
-        is no line, and no residual.
-        """,
-        of_many,
-    ),
+)
+#: What is said of volumes and areas.
+WEIGHTED = Sentence(
+    "In a field volumes and areas are weighted with the invariant density.", with_effect("field")
 )
 RESIDUALS = "Residuals z beneath are in standard errors, with guide lines at ±2 and ±5"
 
 #: What captions of several figures say alike, {name: sentences}.
 NOTES = {
-    "sampled": sentences((SYMBOLS, CROSSES, *LINES, f"{RESIDUALS}.")),
+    "sampled": sentences((SYMBOLS, CROSSES, *LINES, WEIGHTED, f"{RESIDUALS}.")),
     "shells": sentences(
         (
             SYMBOLS,
             CROSSES,
             *LINES,
+            WEIGHTED,
             f"""
             {RESIDUALS}; they are taken against the exact expectation of the shell, whose thickness
             shifts the estimate slightly off the line.
             """,
         )
     ),
-    "simulated": sentences((SYMBOLS, CROSSES, ARROWS, *LINES, f"{RESIDUALS}.")),
+    "simulated": sentences((SYMBOLS, CROSSES, BURSTS, ARROWS, *LINES, f"{RESIDUALS}.")),
 }
 
 
@@ -166,12 +223,30 @@ def _hop_area(hop, order, symbol):
     return _over_radius(
         f"Area of {direction} hops",
         SPACE,
-        f"""
-        Area of the surface {coordinate}1 = {coordinate}2, which is crossed when the discs exchange
-        their {direction} order: exact (line) and from a thin shell around it (symbols). Where the
-        hop is blocked, symbols at zero say that no sample fell into the shell. The ordinate grows
-        as the square root, so that a quadratic end is straight.
-        """,
+        (
+            Sentence(
+                f"""
+                Area of the surface {coordinate}1 = {coordinate}2, which is crossed when the discs
+                exchange their {direction} order: exact (line) and from a thin shell around it
+                (symbols).
+                """,
+                of_two,
+            ),
+            Sentence(
+                f"""
+                Area of the surfaces on which two discs have the same {coordinate}, of all pairs
+                together: exact (line) and from thin shells around them (symbols).
+                """,
+                of_many,
+            ),
+            Sentence(
+                """
+                Where the hop is blocked, symbols at zero say that no sample fell into the shell.
+                """,
+                any_row(lambda row: row["exact"] == 0 and row["hits"] == 0),
+            ),
+            "The ordinate grows as the square root, so that a quadratic end is straight.",
+        ),
         "areas",
         {f"{hop}_area": f"{direction} hops"},
         note="shells",
@@ -208,22 +283,31 @@ FIGURES = {
         (
             Sentence(
                 """
-                (a) One trajectory: the separation of the discs in one direction against time. Dots
-                mark the hops, at which it changes sign. (b) The shaded stretch of time enlarged,
-                with a bar for each hop: a hop is often undone soon, before collisions have
-                scrambled the motion.
+                (a) One trajectory: the separation of the discs in one direction against time. (b)
+                The shaded stretch of time enlarged.
                 """,
                 of_two,
             ),
             Sentence(
                 """
-                (a) One trajectory: where all discs are along the longer side against time, coloured
-                by the order in which they start. Lines that cross are hops. (b) The beginning,
+                Dots in (a) and bars in (b) mark the hops, at which it changes sign: a hop is often
+                undone soon, before collisions have scrambled the motion.
+                """,
+                both(of_two, any_row(lambda row: row["event"] in HOPS)),
+            ),
+            Sentence(
+                """
+                (a) The beginning of one trajectory: where the discs are along the longer side
+                against time, coloured by the order in which they start. (b) The first part of it
                 enlarged.
                 """,
                 of_many,
             ),
-            Sentence("On the periodic axis places go on beyond the box.", on_ring),
+            Sentence(
+                "Where lines cross, discs hop.",
+                lambda shown: of_many(shown) and not along_ring(shown),
+            ),
+            Sentence("On the periodic axis places go on beyond the box.", along_ring),
         ),
         "figures.motion.hopping_trajectory",
         tables=("trajectory",),
@@ -261,10 +345,13 @@ FIGURES = {
     "collision_area": _over_radius(
         "Area of disc collisions",
         SPACE,
-        """
-        Area of the surface on which the discs touch: exact (line) and from a thin shell outside
-        it (symbols).
-        """,
+        (
+            """
+            Area of the surface on which the discs touch: exact (line) and from a thin shell outside
+            it (symbols).
+            """,
+            Sentence("It is that of all pairs of discs together.", of_many),
+        ),
         "areas",
         {"disc_collision_area": "disc collisions"},
         note="shells",
@@ -277,10 +364,13 @@ FIGURES = {
         SPACE,
         (
             """
-            Areas of the surfaces on which disc 1 touches the right or the top wall, and of all such
-            surfaces of both discs together: exact (lines) and from thin shells (symbols).
+            Areas of the surfaces on which discs touch walls: exact (lines) and from thin shells
+            (symbols).
             """,
-            Sentence("The whole is four times the sum of the first two.", plain),
+            Sentence(
+                "The whole is four times the sum of the two others.",
+                both(plain, shows(*(f"{event}_area" for event in WALLS))),
+            ),
         ),
         "areas",
         {f"{event}_area": name for event, name in WALLS.items()},
@@ -304,7 +394,11 @@ FIGURES = {
                 """,
                 plain,
             ),
-            Sentence("In a square box both hops have the same mean time.", plain_square),
+            Sentence(
+                "In a square box both hops have the same mean time.",
+                both(plain_square, shows("vertical_hop_time", "horizontal_hop_time")),
+            ),
+            Sentence("Hops are those of any pair of discs.", of_many),
             STRIPS,
         ),
         "mean_times",
@@ -323,6 +417,7 @@ FIGURES = {
             Mean time between collisions of the discs: exact (line) and by event-driven molecular
             dynamics (symbols).
             """,
+            Sentence("Collisions are those of any pair.", of_many),
             Sentence(
                 """
                 Dashed lines are the first two orders of the law for small discs, which starts as
@@ -344,19 +439,35 @@ FIGURES = {
         DYNAMICS,
         (
             """
-            Mean times between hits of disc 1 on the right wall and on the top wall, over
-            trajectories that can reach it, and between hits of any disc on any wall: exact (lines)
-            and by event-driven molecular dynamics (symbols).
+            Mean times between hits of walls: exact (lines) and by event-driven molecular dynamics
+            (symbols).
             """,
             Sentence(
-                """
-                The first halves at r = h/4 and the second at w/4, where configuration space falls
-                apart and disc 1 keeps to one side. Dashed lines are the laws for small discs and
-                below the largest radius.
-                """,
-                plain,
+                "Those of disc 1 are over trajectories that can reach the wall.",
+                both(of_two, shows_any("right_wall_time", "top_wall_time")),
             ),
-            Sentence("The mean time halves where disc 1 begins to keep to one side.", with_effects),
+            Sentence("Those of disc 1 are averages over all initial conditions.", of_many),
+            Sentence(
+                """
+                The mean time of the right wall halves at r = h/4, where configuration space falls
+                apart and disc 1 keeps to one side.
+                """,
+                both(plain, shows("right_wall_time"), marked("h/4")),
+            ),
+            Sentence(
+                """
+                The mean time of the top wall halves at r = w/4, where disc 1 begins to keep to one
+                side along y.
+                """,
+                both(plain, shows("top_wall_time"), marked("w/4")),
+            ),
+            Sentence(
+                "Dashed lines are the laws for small discs and below the largest radius.", plain
+            ),
+            Sentence(
+                "The mean time of a wall halves where disc 1 begins to keep to its side.",
+                both(with_effects, keeps_side),
+            ),
         ),
         "mean_times",
         {f"{event}_time": name for event, name in WALLS.items()},
@@ -370,17 +481,17 @@ FIGURES = {
         DYNAMICS,
         (
             """
-            Force of disc 1 on the right and the top wall, over that of an ideal gas of one particle
-            (dotted): exact (lines) and from the hits that dynamics counted (symbols), each of which
-            hands over the same momentum in the mean.
+            Force of disc 1 on a wall, over that of an ideal gas of one particle (dotted): exact
+            (lines) and from the hits that dynamics counted (symbols), each of which hands over the
+            same momentum in the mean.
             """,
+            Sentence("Dashed lines in (a) are the leading laws below the largest radius.", plain),
             Sentence(
                 """
-                Dashed lines in (a) are the leading laws below the largest radius. (b) The virials
-                of the walls and of the collisions of the discs, over twice the mean kinetic energy:
-                those of the walls less that of collisions are one at every radius.
+                (b) The virials of the walls and of the collisions of the discs, over twice the mean
+                kinetic energy: those of the walls less that of collisions are one at every radius.
                 """,
-                plain,
+                walled,
             ),
         ),
         "figures.motion.pressure",
@@ -394,12 +505,17 @@ FIGURES = {
         DYNAMICS,
         (
             """
-            Density of the time t between successive hops for several radii, both in units of the
-            exact mean time τ; the dashed line is the exponential of that mean. Bins in (a) widen
-            with t, and (b) enlarges short times in equal bins. Symbols tell the radii apart; error
-            bars are one standard error.
+            Density of the time t between successive hops, both in units of the mean time τ; the
+            dashed line is the exponential of that mean. Bins in (a) widen with t, and (b) enlarges
+            short times in equal bins. Symbols tell the radii apart; error bars are one standard
+            error.
             """,
-            Sentence("Hops are those of any pair; τ is measured where it is not known.", of_many),
+            Sentence("Hops are those of any pair of discs.", of_many),
+            Sentence("The mean time is exact.", any_row(lambda row: row["exact_mean"] is not None)),
+            Sentence(
+                "Where no exact mean time is known it is measured.",
+                both(of_many, any_row(lambda row: row["exact_mean"] is None)),
+            ),
             Sentence(
                 """
                 Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is
@@ -455,16 +571,22 @@ FIGURES = {
 
 #: Not a figure for paper, and so none that the manuscript or the rule of figures knows.
 ANIMATION = Entry(
-    "The two discs, animated",
+    "The discs, animated",
     DYNAMICS,
     (
         Sentence(
             """
-            The discs as they move, before and after a hop, of the rarer kind where there are two.
-            Traces are the latest paths of the centres, and the picture stops at the moment of the
-            hop. Beneath, the separation of the discs against time: the hop changes its sign.
+            The discs as they move. Traces are the latest paths of the centres. Beneath, the
+            separation of the discs against time.
             """,
             of_two,
+        ),
+        Sentence(
+            """
+            The picture stops at a hop, of the rarer kind where there are two, which changes the
+            sign of the separation.
+            """,
+            both(of_two, any_row(lambda row: row["event"] in HOPS)),
         ),
         Sentence(
             """
@@ -478,7 +600,7 @@ ANIMATION = Entry(
             What leaves at a dotted end comes in at the opposite one; beneath, places go on beyond
             the box.
             """,
-            on_ring,
+            along_ring,
         ),
         Sentence(
             "What leaves at a dotted end comes in at the opposite one.", with_effect("periodic")

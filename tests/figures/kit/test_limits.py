@@ -18,7 +18,7 @@ def test_limits_of_plain_boxes():
     assert names(Box(1.5, 1)) == ["h/4", "w/4", LARGEST]
     assert names(Box(1, 1.5)) == ["w/4", "h/4", LARGEST]
     assert names(Box(1, 1)) == ["h/4=w/4", LARGEST]
-    assert limits(Box(3, 1)) == [(0.25, "h/4"), (0.5, LARGEST)]
+    assert limits(Box(3, 1)) == ((0.25, "h/4"), (0.5, LARGEST))
 
 
 @pytest.mark.parametrize("box", BOXES.values(), ids=BOXES)

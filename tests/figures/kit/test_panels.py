@@ -87,9 +87,8 @@ def test_effects_are_written_in_symbols(effects, symbols):
     assert sorted(panels.effects(Box(1.5, 1.0, effects))) == sorted(symbols)
 
 
-@pytest.mark.parametrize("name", [name for name in SCENES if name != "combination"])
+@pytest.mark.parametrize("name", SCENES)
 def test_limits_and_effects_of_a_box_stand_clear(name):
-    """For one effect or two; more of them do not fit on the line."""
     with style.context():
         figure, _, _ = panels.panels(Box.of(SCENES[name]), "volume $V$")
         assert unclear(figure) == []

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from figure_cases import unclear
 from PIL import Image
 
 from twodiscs.comparison.tables.trajectory import Trajectory
@@ -224,3 +225,17 @@ def test_what_leaves_a_ring_comes_in_at_the_other_end():
             for (x1, _), (x2, _) in stage.moving[f"trace {disc}"].get_segments():
                 assert abs(x1 - x2) < 0.5
     assert beyond
+
+
+@pytest.mark.parametrize("sides", [(1.0, 2.0), (3.0, 1.0), (1.0, 4.0)], ids=str)
+@pytest.mark.parametrize(
+    "effects", [{}, {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}]
+)
+def test_the_heading_of_many_effects_is_within_the_picture(sides, effects):
+    """And clear of the sign of a hop."""
+    box = Box(*sides, effects)
+    rows = Trajectory.rows(box, 0.125, 1908)
+    with style.context():
+        stage = animation.Stage(box, 0.125, rows)
+        stage.show(stage.centre)
+        assert unclear(stage.figure) == []

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from figure_cases import tables_of, unclear
 
+from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import style
-from twodiscs.figures.motion import hopping_trajectory
+from twodiscs.figures.motion import hop_histogram, hopping_trajectory, many
 from twodiscs.model.box import Box
 
 
@@ -45,12 +46,71 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
     assert ["$r=0.24$" in text for text in texts] == [True, False]
 
 
+#: As many effects as go together, with values of three digits.
+ALL_EFFECTS = {"radius_ratio": 0.625, "mass_ratio": 0.125, "moment_of_inertia": 0.375}
+
+
 @pytest.mark.parametrize(
-    "effects", [{}, {"periodic": "x"}, {"periodic": "x", "field": 0.6}], ids=str
+    "effects",
+    [
+        {},
+        {"periodic": "x"},
+        {"periodic": "x", "field": 0.625},
+        {"periodic": "x", **ALL_EFFECTS},
+        {"field": 0.125, **ALL_EFFECTS},
+        {"depth": 1.25, "periodic": "xz", "mass_ratio": 0.125, "radius_ratio": 0.625},
+    ],
+    ids=str,
 )
 def test_effects_stand_clear_of_the_legend(effects):
-    rows = tables_of("paper")["trajectory"]
+    """In every figure whose heading says more than the box."""
+    tables, box = tables_of("paper"), Box(1.55, 1.05, effects)
     with style.context():
-        box = Box(1.5, 1.0, effects)
-        figure = hopping_trajectory.draw(box, {"trajectory": rows}, radius=0.24)
+        figure = hopping_trajectory.draw(box, tables, radius=0.245)
         assert unclear(figure) == []
+        assert unclear(hop_histogram.draw(box, tables)) == []
+
+
+def test_hops_are_in_the_legend_where_there_are_any():
+    rows = tables_of("paper")["trajectory"]
+    for shown, named in ((rows, True), ([r for r in rows if "hop" not in r["event"]], False)):
+        with style.context():
+            figure = hopping_trajectory.draw(Box(1.5, 1.0), {"trajectory": shown})
+        texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+        assert ("hops" in texts) == named
+
+
+@pytest.mark.parametrize(("discs", "radius"), [(3, 0.2), (8, 0.1), (9, 0.1)])
+def test_lines_of_many_discs_are_few_enough_to_follow_and_have_names(discs, radius):
+    box = Box(1.5, 1.0, discs=discs)
+    rows = Trajectory.rows(box, radius, 1908)
+    with style.context():
+        figure = hopping_trajectory.draw(box, {"trajectory": rows}, radius=radius)
+        assert unclear(figure) == []
+    whole, close = figure.axes
+    assert len(whole.lines) == len(close.lines) == discs
+    bends = np.array([[len(line.get_xdata()) for line in axes.lines] for axes in figure.axes])
+    assert np.all(bends <= many.MANY * discs + 1)
+    inside = close.lines[0].get_xdata() <= close.get_xlim()[1]
+    assert inside.sum() == many.CLOSE * discs + 1
+    colours = [line.get_color() for line in whole.lines]
+    assert len(set(colours)) == discs
+    legend = whole.get_legend()
+    if discs > many.NAMED:
+        assert legend is None
+        return
+    assert [text.get_text() for text in legend.get_texts()][:2] == ["disc 1", "2"]
+    assert [line.get_color() for line in legend.get_lines()] == colours
+
+
+def test_lines_of_many_discs_are_those_of_the_trajectory():
+    """Hops are no bends: without them the lines are the same."""
+    box = Box(1.5, 1.0, discs=3)
+    rows = Trajectory.rows(box, 0.2, 1908)
+    with style.context():
+        figure = hopping_trajectory.draw(box, {"trajectory": rows})
+    line = figure.axes[0].lines[0]
+    times = [row["time"] for row in rows if row["time"] <= figure.axes[0].get_xlim()[1]]
+    assert len(times) > len(line.get_xdata())
+    places = [row["x1"] for row in rows[: len(times)]]
+    assert np.interp(times, *line.get_data()) == pytest.approx(places, abs=1e-12)

@@ -1,5 +1,7 @@
 """The radii at which something ends, and their names, for drawings and for axes."""
 
+from functools import cache
+
 from twodiscs.model.events import AXIS, HOPS
 
 #: What the largest radius is called, and the sides at a quarter of which hops become blocked.
@@ -9,19 +11,21 @@ LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
 #: top wall comes within reach, disc 1 can no longer change sides; where an axis is periodic, discs
 #: can no longer pass each other. Where two are the same, hops give the name, or what comes first.
 VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
+TOP, ACROSS_X, ACROSS_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
 CHANGES = {
     VERTICAL: lambda scene: scene.vertical_hops,
     HORIZONTAL: lambda scene: scene.horizontal_hops,
-    r"r_{\mathrm{t}}": lambda scene: scene.is_possible("top_wall"),
-    r"r_{\mathrm{x}}": lambda scene: scene.confined[0],
-    r"r_{\mathrm{y}}": lambda scene: scene.confined[1],
+    TOP: lambda scene: scene.is_possible("top_wall"),
+    ACROSS_X: lambda scene: scene.confined[0],
+    ACROSS_Y: lambda scene: scene.confined[1],
     r"\sigma=h/2": lambda scene: _fills(scene, "y"),
     r"\sigma=w/2": lambda scene: _fills(scene, "x"),
 }
 
 
+@cache
 def limits(box):
-    """Return [(radius, name in mathtext), …] of a ``Box``, ascending.
+    """Return ((radius, name in mathtext), …) of a ``Box``, ascending.
 
     Of more than two discs they are as with effects.
 
@@ -37,7 +41,7 @@ def limits(box):
             radius, name = box.threshold(hop), QUARTERS[AXIS[hop]]
             names[radius] = f"{names[radius]}={name}" if radius in names else name
         names = {radius: name for radius, name in names.items() if radius in box.thresholds}
-        return [*sorted(names.items()), (box.largest_radius, LARGEST)]
+        return *sorted(names.items()), (box.largest_radius, LARGEST)
     largest = box.last_radius
     for name, state in CHANGES.items():
         first = state(box.scene(1e-6 * largest))
@@ -46,7 +50,7 @@ def limits(box):
             names[radius] += f"={name}"
         elif radius < largest:
             names.setdefault(radius, name)
-    return [*sorted(names.items()), (largest, LARGEST)]
+    return *sorted(names.items()), (largest, LARGEST)
 
 
 def _fills(scene, axis):

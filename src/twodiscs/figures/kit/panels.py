@@ -24,6 +24,9 @@ MAIN, GAP, LOWER = 1.9, 0.07, 0.82
 #: Inches and points: a second line above, for the box and its effects.
 LINE, ABOVE = 0.13, 14
 
+#: How many of the box, its effects and what else is said of it stand in one line.
+PIECES = 3
+
 #: Residuals beyond this many standard errors are drawn as triangles at the edge.
 LARGEST_RESIDUAL = 6.5
 
@@ -51,7 +54,7 @@ def panels(box, label, beneath=0):
     ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
     """
     line = 0 if box.is_plain else LINE
-    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line)
+    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line + room(box))
     lower = add_panel(figure, beneath + BOTTOM, LOWER)
     main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
     main.set_ylabel(label)
@@ -92,12 +95,23 @@ def letter(axes, name):
 def name_box(axes, box, more="", up=0):
     """Write the sides of the box, ``more`` and the effects above the left end of ``axes``.
 
-    ``up`` are points by which that is higher than usual.
+    ``up`` are points by which that is higher than usual. Lines beyond the first take ``room``.
     """
-    sides = rf"$w\times h={box.width:g}\times{box.height:g}$"
-    text = ",  ".join([f"{sides}{more}", *effects(box)])
+    text = ",\n".join(heading(box, more))
     corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
     drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
+
+
+def heading(box, more=""):
+    """Return the lines that name the sides of the box, ``more`` and the effects."""
+    sides = rf"$w\times h={box.width:g}\times{box.height:g}$"
+    pieces = [*f"{sides}{more}".split(",  "), *effects(box)]
+    return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
+
+
+def room(box, more=""):
+    """Return the inches that lines of the ``heading`` beyond the first one take."""
+    return LINE * (len(heading(box, more)) - 1)
 
 
 def effects(box):

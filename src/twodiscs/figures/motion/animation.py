@@ -26,6 +26,9 @@ DPI = 100
 ACROSS, TALLEST, STRIP = 3.8, 2.6, 0.62
 LEFT, RIGHT, TOP, GAP, BOTTOM = 0.5, 0.12, 0.28, 0.1, 0.36
 
+#: Letters of the heading, over those of other figures; points that the sign of a hop takes.
+LARGER, SIGN = 1.2, 17
+
 #: Frames before and after the hop, and those in which a disc at speed one goes as far as the box is
 #: wide and high.
 BEFORE, AFTER, CROSSING = 110, 60, 50
@@ -87,9 +90,12 @@ class Stage:
 
         inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
-        self.figure = new_figure(beneath + inches * height + TOP, ACROSS)
+        more = f",  $r={radius:g}$"
+        up = SIGN if box.effects and box.discs == 2 else 0
+        room = LARGER * panels.room(box, more) + up / 72
+        self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
         self.figure.set_dpi(DPI)
-        spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
+        self.spare = spare = (ACROSS - LEFT - RIGHT - inches * width) / 2
         x, y = width / 2, height / 2
         self.box = drawing.add_axes(self.figure, LEFT + spare, beneath, inches, (-x, x, -y, y))
         if scene.periodic:
@@ -97,9 +103,8 @@ class Stage:
         else:
             drawing.rectangle(self.box, -x, x, -y, y, width=1.2)
         above = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 9}
-        text = rf"$w\times h={width:g}\times{height:g}$,  $r={radius:g}$"
-        text = ",  ".join([text, *panels.effects(box)])
-        drawing.label(self.box, text, (0, 1), (0, 5), **above)
+        text = ",\n".join(panels.heading(box, more))
+        drawing.label(self.box, text, (0, 1), (-72 * spare, 5 + up), **above)
         self._draw_strip()
         self.moving = self._moving((-x, x, -y, y))
 
@@ -195,7 +200,7 @@ class Stage:
         line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
         (artists["line"],) = self.box.plot(*line, color=BLACK, lw=1.2, ls=(0, (4, 2)))
         artists["text"] = self.box.annotate(
-            rf"hop:  ${self.axis}_1={self.axis}_2$", (1, 1), (0, 5), "axes fraction",
+            rf"hop:  ${self.axis}_1={self.axis}_2$", (1, 1), (72 * self.spare, 5), "axes fraction",
             "offset points", ha="right", va="bottom", fontsize=10,
             bbox={"boxstyle": "round,pad=0.2", "facecolor": ORANGE, "edgecolor": "none"},
         )  # fmt: skip

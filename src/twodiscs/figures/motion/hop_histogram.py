@@ -32,7 +32,8 @@ APART, APART_SHORT = 1.2, 0.4
 def draw(box, tables):
     """Draw the densities of hop_histogram.csv, in units of the mean interval (``unit_of``)."""
     rows = tables["hop_histogram"]
-    figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP)
+    more = f",  {name_of(rows[0]['event'])}"
+    figure = new_figure(panels.BOTTOM + SHORT + GAP + ALL + TOP + panels.room(box, more))
     whole = panels.add_panel(figure, panels.BOTTOM + SHORT + GAP, ALL)
     short = panels.add_panel(figure, panels.BOTTOM, SHORT)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
@@ -64,7 +65,7 @@ def draw(box, tables):
     whole.legend(loc="upper right")
     panels.letter(whole, "a")
     panels.letter(short, "b")
-    panels.name_box(whole, box, f",  {name_of(rows[0]['event'])}")
+    panels.name_box(whole, box, more)
     return figure
 
 

@@ -32,7 +32,9 @@ def draw(box, tables, radius=None):
     hops = times[[row["event"] == hop for row in rows]]
 
     above = 0 if box.is_plain else panels.ABOVE  # points: effects are written above the legend
-    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + above / 72)
+    more = f",  $r={radius:g}$" if radius else ""
+    room = above / 72 + panels.room(box, more)
+    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
@@ -55,9 +57,9 @@ def draw(box, tables, radius=None):
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
-    whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
+    if hops.size:
+        whole.plot([], [], ls="", marker="o", markersize=2.2, color=VERMILLION, label="hops")
     whole.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)  # above, beside the box
-    more = f",  $r={radius:g}$" if radius else ""
     panels.name_box(whole, box, more, up=above)
     return figure
 

@@ -8,19 +8,34 @@ from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 
 from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.style import new_figure
+from twodiscs.figures.kit.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+)
+from twodiscs.model.events import HOPS
 
-#: The part of the map of colours that is neither too dark nor too light.
+#: Colours of so few discs.
+FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+
+#: The part of the map of colours of more discs that is neither too dark nor too light.
 LOW, HIGH = 0.05, 0.95
 
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.45, 0.3, 0.22
 
-#: Points: a line for each disc, of the whole and of the part of it that is enlarged.
-THIN, THICK = 0.35, 0.9
+#: Points: a line for each disc, in the upper panel and in the lower one.
+THIN, THICK = 0.5, 0.9
 
-#: The part of the time that is enlarged.
-CLOSE = 0.06
+#: Bends for each disc that either panel shows.
+MANY, CLOSE = 75, 15
+
+#: The most discs that the legend names.
+NAMED = 8
 
 
 def along(box):
@@ -32,6 +47,8 @@ def colours(box, first):
     """Return a colour for each disc, by its rank along the longer side in the row ``first``."""
     places = [first[f"{along(box)}{disc}"] for disc in range(1, box.discs + 1)]
     ranks = np.argsort(np.argsort(places))
+    if box.discs <= len(FEW):
+        return [to_rgb(FEW[rank]) for rank in ranks]
     shades = LOW + (HIGH - LOW) * ranks / (box.discs - 1)
     return [to_rgb(colormaps["turbo"](shade)) for shade in shades]
 
@@ -39,17 +56,20 @@ def colours(box, first):
 def world_lines(box, rows, radius=None):
     """Draw where all discs of a ``Box`` are along its longer side, against time.
 
-    ``rows`` are those of trajectory.csv; between them discs move freely. The ``radius``, if given,
-    is written above.
+    ``rows`` are those of trajectory.csv, of which the first are shown; between them discs move
+    freely. The ``radius``, if given, is written above.
     """
     axis, side = along(box), max(box.width, box.height)
+    rows = [row for row in rows if row["event"] not in HOPS][: MANY * box.discs + 1]
     times = np.array([row["time"] for row in rows])
-    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP)
+    more = f",  $r={radius:g}$" if radius else ""
+    room = panels.ABOVE / 72 + panels.room(box, more)
+    figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
     shades = colours(box, rows[0])
     whole.set_xlim(times[0], times[-1])
-    close.set_xlim(times[0], times[0] + CLOSE * (times[-1] - times[0]))
+    close.set_xlim(times[0], times[min(CLOSE * box.discs, len(times) - 1)])
     places = np.array([[row[f"{axis}{disc}"] for row in rows] for disc in range(1, box.discs + 1)])
     for axes, width in ((whole, THIN), (close, THICK)):
         shown = places[:, times <= axes.get_xlim()[1]]
@@ -61,5 +81,10 @@ def world_lines(box, rows, radius=None):
     close.set_xlabel("time $t$")
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
-    panels.name_box(whole, box, f",  $r={radius:g}$" if radius else "")
+    if box.discs <= NAMED:
+        handles = close.get_lines()
+        names = ["disc 1", *map(str, range(2, box.discs + 1))]
+        above = {"loc": "lower right", "bbox_to_anchor": (1, 1), "ncols": box.discs}
+        whole.legend(handles, names, handlelength=1, columnspacing=1, **above)
+    panels.name_box(whole, box, more, up=panels.ABOVE)
     return figure
