@@ -139,3 +139,20 @@ def test_no_hop_time_lies_beneath_the_legend_where_it_ends_with_the_largest_radi
     with style.context():
         figure = draw("mean_hop_time", box, {"mean_times": rows})
         assert [covered(axes) for axes in figure.axes if axes.get_legend()] == [[], []]
+
+
+def test_the_legend_has_no_line_where_no_exact_value_is_known():
+    box = Box(1.5, 1.0, discs=5)
+    rng = np.random.default_rng(5)
+    rows = [
+        simulated(rng, box.scene(r), event, 1.0, 3e-3) | {"exact": None}
+        for r in (0.05, 0.1)
+        for event in ("vertical_hop", "horizontal_hop")
+    ]
+    with style.context():
+        figure = draw("mean_hop_time", box, {"mean_times": rows})
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+    for legend in legends:
+        handles = [(line.get_linestyle(), line.get_marker()) for line in legend.get_lines()]
+        assert handles == [("None", marker) for _, marker in style.SERIES[:2]]
+    assert len(legends) == 2

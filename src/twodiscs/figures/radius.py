@@ -99,15 +99,18 @@ def _approach(axes, box, by_quantity):
     """Draw the times over the distance from the radius at which the hop dies out."""
     distances = np.geomspace(CLOSEST, 0.99, 70)
     ends = hop_ends(box)
-    shown = []
+    shown, handles = [], []
     for (colour, marker), (quantity, part) in zip(SERIES, by_quantity.items(), strict=False):
         event = quantity.removesuffix("_time")
         end, name = ends[event]
         scenes = [box.scene(float(end * (1 - d))) for d in distances]
         times = [mean_times(scene)[event] for scene in scenes]
         exact = np.array(times, float)
-        (line,) = axes.plot(distances, exact, color=colour, zorder=5)
-        line.set_label(rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$")
+        axes.plot(distances, exact, color=colour, zorder=5)
+        known = {"ls": "-"} if np.any(exact > 0) else panels.open_symbol(colour, marker)
+        label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
+        if part.is_seen():
+            handles.append(Line2D([], [], label=label, **{"ls": "", "color": colour} | known))
         shown += [time for time in times if time]
         if box.discs > 2:
             shown += [row["estimate"] for row in part.rows if row["estimate"]]
@@ -120,7 +123,6 @@ def _approach(axes, box, by_quantity):
     axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$")
-    handles, _ = axes.get_legend_handles_labels()
     if box.is_plain:
         handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
     axes.legend(handles=handles, loc="upper right" if box.is_plain else "best")

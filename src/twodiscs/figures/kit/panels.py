@@ -250,7 +250,7 @@ def legend(axes, box, series, loc, single=None, more=()):
             handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
             names += ["exact", single]
         elif part.is_seen():
-            handles += axes.plot([], [], **style)
+            handles += axes.plot([], [], ls="-" if np.any(part.exact > 0) else "", **style)
             names.append(part.name)
     for name, style in more:
         handles.append(Line2D([], [], **style))
