@@ -188,6 +188,17 @@ def test_what_only_some_rows_call_for_is_said_where_they_are(name, words, row, o
     assert words not in caption(name, {}, rows=[rough | other])
 
 
+def test_lines_of_many_discs_are_said_to_cross_where_they_do():
+    def says(sides, event, effects):
+        rows = [{"event": event}, {"event": "wall_x1"}]
+        return "lines cross" in caption("hopping_trajectory", effects, 3, sides, rows=rows)
+
+    assert says((1.5, 1.0), "horizontal_hop", {})
+    assert says((1.0, 1.5), "vertical_hop", {"periodic": "x"})
+    assert not says((1.5, 1.0), "vertical_hop", {})
+    assert not says((1.5, 1.0), "vertical_hop", {"periodic": "x"})
+
+
 def test_the_virials_are_explained_where_they_are_drawn():
     for effects, discs in (({}, 2), ({"moment_of_inertia": 0.5}, 2), ({}, 3)):
         assert "(b) The virials" in caption("pressure", effects, discs)

@@ -1,10 +1,21 @@
 """The parts of the report: the graph of rules, the figures it opens on, its numbers."""
 
+from base64 import b64decode
+from io import BytesIO
 from pathlib import PurePosixPath
 
 import pytest
+from PIL import Image, ImageDraw
 
-from twodiscs.pipeline.documents.report import KEY, KEY_OF_ALL, key_figures, page, rules, short
+from twodiscs.pipeline.documents.report import (
+    KEY,
+    KEY_OF_ALL,
+    key_figures,
+    movie,
+    page,
+    rules,
+    short,
+)
 from twodiscs.pipeline.results.verdict import summary
 
 DOT = """digraph snakemake_dag {
@@ -56,3 +67,19 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     row = {"passed": True, "independent": True, "status": "sampled", "z": z}
     said = page("largest |z| {{ largest | three_digits }};", {"largest": abs(z)})
     assert said in summary("small", [row])
+
+
+def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
+    frames = []
+    for x in range(20):
+        frame = Image.new("RGB", (60, 40), "white")
+        ImageDraw.Draw(frame).rectangle((2 * x, 10, 2 * x + 10, 20), "blue")
+        frames.append(frame.quantize(8))
+    path = PurePosixPath("one/figures/animation.png")
+    (tmp_path / path).parent.mkdir(parents=True)
+    times = [1500 if k == 12 else 50 for k in range(20)]
+    frames[0].save(tmp_path / path, save_all=True, append_images=frames[1:], duration=times, loop=0)
+    scene = {"name": "one", "box": "1.5 × 1", "width": 1.5, "height": 1.0, "effects": {}}
+    still = movie(tmp_path, path, {"one": scene})["still"]
+    with Image.open(BytesIO(b64decode(still.partition(",")[2]))) as image:
+        assert image.convert("RGB").tobytes() == frames[12].convert("RGB").tobytes()

@@ -92,3 +92,22 @@ def test_limits_and_effects_of_a_box_stand_clear(name):
     with style.context():
         figure, _, _ = panels.panels(Box.of(SCENES[name]), "volume $V$")
         assert unclear(figure) == []
+
+
+@pytest.mark.parametrize(
+    ("ends", "labels"),
+    [((1.3, 2.3), ["1.4", "1.6", "1.8", "2", "2.2"]), ((0.9, 30), ["1", "2", "5", "10", "20"])],
+)
+def test_a_short_logarithmic_axis_has_labels(ends, labels):
+    with style.context():
+        axes = style.new_figure(2).add_axes((0.2, 0.2, 0.7, 0.7))
+        axes.set(yscale="log", ylim=ends)
+        panels.label_decades(axes.yaxis, ends[1] / ends[0])
+        axes.figure.draw_without_rendering()
+        ticks = [*axes.yaxis.get_major_ticks(), *axes.yaxis.get_minor_ticks()]
+        shown = [
+            (tick.get_loc(), tick.label1.get_text())
+            for tick in ticks
+            if ends[0] <= tick.get_loc() <= ends[1] and tick.label1.get_text()
+        ]
+    assert [text for _, text in sorted(shown)] == labels

@@ -67,6 +67,14 @@ def along_ring(shown):
     return of_many(shown) and "periodic" in box.effects and box.width >= box.height
 
 
+def cross(shown):
+    """Say whether more discs than two pass each other along the longer side."""
+    box = shown.box
+    hop = "horizontal_hop" if box and box.width >= box.height else "vertical_hop"
+    passed = any_row(lambda row: row["event"] == hop)
+    return of_many(shown) and not along_ring(shown) and passed(shown)
+
+
 def with_effects(shown):
     """Say whether the scene has effects, of two discs."""
     return other(shown) and of_two(shown)

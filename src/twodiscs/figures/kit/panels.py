@@ -274,9 +274,13 @@ def logarithmic(axes, radii, series):
 
 
 def label_decades(axis, ratio):
-    """Label 2 and 5 as well on a logarithmic ``axis`` whose ends have a ``ratio`` below 100."""
+    """Label a logarithmic ``axis`` whose ends have a ``ratio`` below 100 between decades as well.
+
+    That is at 2 and 5 or, below a ratio of 3, at every tick.
+    """
     if ratio < 100:
+        digits = "25" if ratio >= 3 else "123456789"
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
+        axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in digits else "")
     else:
         axis.set_minor_formatter("")

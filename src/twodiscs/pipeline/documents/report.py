@@ -108,13 +108,13 @@ def thumbnail(folder, path, scenes):
 def movie(folder, path, scenes):
     """Return the animation at ``path`` with the picture that stands still longest, the hop."""
     with Image.open(Path(folder, path)) as image:
-        shown = []
+        longest = 0
         for k in range(image.n_frames):
-            image.seek(k)
-            shown.append(image.info["duration"])
-        image.seek(shown.index(max(shown)))
+            image.seek(k)  # forwards only: a frame that is gone back to may be black
+            if image.info["duration"] > longest:
+                longest, picture = image.info["duration"], image.convert("RGB")
         still = BytesIO()
-        image.convert("RGB").quantize(64).save(still, "PNG", optimize=True)
+        picture.quantize(64).save(still, "PNG", optimize=True)
     return figure(folder, path, scenes) | {"still": _uri(still.getvalue())}
 
 
