@@ -71,6 +71,15 @@ def test_effects_stand_clear_of_the_legend(effects):
         assert unclear(hop_histogram.draw(box, tables)) == []
 
 
+def test_the_panel_beneath_enlarges_a_short_trajectory_too():
+    rows = tables_of("paper")["trajectory"][:120]
+    with style.context():
+        whole, close = hopping_trajectory.draw(Box(1.5, 1.0), {"trajectory": rows}).axes
+    (start, end), (first, last) = whole.get_xlim(), close.get_xlim()
+    assert last - first <= (end - start) / 3 * (1 + 1e-12)
+    assert start <= first < last <= end
+
+
 def test_hops_are_in_the_legend_where_there_are_any():
     rows = tables_of("paper")["trajectory"]
     for shown, named in ((rows, True), ([r for r in rows if "hop" not in r["event"]], False)):

@@ -9,8 +9,9 @@ from twodiscs.figures.motion import many
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
 
-#: Rows in the lower panel, on average, or fewer to tell hops this share of it apart.
-CLOSE, APART = 150, 0.02
+#: Rows in the lower panel, on average, or fewer to tell hops this share of it apart; the most that
+#: it shows of the upper one.
+CLOSE, APART, MOST = 150, 0.02, 1 / 3
 
 
 def draw(box, tables, radius=None):
@@ -37,7 +38,7 @@ def draw(box, tables, radius=None):
     figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)
     close = panels.add_panel(figure, panels.BOTTOM, PANEL)
-    length = (times[-1] - times[0]) * min(1, CLOSE / len(rows))
+    length = (times[-1] - times[0]) * min(MOST, CLOSE / len(rows))
     start, end = _crowded(hops, length, times[0], times[-1])
     gaps = np.diff(hops[(hops > start) & (hops < end)])
     if gaps.size and gaps.min() < APART * length:
