@@ -188,6 +188,15 @@ def test_what_only_some_rows_call_for_is_said_where_they_are(name, words, row, o
     assert words not in caption(name, {}, rows=[rough | other])
 
 
+@pytest.mark.parametrize(
+    ("effects", "discs", "said"),
+    [({"mass_ratio": 2.0}, 2, True), ({}, 3, True), ({"field": 0.5}, 2, False)],
+)
+def test_x_and_y_are_the_same_in_a_square_box(effects, discs, said):
+    text = caption("mean_hop_time", effects, discs, (1.0, 1.0))
+    assert ("In a square box both hops" in text) == said
+
+
 def test_lines_of_many_discs_are_said_to_cross_where_they_do():
     def says(sides, event, effects):
         rows = [{"event": event}, {"event": "wall_x1"}]
@@ -243,6 +252,9 @@ def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
         ("model", "are drawn shorter.", {(5, 1), (1, 5)}),
         ("surface_shell", "are drawn shorter.", {(2, 1), (5, 1), (1, 5)}),
         ("mean_hop_time", "In a square box", {(1, 1)}),
+        ("mean_wall_time", "In a square box", {(1, 1)}),
+        ("wall_area", "In a square box", {(1, 1)}),
+        ("pressure", "In a square box", {(1, 1)}),
         ("mean_hop_time", "Arrows", set()),
         ("volume", "Crosses", set()),
         ("stability", "Crosses", set()),

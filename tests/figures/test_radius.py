@@ -156,3 +156,12 @@ def test_the_legend_has_no_line_where_no_exact_value_is_known():
         handles = [(line.get_linestyle(), line.get_marker()) for line in legend.get_lines()]
         assert handles == [("None", marker) for _, marker in style.SERIES[:2]]
     assert len(legends) == 2
+
+
+def test_an_estimate_above_the_curve_is_in_the_picture():
+    tables = tables_of("paper")
+    first, *others = [r for r in tables["areas"] if r["quantity"] == "vertical_hop_area"]
+    far = first | {"estimate": 1.2 * first["exact"], "stderr": 0.1 * first["exact"]}
+    with style.context():
+        main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[1]
+    assert main.get_ylim()[1] > 1.3 * first["exact"]

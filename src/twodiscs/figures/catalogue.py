@@ -22,11 +22,11 @@ from twodiscs.figures.kit.captions import (
     of_two,
     other,
     plain,
-    plain_square,
     said,
     sentences,
     shows,
     shows_any,
+    square,
     walled,
     with_effect,
     with_effects,
@@ -366,6 +366,10 @@ FIGURES = {
             (symbols).
             """,
             Sentence(
+                "In a square box the areas of both walls are the same.",
+                both(square, shows("right_wall_area", "top_wall_area")),
+            ),
+            Sentence(
                 "The whole is four times the sum of the two others.",
                 both(plain, shows(*(f"{event}_area" for event in WALLS))),
             ),
@@ -394,7 +398,7 @@ FIGURES = {
             ),
             Sentence(
                 "In a square box both hops have the same mean time.",
-                both(plain_square, shows("vertical_hop_time", "horizontal_hop_time")),
+                both(square, shows("vertical_hop_time", "horizontal_hop_time")),
             ),
             Sentence("Hops are those of any pair of discs.", of_many),
             STRIPS,
@@ -446,6 +450,10 @@ FIGURES = {
             ),
             Sentence("Those of disc 1 are averages over all initial conditions.", of_many),
             Sentence(
+                "In a square box the mean times of both walls are the same.",
+                both(square, shows("right_wall_time", "top_wall_time")),
+            ),
+            Sentence(
                 """
                 The mean time of the right wall halves at r = h/4, where configuration space falls
                 apart and disc 1 keeps to one side.
@@ -483,6 +491,10 @@ FIGURES = {
             (lines) and from the hits that dynamics counted (symbols), each of which hands over the
             same momentum in the mean.
             """,
+            Sentence(
+                "In a square box both pressures are the same.",
+                both(square, shows("right_wall_time", "top_wall_time")),
+            ),
             Sentence("Dashed lines in (a) are the leading laws below the largest radius.", plain),
             Sentence(
                 """

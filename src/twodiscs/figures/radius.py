@@ -54,8 +54,8 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     if rooted:
         main.set_yscale("function", functions=(_root, np.square))
         largest = [value for part in series for value in part.exact[np.isfinite(part.exact)]]
-        if box.discs > 2:  # of which no exact value may be known where the largest one is
-            largest += [row["estimate"] for part in series for row in part.rows if row["estimate"]]
+        known = [row for part in series for row in part.rows if row["estimate"]]
+        largest += [row["estimate"] + (row["stderr"] or 0.0) for row in known]
         main.set_ylim(0, 1.05 * max(largest, default=0.0) or 1.0)
     else:
         panels.logarithmic(main, radii, series)

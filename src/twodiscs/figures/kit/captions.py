@@ -137,9 +137,10 @@ def longer_than(ratio):
     return holds
 
 
-def plain_square(shown):
-    """Say whether the box is square and the scene has no effects."""
-    return plain(shown) and not (shown.box and longer_than(1)(shown))
+def square(shown):
+    """Say whether the box is square, and neither a field nor a periodic axis tells x from y."""
+    alike = shown.effects.keys().isdisjoint({"field", "periodic"})
+    return alike and not (shown.box and longer_than(1)(shown))
 
 
 @dataclass(frozen=True)
