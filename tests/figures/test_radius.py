@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from figure_cases import BOXES, PAPER, draw, simulated, tables_of
+from figure_cases import BOXES, PAPER, draw, simulated, tables_of, unclear
 
 from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
@@ -151,6 +151,7 @@ def test_the_legend_has_no_line_where_no_exact_value_is_known():
     ]
     with style.context():
         figure = draw("mean_hop_time", box, {"mean_times": rows})
+        assert unclear(figure) == []
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
     for legend in legends:
         handles = [(line.get_linestyle(), line.get_marker()) for line in legend.get_lines()]

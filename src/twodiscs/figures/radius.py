@@ -120,7 +120,9 @@ def _approach(axes, box, by_quantity):
             panels.asymptote(axes, distances[near], np.array(laws)[near])
         rows = [row | {"radius": 1 - row["radius"] / end} for row in part.rows]
         panels.estimates(axes, [row for row in rows if row["radius"] > 0], colour, marker)
-    axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(min(shown) / 3, 3 * max(shown)))
+    low, high = min(shown) / 3, 3 * max(shown)
+    axes.set(xscale="log", yscale="log", xlim=(CLOSEST, 1), ylim=(low, high))
+    panels.label_decades(axes.yaxis, high / low)
     axes.set_xlabel(r"relative distance from the end, $1-r/r_{\mathrm{c}}$")
     axes.set_ylabel(r"mean time $\tau$")
     if box.is_plain:
