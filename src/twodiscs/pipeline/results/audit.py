@@ -17,7 +17,7 @@ from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.digests import digest, read_json
 from twodiscs.pipeline.jobs.table import read_points, rows_of
 
-EDITED = "is not what its job wrote"
+EDITED, MISSING = "is not what its job wrote", "is missing"
 
 
 def of_manifest(path):
@@ -31,7 +31,7 @@ def of_manifest(path):
             raise InputError(f"{path} must have lines of a SHA-256 and a name, not {line[:80]!r}")
         file = path.parent / name
         same = file.is_file() and digest(file) == written
-        yield file, None if same else EDITED if file.is_file() else "is missing"
+        yield file, None if same else EDITED if file.is_file() else MISSING
 
 
 def of_points(folder):
@@ -49,24 +49,28 @@ def of_points(folder):
 def of_tables(folder, scenes):
     """Yield (file, what is wrong with it or None) of the tables that are made of points.
 
-    ``scenes`` are ``SceneRequest``s. Tables that are missing, or whose points are, are left out.
+    ``scenes`` are ``SceneRequest``s. Points that are missing while a table of theirs is there are
+    yielded too: tables cannot be made again without them.
     """
     for scene in scenes:
         own = folder / scene.name
-        exact = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
+        tables = [own / f"{name}.csv" for name in GATHERED if name != "cost"]
+        if not (tables := [file for file in tables if file.is_file()]):
+            continue
+        files = {
+            stage: [own / "points" / stage / f"{key}.json" for key in keys]
+            for stage, keys in scene.keys.items()
+        }
+        gone = [file for some in files.values() for file in some if not file.exists()]
+        yield from ((file, MISSING) for file in gone)
         try:
-            points = {
-                stage: read_points(stage, [own / "points" / stage / f"{key}.json" for key in keys])
-                for stage, keys in scene.keys.items()
-            }
+            points = {stage: read_points(stage, some) for stage, some in files.items()}
         except (OSError, InputError):
             continue
+        exact = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
         given = {"box": scene.box, "areas": scene.watch.areas, "theory": exact, "points": points}
-        for name in GATHERED:
-            file = own / f"{name}.csv"
-            if name == "cost" or not file.is_file():
-                continue
-            table = SCENE_TABLES[name]
+        for file in tables:
+            table = SCENE_TABLES[file.stem]
             try:
                 same = table.read(file) == [*rows_of(table, **given)]
             except InputError:
