@@ -19,7 +19,7 @@ export PYTHONDONTWRITEBYTECODE =
 .PHONY: all test test-all
 
 all: .venv/ready $(CONFIG)
-	$(IN_VENV) snakemake --cores $(CORES) $(if $(CONFIG),--configfile $(CONFIG))
+	$(IN_VENV) $(if $(CONFIG),twodiscs run --cores $(CORES) $(CONFIG),snakemake --cores $(CORES))
 
 test-all: WHICH = -m "slow or not slow"
 test-all: test

@@ -213,6 +213,24 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
         build.command("my.yaml", ["volme"], Path("Snakefile"))
 
 
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ("tails", "tails is about a scene without effects, and a.yaml has none"),
+        ("paper", "paper is about a scene without effects, and a.yaml has none"),
+        ("volume", "volume shows what no scene of a.yaml watches, or has a place for"),
+        ("model", "model shows what no scene of a.yaml watches, or has a place for"),
+    ],
+)
+def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys, target, said):
+    monkeypatch.chdir(tmp_path)
+    scene = "{name: a, box: {width: 1, height: 1}, effects: {field: 1}, watch: {mean_times: true}}"
+    Path("a.yaml").write_text(f"scenes: [{scene}]\n")
+    assert command(monkeypatch, cli, "run", "a.yaml", target) == 2
+    assert capsys.readouterr().err == f"error: {said}\n"
+    build.check_targets("a.yaml", ["mean_hop_time", "effects", "check"], load(read("a.yaml")))
+
+
 def test_targets_may_stand_behind_options(monkeypatch, capsys):
     given = []
     monkeypatch.setattr(build, "build", lambda *words: given.append(words))

@@ -72,14 +72,30 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
-def test_a_build_ends_with_twodiscs_run(tmp_path):
-    """Killed itself, it takes Snakemake along, and the jobs: nobody else works in the folder."""
+@pytest.mark.parametrize("name", ["SIGKILL", "SIGINT"])
+def test_a_build_ends_with_twodiscs_run(tmp_path, name):
+    """Killed itself, it takes Snakemake along, and the jobs: nobody else works in the folder.
+
+    Interrupted in a terminal, it waits until Snakemake has told what it left.
+    """
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
     environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
     command = [sys.executable, "-m", "twodiscs", "run", str(checkout.configuration), JOB]
-    run = subprocess.Popen(command, cwd=checkout.path, env=environment, stderr=subprocess.DEVNULL)
+    run = subprocess.Popen(
+        command,
+        cwd=checkout.path,
+        env=environment,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
     wait_until(lambda: processes(checkout.path))
-    run.kill()
-    run.wait(60)
-    wait_until(lambda: not processes(checkout.path), 30)
+    if name == "SIGKILL":
+        run.kill()
+        run.wait(60)
+        wait_until(lambda: not processes(checkout.path), 30)
+    else:
+        os.killpg(run.pid, signal.SIGINT)
+        assert run.wait(60) == 130
+        assert not processes(checkout.path)
+        checkout.snakemake("--dry-run")  # there is no lock

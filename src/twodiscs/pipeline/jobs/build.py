@@ -5,8 +5,10 @@ Quick to import: the Snakefile reads this.
 
 import os
 import shlex
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -15,6 +17,7 @@ from pathlib import Path
 import twodiscs
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError, whole
+from twodiscs.pipeline.configuration.files import Files
 from twodiscs.pipeline.configuration.load import check_results, load
 from twodiscs.pipeline.configuration.reading import ConfigError, read
 from twodiscs.studies.catalogue import STUDIES
@@ -24,6 +27,9 @@ TARGETS = (
     "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
     "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
 )  # fmt: skip
+
+#: Seconds that an interrupted Snakemake has to end by itself.
+PATIENCE = 3
 
 #: Where a wheel puts the workflow, below the folder that is installed to.
 SHARED = "share/twodiscs/Snakefile"
@@ -103,6 +109,17 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     return [*words, "--", *targets] if targets else words
 
 
+def check_targets(path, targets, configuration):
+    """Raise ``InputError`` for a target that has nothing to show of a ``Configuration``."""
+    files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
+    for target in targets:
+        about_plain = target == "paper" or (target in STUDIES and STUDIES[target].about_plain)
+        if about_plain and configuration.main is None:
+            raise InputError(f"{target} is about a scene without effects, and {path} has none")
+        if target in FIGURES and not any(target in files.figures(name) for name in files.scenes):
+            raise InputError(f"{target} shows what no scene of {path} watches, or has a place for")
+
+
 def build(path, targets, cores=None, dry_run=False):
     """Run ``command`` of these arguments, with Snakemake; return its exit status."""
     try:
@@ -112,18 +129,25 @@ def build(path, targets, cores=None, dry_run=False):
         told = str(error).split("\n")
         raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in told)) from None
     check_results(configuration.results, ".")
+    check_targets(path, targets, configuration)
     # The Snakefile says how it ended only where there was something to do; here it is always said.
     words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
     # Snakemake ends when this process does, as its jobs end when it does.
     environment = {**os.environ, "TWODISCS_WORKFLOW": str(os.getpid())}
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
+    snakemake = subprocess.Popen([sys.executable, "-m", *words], env=environment)
     try:
-        done = subprocess.run([sys.executable, "-m", *words], env=environment)
-    except KeyboardInterrupt:
+        status = snakemake.wait()
+    except KeyboardInterrupt:  # which a terminal sends to Snakemake, too: it has some words to say
+        with suppress(KeyboardInterrupt, subprocess.TimeoutExpired):
+            snakemake.wait(PATIENCE)
         return 130
-    if done.returncode == 0 and not dry_run:
+    finally:
+        signal.signal(signal.SIGINT, usual)
+    if status == 0 and not dry_run:
         print(closing(configuration.results), end="")
-    return done.returncode
+    return status
 
 
 def closing(results):
