@@ -74,10 +74,7 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
 @pytest.mark.parametrize("name", ["SIGKILL", "SIGINT"])
 def test_a_build_ends_with_twodiscs_run(tmp_path, name):
-    """Killed itself, it takes Snakemake along, and the jobs: nobody else works in the folder.
-
-    Interrupted in a terminal, it waits until Snakemake has told what it left.
-    """
+    """Killed or interrupted in a terminal, it takes the jobs along: nobody else works there."""
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
     environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
@@ -96,6 +93,6 @@ def test_a_build_ends_with_twodiscs_run(tmp_path, name):
         wait_until(lambda: not processes(checkout.path), 30)
     else:
         os.killpg(run.pid, signal.SIGINT)
-        assert run.wait(60) == 130
+        assert run.wait(60) not in (0, -signal.SIGINT)  # Snakemake has cleaned up
         assert not processes(checkout.path)
         checkout.snakemake("--dry-run")  # there is no lock

@@ -6,12 +6,7 @@ from dataclasses import replace
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
-from twodiscs.pipeline.arguments import (
-    box_arguments,
-    end_with_workflow,
-    word,
-    words,
-)
+from twodiscs.pipeline.arguments import box_arguments, word, words
 from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
 from twodiscs.pipeline.configuration.request import STAGES
 from twodiscs.pipeline.jobs.figure import ENTRIES
@@ -49,9 +44,6 @@ if (days := cost.days(CONFIGURATION.scenes)) > 1:
         f"This configuration takes some {days:.2g} days of processor time;"
         " snakemake forecast says it better."
     )
-
-# Where twodiscs run has started Snakemake, Snakemake ends with it.
-end_with_workflow()
 
 # The Python that runs Snakemake also runs the jobs, which end when it does and import nothing from
 # the folder that they are run in.

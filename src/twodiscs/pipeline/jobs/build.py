@@ -3,12 +3,9 @@
 Quick to import: the Snakefile reads this.
 """
 
-import os
 import shlex
 import signal
-import subprocess
 import sys
-from contextlib import suppress
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -27,9 +24,6 @@ TARGETS = (
     "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
     "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
 )  # fmt: skip
-
-#: Seconds that an interrupted Snakemake has to end by itself.
-PATIENCE = 3
 
 #: Where a wheel puts the workflow, below the folder that is installed to.
 SHARED = "share/twodiscs/Snakefile"
@@ -122,6 +116,8 @@ def check_targets(path, targets, configuration):
 
 def build(path, targets, cores=None, dry_run=False):
     """Run ``command`` of these arguments, with Snakemake; return its exit status."""
+    from snakemake.cli import main as snakemake
+
     try:
         configuration = load(read(path))
     except ConfigError as error:
@@ -133,18 +129,13 @@ def build(path, targets, cores=None, dry_run=False):
     # The Snakefile says how it ended only where there was something to do; here it is always said.
     words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
-    # Snakemake ends when this process does, as its jobs end when it does.
-    environment = {**os.environ, "TWODISCS_WORKFLOW": str(os.getpid())}
-    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
-    snakemake = subprocess.Popen([sys.executable, "-m", *words], env=environment)
+    # In this very process: what ends one of them ends both. Its profile looks at sys.argv.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.argv = words
     try:
-        status = snakemake.wait()
-    except KeyboardInterrupt:  # which a terminal sends to Snakemake, too: it has some words to say
-        with suppress(KeyboardInterrupt, subprocess.TimeoutExpired):
-            snakemake.wait(PATIENCE)
-        return 130
-    finally:
-        signal.signal(signal.SIGINT, usual)
+        snakemake()
+    except SystemExit as end:
+        status = end.code
     if status == 0 and not dry_run:
         print(closing(configuration.results), end="")
     return status
