@@ -151,7 +151,15 @@ def _sentence(error):
     if error.validator == "additionalProperties":
         known = list(node["properties"])
         unknown = next(key for key in value if key not in known)
-        hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
+        block = [
+            k for k, child in node["properties"].items() if unknown in child.get("properties", ())
+        ]
+        if block:
+            hint = f"; it belongs into {block[0]!r}"
+        elif value[unknown] is None and not isinstance(unknown, str):  # of {width: 1,5}
+            hint = "; decimals have a point"
+        else:
+            hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
         return f"{path} has an unknown key {shown(unknown)}{hint}"
     hint = _nearest(value, node.get("enum", ()))
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
