@@ -13,8 +13,8 @@ CLOSEST, FARTHER = 1e-9, 1e-5
 
 #: Radii in each regime: like Chebyshev nodes, which crowd quadratically towards both ends, where
 #: curves bend, and in geometric progression from the last of them on. With effects the theory takes
-#: longer, and has fewer.
-NODES, FEWER, GEOMETRIC = 96, 56, 8
+#: longer, and has fewer; of four discs and more it takes up to a minute near the end of a regime.
+NODES, FEWER, FEWEST, GEOMETRIC = 96, 56, 24, 8
 
 
 def branches(box, others=()):
@@ -25,13 +25,14 @@ def branches(box, others=()):
     """
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
-    nodes = NODES if box.is_plain else FEWER
+    nodes = NODES if box.is_plain else FEWER if box.discs < 4 else FEWEST
     inner = (1 - np.cos(np.pi * np.arange(1, nodes) / nodes)) / 2
     near = np.geomspace(CLOSEST if box.is_plain else FARTHER, inner[0], GEOMETRIC)
     regimes = []
     for low, high in pairwise(ends):
         start = np.geomspace(1e-4, inner[0], GEOMETRIC) if low == 0 else near
-        fractions = np.unique(np.concatenate([start, inner, 1 - near]))
+        end = 1 - near if box.discs < 4 else []
+        fractions = np.unique(np.concatenate([start, inner, end]))
         radii = low + fractions * (high - low)
         regimes.append(np.unique(radii[(radii > low) & (radii < high)]))
     return regimes

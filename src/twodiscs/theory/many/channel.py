@@ -222,21 +222,33 @@ def _inverses(channel, p, hops):
 
 
 def _levels(channel, kinds, vectors, logs):
-    """Return Σ over i < j of ∫ T^(i−1)1 T^(j−i)(y, y) T^(N−j)1 dy."""
+    """Return Σ over i < j of ∫ T^(i−1)1 T^(j−i)(y, y) T^(N−j)1 dy.
+
+    T is symmetric: the diagonal of T^(k+l) is the sum over each row of T^k times T^l, element by
+    element. So half of the powers will do.
+    """
     n, total = channel.discs, 0.0
     for sign in (1, -1):
         # Even and odd functions about the middle have half of the diagonal each, on both sides.
         kernel = _folded(channel, kinds * np.array([1, sign])[:, None, None])
-        walk, log = kernel, 0.0
+        powers, scales = [kernel], [0.0]
         for k in range(1, n):
-            diagonal = np.diag(walk) / channel.weights
-            i = np.arange(n - k)
-            part = np.einsum("ki,i,ki->k", vectors[i], diagonal, vectors[n - 1 - k - i])
-            total += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
-            if k < n - 1:
-                walk = walk @ kernel
+            half, rest = k // 2, k - k // 2
+            if rest > len(powers):
+                walk = powers[-1] @ kernel
                 size = np.max(np.abs(walk))
-                walk, log = walk / size, log + math.log(size)
+                powers.append(walk / size)
+                scales.append(scales[-1] + math.log(size))
+            if half:
+                diagonal = np.einsum("ij,ij->i", powers[half - 1], powers[rest - 1])
+                log = scales[half - 1] + scales[rest - 1]
+            else:
+                diagonal, log = np.diag(kernel), 0.0
+            i = np.arange(n - k)
+            part = np.einsum(
+                "ki,i,ki->k", vectors[i], diagonal / channel.weights, vectors[n - 1 - k - i]
+            )
+            total += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
     return total
 
 
