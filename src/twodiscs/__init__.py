@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from twodiscs.theory.exact import areas, exact, mean_times, rate, volume
 
     class Effects(TypedDict, total=False):
-        """The effects as keywords, each of which may be left out."""
+        """The effects and ``discs`` as keywords, each of which may be left out."""
 
         depth: float | None
         radius_ratio: float
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
         periodic: str | Sequence[str]
         field: float
         moment_of_inertia: float | None
+        discs: int
 
 
 __version__ = "0.2.0"
