@@ -91,3 +91,33 @@ def test_a_command_stops_at_once(words):
     with stopped(code) as child:
         assert child.returncode == -signal.SIGINT
         assert child.stderr.read() == ""
+
+
+#: Names the kernels that the main thread calls, each by its first call.
+WATCHED = """
+import threading
+from numba.core.dispatcher import Dispatcher
+
+usual = Dispatcher._compile_for_args
+
+def first_call(self, *arguments, **words):
+    if threading.current_thread() is threading.main_thread():
+        print(self.py_func.__name__)
+    return usual(self, *arguments, **words)
+
+Dispatcher._compile_for_args = first_call
+import twodiscs as td
+
+td.starts(td.Scene(1.5, 1, 0.2), 1)
+td.starts(td.Scene(8, 1, 0.3, discs=8), 1)
+dense = td.Scene(1.5, 1, 0.195, discs=8)
+td.starts(dense, 1)
+td.trajectory(dense, duration=0.01)
+td.simulate(td.Scene(1.5, 1, 0.1, discs=8), 1, budget=1)
+"""
+
+
+def test_the_thread_that_hears_signals_calls_no_kernel():
+    """A KeyboardInterrupt in what numba does about a call may be lost, or be a SystemError."""
+    run = subprocess.run([sys.executable, "-c", WATCHED], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (0, ""), run.stderr

@@ -1,5 +1,7 @@
 """Work in threads: in order, no more than is asked for, and errors are those of the work."""
 
+import subprocess
+import sys
 import threading
 import time
 
@@ -46,6 +48,29 @@ def test_who_waits_is_told_that_time_goes_by():
     told = []
     list(in_threads(time.sleep, [(0.5,)], waiting=lambda: told.append(True)))
     assert told
+
+
+#: A process that ends while a thread of it works, as at Ctrl-C.
+ENDING = """
+import contextlib, sys, time
+from numba.core.compiler_lock import global_compiler_lock
+from twodiscs.sampling import jit
+from twodiscs.sampling.blocks.threads import in_threads
+
+def work(seconds, compiling):
+    with global_compiler_lock if compiling else contextlib.nullcontext():
+        time.sleep(seconds)
+        print("done", flush=True)
+
+list(in_threads(work, [{call}], waiting=sys.exit))
+"""
+
+
+@pytest.mark.parametrize(("call", "said"), [((3600, False), ""), ((2, True), "done\n")])
+def test_a_process_that_ends_waits_for_a_compilation_alone(call, said):
+    code = [sys.executable, "-c", ENDING.format(call=call)]
+    run = subprocess.run(code, capture_output=True, text=True, timeout=60, check=True)
+    assert (run.stdout, run.stderr) == (said, "")
 
 
 @pytest.mark.parametrize("cores", [0, -1, 1.5, True, "2", None, 10**6])

@@ -10,6 +10,7 @@ imported event law has been edited. Import this module, not numba, wherever some
 the settings must precede the import.
 """
 
+import atexit
 import gc
 import os
 import shutil
@@ -42,6 +43,7 @@ gc.disable()
 
 import numba  # noqa: E402
 from numba.core import caching, types  # noqa: E402
+from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
 # No kernel needs BLAS, and importing SciPy's, where numba looks for it, takes a quarter of a start.
@@ -55,6 +57,9 @@ if (blas := "scipy.linalg.cython_blas") not in sys.modules:
 gc.freeze()
 if collecting:
     gc.enable()
+
+# Threads that nobody waits for end with the process, but in the midst of a compilation it crashes.
+atexit.register(global_compiler_lock.acquire)
 
 #: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No kernel is
 #: called from C.

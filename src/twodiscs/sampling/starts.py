@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from twodiscs.model.checks import InputError
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
     draw_in_prism,
@@ -207,7 +207,7 @@ def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
         return initial.labelled(scene.gas, number, seed, block, watch)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
-    state = open_stream(np.uint64(seed), block)
+    state = in_a_thread(open_stream, np.uint64(seed), block)
 
     # The kernel takes whole arrays, goes on with the stream, and has no use for some of the rows.
     used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))

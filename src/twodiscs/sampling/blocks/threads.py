@@ -1,13 +1,15 @@
 """Work in threads: on so many cores as are given, and so that Ctrl-C is heard at once.
 
 Kernels release Python's lock, so threads are enough for all cores. A kernel hears of no signal
-while it runs, and when Python's handler strikes in the middle of what numba does afterwards, a
-``SystemError`` takes the place of the KeyboardInterrupt. Signals are for the main thread alone: it
-waits, and others call the kernels.
+while it runs, and when Python's handler strikes in the middle of what numba does before and after,
+the KeyboardInterrupt is lost, or a ``SystemError`` takes its place. Signals are for the main thread
+alone: it waits, and others call the kernels.
 """
 
 from collections import deque
 from itertools import islice
+from queue import SimpleQueue
+from threading import Thread
 
 from twodiscs.model.checks import whole
 
@@ -18,6 +20,17 @@ LOOK = 0.2
 MOST_CORES = 1024
 
 
+def _serve(work, calls):
+    """Do the ``work`` of each (``Future``, arguments) in the queue ``calls``, until a None."""
+    for future, given in iter(calls.get, None):
+        if future.set_running_or_notify_cancel():
+            try:
+                future.set_result(work(*given))
+            except BaseException as error:
+                future.set_exception(error)
+        del future, given  # results may be large, and the next call late
+
+
 def in_threads(work, arguments, cores=1, waiting=None):
     """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by so many threads.
 
@@ -25,18 +38,36 @@ def in_threads(work, arguments, cores=1, waiting=None):
     for; those that have not begun when this ends, or is interrupted, never are. ``waiting()`` is
     called now and then while a result is waited for.
     """
-    from concurrent.futures import ThreadPoolExecutor, wait
+    from concurrent.futures import Future, wait
 
     cores = whole("cores", cores, 1, MOST_CORES)
-    calls = iter(arguments)
-    pool = ThreadPoolExecutor(cores)
+    given, calls, begun = iter(arguments), SimpleQueue(), deque()
+
+    def begin(number):
+        for some in islice(given, number):
+            begun.append(Future())
+            calls.put((begun[-1], some))
+
     try:
-        begun = deque(pool.submit(work, *given) for given in islice(calls, 2 * cores))
+        # A call may take a minute. A script that ends does not wait for daemons, as it would for
+        # the threads of an executor.
+        for _ in range(cores):
+            Thread(target=_serve, args=(work, calls), daemon=True).start()
+        begin(2 * cores)
         while begun:
             while not wait([begun[0]], LOOK).done:
                 if waiting is not None:
                     waiting()
             yield begun.popleft().result()
-            begun.extend(pool.submit(work, *given) for given in islice(calls, 1))
+            begin(1)
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        for future in begun:
+            future.cancel()
+        for _ in range(cores):
+            calls.put(None)
+
+
+def in_a_thread(work, *given):
+    """Return ``work(*given)``, done by another thread: for a kernel that is called once."""
+    (result,) = in_threads(work, [given])
+    return result

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.sampling.blocks.threads import in_threads
+from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.measures import around
@@ -131,7 +131,8 @@ def _cells(gas):
     bound = _rounded(n / tilt * math.exp(tilt * room / n - 1))
     cells = len(ends) - 1
     weights, backward = np.empty((cells, cells)), np.ones((n, cells))
-    fill_cells(ends, tilt, gas.contact_distance, b, known.least, weights, backward)
+    sizes = gas.contact_distance, b, known.least
+    in_a_thread(fill_cells, ends, tilt, *sizes, weights, backward)
     return Cells(ends, weights, backward, room, known.least, (1 - 2.0**-20) / bound, turned)
 
 
@@ -360,7 +361,8 @@ def labelled(gas, number, seed, block=0, watch=None):
     then with how many are drawn (None: as before), and ``number``.
     """
     filled, initial, exchanged = np.zeros((4 * gas.discs, number)), initial_of(gas), method(gas)
-    stream, labels = open_stream(np.uint64(seed), block), open_stream(~np.uint64(seed), block)
+    seeds = np.uint64(seed), ~np.uint64(seed)
+    stream, labels = (in_a_thread(open_stream, each, block) for each in seeds)
     seconds = 0.0
 
     def fill(first, stop):

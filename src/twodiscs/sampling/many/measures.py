@@ -23,6 +23,7 @@ import numpy as np
 from twodiscs.model.checks import InputError, one_of, proportion, whole
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.blocks.rounds import Sampler
+from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many.rates import Measures, overlap_of_two
@@ -221,7 +222,7 @@ def run_blocks(gas, seed, first, stop):
 
 def free_fraction(gas):
     """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it, maybe 0."""
-    sums, _ = run_blocks(gas, 0, 0, 1)
+    sums, _ = in_a_thread(run_blocks, gas, 0, 0, 1)
     return float(sums[0]) / UNITS / BLOCK * box_of(gas).typical
 
 
@@ -258,7 +259,7 @@ def estimate(gas, sums, products, samples):
 def sample(gas, samples, seed):
     """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
     blocks = -(-whole("samples", samples) // BLOCK)
-    return estimate(gas, *run_blocks(gas, seed, 0, blocks), blocks * BLOCK)
+    return estimate(gas, *in_a_thread(run_blocks, gas, seed, 0, blocks), blocks * BLOCK)
 
 
 # The pipeline -------------------------------------------------------------------------------------
