@@ -293,6 +293,41 @@ def test_figures_and_animations(simulated, sampled, intervals, trajectory, tmp_p
     assert (tmp_path / "two.gif").read_bytes().startswith(b"GIF")
 
 
+def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
+    def seen(start, now):
+        return np.stack([start["u1"] * now["u1"], (now["x1"] - start["x1"]) ** 2], axis=1)
+
+    averages = td.observe(SCENE, seen, [0, 1, 2], replicas=1)
+    (axes,) = td.plot(averages, tmp_path / "averages.png").axes
+    for k, drawn in enumerate(axes.containers):
+        assert np.array_equal(drawn.lines[0].get_xydata().T, [[0, 1, 2], averages.mean[:, k]])
+        (bars,) = drawn.lines[2]
+        half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
+        assert np.allclose(half, averages.stderr[:, k], rtol=1e-9)
+    assert len(axes.containers) == len(axes.get_legend().texts) == 2
+    (axes,) = td.plot(td.observe(SCENE, lambda a, b: b["x1"], [1], replicas=1)).axes
+    assert axes.get_legend() is None
+
+
+@pytest.mark.parametrize(
+    ("radius", "effects", "lines"),
+    [
+        (0.249, {}, ["exact slope at 0", r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"]),
+        (0.2, {}, ["exact slope at 0"]),
+        (0.2, {"mass_ratio": 2}, []),
+    ],
+)
+def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tmp_path):
+    scene = td.Scene(1.5, 1.0, radius, **effects)
+    found = td.transmission(scene, "horizontal_hop", 1)
+    (axes,) = td.plot(found, tmp_path / "kappa.png", figure="transmission").axes
+    (drawn,) = axes.containers
+    assert np.array_equal(drawn.lines[0].get_ydata(), found.frame()["kappa"])
+    assert axes.get_legend_handles_labels()[1] == lines
+    with pytest.raises(td.InputError, match="figure must be one of transmission, not 'observed'"):
+        td.plot(found, figure="observed")
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [

@@ -361,10 +361,11 @@ def plot(
     """Draw a result, and write it to ``path`` (.pdf, .png or .svg) if that is given.
 
     ``result`` is a trajectory, a ``Scan``, a result of ``simulate``, ``sample`` or ``intervals``, a
-    list of such results at several radii of one box, which are drawn beside the exact curves, or a
-    table of a scene that ``load`` returns; a scene or box is sketched. ``figure`` names one
-    of several that suit, as the workflow does. A notebook shows what is returned; at a plain prompt
-    a window does. Raises ``InputError`` for what no figure shows.
+    list of such results at several radii of one box, which are drawn beside the exact curves, one
+    of ``transmission`` or ``observe``, or a table of a scene that ``load`` returns; a scene or box
+    is sketched. ``figure`` names one of several that suit, as the workflow does. A notebook shows
+    what is returned; at a plain prompt a window does. Raises ``InputError`` for what no figure
+    shows.
 
     Example:
 

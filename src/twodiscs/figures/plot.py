@@ -1,22 +1,52 @@
 """Figures and animations of what the face returns; what is drawn is what the workflow draws."""
 
 import sys
+from functools import partial
 from importlib import import_module
 from operator import attrgetter
 
 from twodiscs.comparison.measured.measurements import Intervals, Measurements, the_scene
+from twodiscs.comparison.measured.observe import Observed
 from twodiscs.comparison.measured.scan import Scan
+from twodiscs.comparison.measured.transmission import Transmission
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, one_of
 
 #: What can be drawn.
-DRAWN = "a scene, a trajectory, results of simulate, scan, sample or intervals, or a loaded table"
+DRAWN = (
+    "a scene, a trajectory, results of simulate, scan, sample, intervals, transmission or observe, "
+    "or a loaded table"
+)
 
 
 def plot(result, path, figure):
     """Return the figure that shows ``result`` (see the face)."""
+    draw = _over_time(result, figure) or _in_catalogue(result, figure)
+    with style.context():
+        drawn = draw()
+        if path is not None:
+            style.save(drawn, path)
+    # A notebook shows it with the same settings.
+    drawn._repr_png_ = lambda: _png(drawn)
+    if hasattr(sys, "ps1") and "IPython" not in sys.modules:
+        _show(drawn)
+    return drawn
+
+
+def _over_time(result, figure):
+    """Return what draws a result that has a figure of its own, None for others."""
+    for kind, name in ((Observed, "observed"), (Transmission, "transmission")):
+        if isinstance(result, kind):
+            from twodiscs.figures.motion import over_time
+
+            one_of("figure", name if figure is None else figure, [name])
+            return partial(getattr(over_time, name), result)
+
+
+def _in_catalogue(result, figure):
+    """Return what draws a result in a figure of the workflow."""
     box, tables, fitting, options = _what(result)
     if not fitting:
         raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
@@ -25,15 +55,7 @@ def plot(result, path, figure):
     if not box.is_plain and not entry.needs:
         raise InputError(f"scene must be plain to be drawn, but it has {', '.join(box.calls_for)}")
     draw = import_module(f"twodiscs.{entry.module}").draw
-    with style.context():
-        drawn = draw(box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
-        if path is not None:
-            style.save(drawn, path)
-    # A notebook shows it with the same settings.
-    drawn._repr_png_ = lambda: _png(drawn)
-    if hasattr(sys, "ps1") and "IPython" not in sys.modules:
-        _show(drawn)
-    return drawn
+    return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
 
 
 def _show(figure):

@@ -1,0 +1,68 @@
+"""What changes with the time that has gone by: averages of an observable, and κ(t) of a hop."""
+
+import numpy as np
+
+from twodiscs.comparison.measured.transmission import box_time
+from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
+from twodiscs.model.box import Box
+from twodiscs.theory import tails
+
+#: Inches: the panel, and the room above.
+HEIGHT, TOP = 1.9, 0.22
+
+
+def _panel(scene, more=""):
+    """Return (figure, its axes) under the sides of the box, the radius, ``more`` and effects."""
+    figure = new_figure(panels.BOTTOM + HEIGHT + TOP)
+    axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT)
+    panels.name_box(axes, Box.of(scene), f",  $r={scene.radius:g}${more}")
+    return figure, axes
+
+
+def _points(axes, times, values, errors, look, label=None):
+    style = panels.open_symbol(*look)
+    axes.errorbar(times, values, errors, lw=0.5, elinewidth=0.6, label=label, **style)
+
+
+def observed(result):
+    """Draw the averages of an ``Observed``, numbered as in its frame, with their errors."""
+    figure, axes = _panel(result.scene)
+    flat = (values.reshape(result.times.size, -1).T for values in (result.mean, result.stderr))
+    series = [*zip(*flat, strict=True)]
+    for k, (mean, error) in enumerate(series):
+        _points(axes, result.times, mean, error, SERIES[k % len(SERIES)], f"mean {k}")
+    if len(series) > 1:
+        axes.legend()
+    axes.set(xlabel="time $t$", ylabel="average")
+    return figure
+
+
+def transmission(result):
+    """Draw κ(t) of a ``Transmission`` with its errors, its exact start and its end by clusters.
+
+    The start is known in plain scenes, the end where hops are rare enough for a coefficient.
+    """
+    scene, hop = result.scene, result.hop
+    figure, axes = _panel(scene, f",  {name_of(hop)}")
+    values, errors = zip(*((e.value, e.stderr) for e in result.curve), strict=True)
+    _points(axes, result.times, values, errors, LOOKS[hop])
+    if scene.is_plain:
+        early = np.geomspace(result.times[0], 0.3 * box_time(scene, hop), 20)
+        start = 1 - 2 * tails.density_at_zero(scene, hop) * early
+        axes.plot(early, start, color=BLACK, ls=(0, (3, 1.5)), zorder=5, label="exact slope at 0")
+    if result.coefficient is not None:
+        late, kappa = (
+            np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30),
+            result.coefficient.value,
+        )
+        end = kappa * np.exp(-2 * kappa * late / result.exact_mean)
+        axes.plot(
+            late, end, color=BLACK, zorder=5, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"
+        )
+    axes.set(xscale="log", xlabel="time $t$", ylabel=r"transmission $\kappa(t)$")
+    axes.xaxis.set_major_formatter("{x:g}")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
+    return figure
