@@ -175,8 +175,8 @@ def driven(page, tmp_path_factory):
         pytest.skip(ABSENT)
     with browser(tmp_path_factory.mktemp("browser")) as chromium:
 
-        def opened(asked="", **options):
-            chromium.open(f"{page.as_uri()}#{asked}", **options)
+        def opened(asked="", path=page, **options):
+            chromium.open(f"{path.as_uri()}#{asked}", **options)
             return chromium
 
         yield opened
@@ -377,6 +377,81 @@ def test_who_wants_no_motion_starts_it_himself(driven):
     assert page.look("[runs.done, drawn.time, at('pause').textContent]") == [0, 0, "Run"]
     page.look("at('pause').click()")
     page.until("runs.done > 10")
+
+
+#: Boxes in any unit, and how a radius of 0.2 shorter sides and the next one are written.
+UNITS = [
+    ("small", (0.03, 0.02), "0.004", "0.00401"),
+    ("micro", (3e-6, 1e-5), "6e-7", "6.01e-7"),
+    ("plate", (150.0, 100.0), "20", "20.1"),
+]
+ANY_UNIT = [
+    {"name": name, "width": width, "height": height, "effects": {}}
+    for name, (width, height), *_ in UNITS
+]
+
+
+@pytest.mark.parametrize(("name", "sides", "radius", "next_radius"), UNITS)
+def test_lengths_are_in_any_unit(driven, tmp_path, name, sides, radius, next_radius):
+    scenes = [scene for scene in ANY_UNIT if scene["name"] == name]
+    path = written(tmp_path / "explorer.html", scenes)
+    page = driven("seed=7&runs=2000", path=path)
+    rows = counted(page, 2000)
+    times = exact.mean_times(Box(*sides).scene(float(radius)))
+    for event, row in rows.items():
+        assert value(row["exact"]) == pytest.approx(times[event], rel=3e-3), event
+        assert abs(value(row["z"])) < SIGMAS, event
+    shown = "[...document.querySelectorAll('output')].map(output => output.value)"
+    assert [*map(float, page.look(shown))] == [*sides, float(radius)]
+    ends = page.look("[at('radius').min, at('radius').max].map(value => unit * value)")
+    assert ends[0] < 0.03 * Box(*sides).largest_radius
+    assert 0.99 * Box(*sides).largest_radius < ends[1] < Box(*sides).largest_radius
+    # Times of other radii are on their axis.
+    low, high = page.look("SHOWN_TIMES.map(time => unit * time)")
+    for fraction in (0.05, 0.2, 0.4, 0.9):
+        found = exact.mean_times(Box(*sides).scene(fraction * Box(*sides).largest_radius))
+        assert all(low < found[event] < high for event in explorer.COUNTED if found[event])
+    page.look("at('radius').focus()")
+    page.press("ArrowRight")
+    assert page.look(f"{shown}[2]") == page.look("at('radius').ariaValueText") == next_radius
+    assert page.problems == []
+
+
+def test_points_of_the_build_are_drawn_in_any_unit(driven, tmp_path):
+    page = driven("runs=0", path=written(tmp_path / "explorer.html", ANY_UNIT))
+    for name, (width, _), *_ in UNITS:
+        radius, time = 0.07 * width, 0.3 * width
+        index = [scene["name"] for scene in ANY_UNIT].index(name)
+        page.look(f"document.querySelectorAll('#buttons button')[{index + 1}].click()")
+        assert "points of this build" in page.look("at('points').textContent")
+        drawn = page.look(
+            f"DATA.scenes[{index}].points.any_wall.dynamics = [[{radius!r}, {time!r}, null]];"
+            "var positions = [], place = timesPlot.valToPos;"
+            "timesPlot.valToPos = (value, scale, pixels) => {"
+            " positions.push(unit * value); return place(value, scale, pixels); };"
+            "drawPoints(timesPlot); timesPlot.valToPos = place; positions"
+        )
+        for position in (radius, time):
+            assert any(math.isclose(position, other, rel_tol=1e-14) for other in drawn)
+    assert page.problems == []
+
+
+@pytest.mark.parametrize("scene", ANY_UNIT, ids=lambda scene: scene["name"])
+def test_many_digits_are_not_wider_than_a_narrow_window(driven, tmp_path, scene):
+    page = driven("seed=7", path=written(tmp_path / "explorer.html", [scene]), width=390)
+    page.until("runs.done > 2000")
+    page.look(
+        "state.paused = true; runs.done *= 1000;"
+        "[runs.sums, runs.squares].forEach(of => of.forEach((sum, i) => { of[i] = 1000 * sum; }));"
+        "renew()"
+    )
+    assert len(page.look("document.querySelector('#any_wall td').innerText")) >= 10
+    of = "...[...document.querySelectorAll('main *')].map"
+    assert page.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= 390
+    page.look("at('radius').focus()")
+    page.press("End")
+    assert page.look("[...document.querySelectorAll('output')].every("
+                     "output => output.scrollWidth <= output.clientWidth)")  # fmt: skip
 
 
 @pytest.mark.parametrize("width", [1280, 390])

@@ -9,7 +9,7 @@ const ASKED = new URLSearchParams(location.hash.slice(1));
 const SEED = Number(ASKED.get("seed") ?? DATA.seed);
 const MOST_RUNS = Number(ASKED.get("runs") ?? Infinity);
 
-/** Time units per second that the drawn pair moves. */
+/** Units per second that the drawn pair moves. */
 const SPEED = 0.6;
 
 /** Counting takes so many milliseconds of a frame, of the 16 that there are on most screens. */
@@ -21,7 +21,7 @@ const CHUNK = 2000, CHUNKS = 200;
 /** Milliseconds between two renewals of the numbers: they are to be read. */
 const RENEWED = 250;
 
-/** Decades of mean times that are shown. */
+/** Decades of mean times that are shown, in units. */
 const SHOWN_TIMES = [0.001, 1000];
 
 /** Radii of a curve in each regime. */
@@ -40,13 +40,18 @@ const colour = (event) => DATA.looks[event][0];
 const key = (event) =>
   `<span class="key" style="color: ${colour(event)}">${GLYPHS[DATA.looks[event][1]]}</span>`;
 
-const first = DATA.scenes[0] ?? { width: 1.5, height: 1 };
-const state = {
-  width: Number(ASKED.get("width") ?? first.width),
-  height: Number(ASKED.get("height") ?? first.height),
-  radius: Number(ASKED.get("radius") ?? 0.2),
-  paused: matchMedia("(prefers-reduced-motion: reduce)").matches,
-};
+// All is computed in a unit of length in which the box is of order one, and multiplied where it is
+// printed. That is the unit of time, too, for the speed is 1.
+let unit;
+
+/** The power of ten next to the shorter side of a box. */
+const unitOf = ({ width, height }) => (
+  Number(`1e${Math.round(Math.log10(Math.min(width, height)))}`));
+
+/** A length or a time in units, without the last bits that the division adds. */
+const inUnits = (value) => Number((value / unit).toPrecision(15));
+
+const state = { paused: matchMedia("(prefers-reduced-motion: reduce)").matches };
 
 let runs; // the statistics of the scene
 let drawn; // the run that is shown: {pair, time, trail, flash}
@@ -56,12 +61,27 @@ let drawn; // the run that is shown: {pair, time, trail, flash}
 /** The largest radius of the slider: a little below where the discs jam. */
 const lastRadius = () => Math.floor(999 * largestRadius(state.width, state.height)) / 1000;
 
-function prepareControls() {
+/** Take a box and its unit; the sliders reach the boxes of the build that have the same one. */
+function choose(box) {
+  unit = unitOf(box);
+  const alike = [box, ...DATA.scenes.filter((scene) => unitOf(scene) === unit)];
   for (const [side, low, high] of [["width", 0.5, 3], ["height", 0.5, 2]]) {
-    const sides = [...DATA.scenes.map((scene) => scene[side]), state[side]];
+    const sides = alike.map((scene) => inUnits(scene[side]));
     at(side).min = Math.min(low, ...sides);
     at(side).max = Math.max(high, ...sides);
+    state[side] = sides[0];
   }
+}
+
+function prepareControls() {
+  const first = DATA.scenes[0] ?? { width: 1.5, height: 1 };
+  choose({
+    width: Number(ASKED.get("width") ?? first.width),
+    height: Number(ASKED.get("height") ?? first.height),
+  });
+  // Discs of this radius can hop either way, whatever the box.
+  const usual = (Math.min(state.width, state.height) / 5).toFixed(3);
+  state.radius = ASKED.has("radius") ? inUnits(ASKED.get("radius")) : Number(usual);
   at("radius").min = 0.01;
   for (const name of ["width", "height", "radius"]) {
     at(name).addEventListener("input", () => {
@@ -72,10 +92,10 @@ function prepareControls() {
   for (const scene of DATA.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    button.textContent = `${scene.width} × ${scene.height}`;
+    button.textContent = `${short(scene.width, 12)} × ${short(scene.height, 12)}`;
     button.title = `The box of the scene ${scene.name}, with the points of its tables`;
     button.addEventListener("click", () => {
-      Object.assign(state, { width: scene.width, height: scene.height });
+      choose(scene);
       changed();
     });
     at("buttons").append(button);
@@ -94,8 +114,10 @@ function showPause() {
 function showControls() {
   at("radius").max = lastRadius();
   for (const name of ["width", "height", "radius"]) {
+    const shown = short(unit * state[name], 12);
     at(name).value = state[name];
-    at(name).nextElementSibling.value = String(state[name]);
+    at(name).ariaValueText = shown;
+    at(name).nextElementSibling.value = shown;
   }
 }
 
@@ -103,6 +125,7 @@ function showControls() {
 function changed() {
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
   showControls();
+  at("duration").textContent = short(unit * DURATION);
   runs = new Runs(state.width, state.height, state.radius, SEED);
   show(runs.current);
   const possible = [0, 1].filter((hop) => runs.exact.times[COUNTED[hop]] !== null);
@@ -218,21 +241,29 @@ function draw() {
 
 const whole = (number) => number.toLocaleString("en").replaceAll(",", "\u202f");
 
-/** A number to four digits, without an exponent where people write none. */
-function short(number) {
-  return number >= 1e6 || number < 1e-4 ? number.toExponential(3) : String(Number(number.toPrecision(4)));
+const isUsual = (number) => number === 0 || (number >= 1e-3 && number < 1e5);
+
+const exponential = (number, digits) => number.toExponential(digits).replace("+", "");
+
+/** A number to some digits, without an exponent where people write none. */
+function short(number, digits = 4) {
+  const rounded = Number(number.toPrecision(digits));
+  return isUsual(rounded) ? String(rounded) : exponential(rounded);
 }
 
 /** Numbers with as many decimals as an error leaves, of which two digits count. */
 function decimals(error) {
-  const digits = error === null ? 100 : Math.max(0, 1 - Math.floor(Math.log10(error)));
-  return (number) => (digits > 9 ? short(number) : number.toFixed(digits));
+  if (!error) return short;
+  const digits = 1 - Math.floor(Math.log10(error));
+  return (number) => (isUsual(number)
+    ? number.toFixed(Math.max(0, digits))
+    : exponential(number, Math.max(0, digits + Math.floor(Math.log10(number)))));
 }
 
 function showTable() {
   at("events").innerHTML = COUNTED.map((event, i) => {
     const { count, time, error, exact, z } = runs.measured(i);
-    const rounded = decimals(error);
+    const decimal = decimals(error && unit * error), rounded = (units) => decimal(unit * units);
     const cells = [
       whole(count),
       time === null ? "–" : rounded(time),
@@ -245,7 +276,7 @@ function showTable() {
   }).join("");
   const { done, events } = runs;
   at("status").textContent = done
-    ? `${whole(done)} runs of ${DURATION} time units, ${(events / 1e6).toFixed(1)} million events`
+    ? `${whole(done)} runs of ${short(unit * DURATION)} time units, ${(events / 1e6).toFixed(1)} million events`
     : state.paused ? "Paused: press Run to count." : "";
 }
 
@@ -284,7 +315,7 @@ function polygon(context, x, y, corners, size) {
 
 /** The tables of the build for the box of the sliders, if it is one of its scenes. */
 const builtScene = () => DATA.scenes.find(
-  ({ width, height }) => width === state.width && height === state.height);
+  ({ width, height }) => inUnits(width) === state.width && inUnits(height) === state.height);
 
 /** Draw points with errors on the curves: those of the build, and what this page has counted. */
 function drawPoints(plot) {
@@ -329,8 +360,8 @@ function drawPoints(plot) {
   const built = builtScene();
   for (const event of COUNTED) {
     const { monte_carlo, dynamics } = built?.points[event] ?? { monte_carlo: [], dynamics: [] };
-    for (const row of monte_carlo) point(event, row, 4.2, false);
-    for (const row of dynamics) point(event, row, 1.9, true);
+    for (const row of monte_carlo) point(event, row.map(inUnits), 4.2, false);
+    for (const row of dynamics) point(event, row.map(inUnits), 1.9, true);
   }
   context.lineWidth = 2.5 * pixel;
   COUNTED.forEach((event, i) => {
@@ -346,8 +377,9 @@ const AXIS = {
   labelFont: "14px system-ui, sans-serif",
   labelGap: 2,
   labelSize: 22,
-  values: (plot, ticks) => ticks.map((tick) => (tick === null ? "" : String(tick))),
+  values: (plot, ticks) => ticks.map((tick) => (tick === null ? "" : short(tick))),
 };
+const multiplied = (plot, ticks) => AXIS.values(plot, ticks.map((tick) => tick && unit * tick));
 const COMMON = {
   cursor: { show: false },
   height: 320,
@@ -364,8 +396,8 @@ const timesPlot = new uPlot({
     y: { distr: 3, range: () => SHOWN_TIMES },
   },
   axes: [
-    { ...AXIS, label: "radius r (length)", size: 32 },
-    { ...AXIS, label: "mean time τ (length/speed)", size: 54 },
+    { ...AXIS, values: multiplied, label: "radius r (length)", size: 32 },
+    { ...AXIS, values: multiplied, label: "mean time τ (length/speed)", size: 54 },
   ],
   series: [{}, ...COUNTED.map((event) => (
     { stroke: colour(event), width: 2, points: { show: false } }))],
@@ -408,7 +440,7 @@ function showIntervals() {
   at("said").textContent = mean === null
     ? `In this box discs of this radius make no ${NAMES[event]}.`
     : `Bars are ${whole(total)} intervals, drawn without errors; the dashed line is the exponential`
-      + ` of the exact mean, τ = ${short(mean)}, which independent hops would follow.`;
+      + ` of the exact mean, τ = ${short(unit * mean)}, which independent hops would follow.`;
 }
 
 /** Renew all numbers. */
@@ -419,7 +451,6 @@ function renew() {
 }
 
 function prepareTexts() {
-  at("duration").textContent = DURATION;
   at("enough").textContent = ENOUGH;
   at("boxes").textContent = DATA.scenes.length ? "Boxes of the build:" : "";
   const named = COUNTED.map((event) => `<span class="name">${key(event)} ${NAMES[event]}</span>`);
