@@ -24,6 +24,9 @@ BOXES = {
     "nearly square": Box(1.05, 1.0),
     "very long": Box(40.0, 1.0),
     "very tall": Box(0.1, 1.0),
+    "tiny": Box(3e-6, 1e-5),
+    "small": Box(0.03, 0.02),
+    "large": Box(1.5e5, 1e5),
 }
 PAPER = BOXES["paper"]
 
@@ -56,7 +59,7 @@ def tables_of(name):
             found["mean_times"].append(simulated(rng, scene, event, time, relative))
         if scene.vertical_hops and len({row["radius"] for row in found["hop_histogram"]}) < 4:
             found["hop_histogram"] += histogram(rng, scene)
-    found["trajectory"] = trajectory(rng)
+    found["trajectory"] = trajectory(rng, box.shortest)
     for table, rows in found.items():
         assert all(row.keys() == SCENE_TABLES[table].columns().keys() for row in rows)
     return found
@@ -114,17 +117,22 @@ def histogram(rng, scene, intervals=10**6, bins=512):
     ]
 
 
-def trajectory(rng, events=400):
-    """Return rows of a trajectory that stays on one side and hops now and then."""
+def trajectory(rng, unit, events=400):
+    """Return rows of a trajectory that stays on one side and hops now and then.
+
+    Its lengths are below half a ``unit``, and so are its times apart.
+    """
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
     rows = []
-    for i, x in enumerate(side * rng.uniform(0.1, 0.4, events)):
+    for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
         if i > 0 and side[i] != side[i - 1]:
             for event in ("horizontal_hop", "vertical_hop"):
                 place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
-                rows.append({"time": i - 0.5, "event": event, **place, "z1": None, "z2": None})
+                rows.append(
+                    {"time": unit * (i - 0.5), "event": event, **place, "z1": None, "z2": None}
+                )
         place = {"x1": -x, "y1": -x, "x2": x, "y2": x, "z1": None, "z2": None}
-        rows.append({"time": float(i), "event": "wall_x1", **place})
+        rows.append({"time": unit * i, "event": "wall_x1", **place})
     return rows
 
 

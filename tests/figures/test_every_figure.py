@@ -10,11 +10,14 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 
+#: Boxes where labels could meet, and of any size.
+TABLED = ("paper", "nearly square", "tiny", "small", "large")
+
 
 def pairs():
-    """Yield (figure, box): drawings in all boxes, the others where labels could meet."""
+    """Yield (figure, box): drawings in all boxes, the others in some."""
     for name, entry in FIGURES.items():
-        yield from ((name, box) for box in (("paper", "nearly square") if entry.tables else BOXES))
+        yield from ((name, box) for box in (TABLED if entry.tables else BOXES))
     yield from ((name, "long") for name in ("mean_collision_time", "mean_hop_time"))
     yield from ((name, "tall") for name in ("hopping_trajectory", "wall_area"))
     yield from ((name, "square") for name in ("mean_wall_time", "horizontal_hop_area"))

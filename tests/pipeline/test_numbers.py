@@ -79,6 +79,7 @@ def texts(found):
         (rounding.in_words(2), "two"),
         (rounding.in_words(12), "12"),
         (rounding.sides(1.5, 1.0), "$1.5 times 1$"),
+        (rounding.sides(3e-6, 1e-5), "$(3 times 10^(-6)) times 10^(-5)$"),
     ],
 )
 def test_numbers_are_written_as_physicists_do(number, shown):

@@ -79,12 +79,32 @@ def test_every_status_has_its_symbol():
         ({}, []),
         ({"periodic": "xy"}, ["$x$, $y$ periodic"]),
         ({"field": 1.5}, ["$g=1.5$"]),
+        ({"field": 2.5e-6}, [r"$g=2.5\times10^{-6}$"]),
         ({"mass_ratio": 2, "radius_ratio": 0.5}, ["$r_2/r_1=0.5$", "$m_2/m_1=2$"]),
     ],
     ids=str,
 )
 def test_effects_are_written_in_symbols(effects, symbols):
     assert sorted(panels.effects(Box(1.5, 1.0, effects))) == sorted(symbols)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        (1.5, "1.5"),
+        (100.0, "100"),
+        (3e-6, r"3\times10^{-6}"),
+        (1e-5, "10^{-5}"),
+        (2.5e7, r"2.5\times10^{7}"),
+    ],
+)
+def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
+    assert panels.number(number) == text
+
+
+def test_sides_are_told_from_powers_of_ten():
+    assert panels.sides(Box(1.5, 1)) == r"1.5\times1"
+    assert panels.sides(Box(3e-6, 1e-5)) == r"(3\times10^{-6})\times10^{-5}"
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -96,7 +116,11 @@ def test_limits_and_effects_of_a_box_stand_clear(name):
 
 @pytest.mark.parametrize(
     ("ends", "labels"),
-    [((1.3, 2.3), ["1.4", "1.6", "1.8", "2", "2.2"]), ((0.9, 30), ["1", "2", "5", "10", "20"])],
+    [
+        ((1.3, 2.3), ["1.4", "1.6", "1.8", "2", "2.2"]),
+        ((0.9, 30), ["1", "2", "5", "10", "20"]),
+        ((9e-6, 3e-4), ["0.1", "0.2", "0.5", "1", "2", r"$\times10^{-4}$"]),
+    ],
 )
 def test_a_short_logarithmic_axis_has_labels(ends, labels):
     with style.context():
@@ -110,4 +134,6 @@ def test_a_short_logarithmic_axis_has_labels(ends, labels):
             for tick in ticks
             if ends[0] <= tick.get_loc() <= ends[1] and tick.label1.get_text()
         ]
-    assert [text for _, text in sorted(shown)] == labels
+        shown = [text for _, text in sorted(shown)]
+        shown += filter(None, [axes.yaxis.get_offset_text().get_text()])
+    assert shown == labels

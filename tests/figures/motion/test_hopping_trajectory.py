@@ -6,7 +6,7 @@ from figure_cases import tables_of, unclear
 
 from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import style
-from twodiscs.figures.motion import hop_histogram, hopping_trajectory, many
+from twodiscs.figures.motion import animation, hop_histogram, hopping_trajectory, many
 from twodiscs.model.box import Box
 
 
@@ -69,6 +69,27 @@ def test_effects_stand_clear_of_the_legend(effects):
         figure = hopping_trajectory.draw(box, tables, radius=0.245)
         assert unclear(figure) == []
         assert unclear(hop_histogram.draw(box, tables)) == []
+
+
+@pytest.mark.parametrize(
+    ("sides", "radius"),
+    [
+        ((3e-6, 1e-5), 6e-7),
+        ((1e-5, 3e-6), 6e-7),
+        ((0.03, 0.02), 0.0048),
+        ((150, 100), 24),
+        ((1.5e5, 1e5), 2.4e4),
+    ],
+)
+def test_sides_of_any_size_stand_clear(sides, radius):
+    """In the animation as well."""
+    box = Box(*sides)
+    rows = Trajectory.rows(box, radius, 1908)
+    with style.context():
+        assert unclear(hopping_trajectory.draw(box, {"trajectory": rows}, radius=radius)) == []
+        stage = animation.Stage(box, radius, rows)
+        stage.show(stage.centre)
+        assert unclear(stage.figure) == []
 
 
 def test_the_panel_beneath_enlarges_a_short_trajectory_too():

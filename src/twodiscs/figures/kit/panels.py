@@ -7,10 +7,13 @@ panels and named above.
 """
 
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.limits import limits
@@ -23,6 +26,9 @@ MAIN, GAP, LOWER = 1.9, 0.07, 0.82
 
 #: Inches and points: a second line above, for the box and its effects.
 LINE, ABOVE = 0.13, 14
+
+#: The digits of a box, and of a radius, that leave room for something beside them.
+BESIDE = 11
 
 #: How many of the box, its effects and what else is said of it stand in one line.
 PIECES = 3
@@ -53,7 +59,7 @@ def panels(box, label, beneath=0):
 
     ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
     """
-    line = 0 if box.is_plain else LINE
+    line = 0 if is_short(box) else LINE
     figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line + room(box))
     lower = add_panel(figure, beneath + BOTTOM, LOWER)
     main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
@@ -83,7 +89,36 @@ def mark(main, lower, ends):
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
     """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
     across, up = figure.get_size_inches()
-    return figure.add_axes((left / across, bottom / up, width / across, height / up))
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
+    # The power of ten of an ordinate stands beside what is written above.
+    axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
+    return axes
+
+
+def number(value):
+    """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ where it is very small or large."""
+    return powers(f"{value:g}")
+
+
+def powers(text):
+    """Return a ``text`` in mathtext with 3e-06 written as 3 × 10⁻⁶, and 1e-06 as 10⁻⁶."""
+
+    def power(number):
+        times = "" if number[1] == "1" else rf"{number[1]}\times"
+        return f"{times}10^{{{int(number[2])}}}"
+
+    return re.sub(r"\b([\d.]+)e([+-]\d+)\b", power, text)
+
+
+def sides(box):
+    """Return the sides of a ``Box`` in mathtext."""
+    numbers = map(number, (box.width, box.height))
+    return r"\times".join(f"({side})" if "times" in side else side for side in numbers)
+
+
+def of_radius(radius):
+    """Return what is written of a ``radius``, if it is given, behind the sides of a box."""
+    return f",  $r={number(radius)}$" if radius else ""
 
 
 def letter(axes, name):
@@ -102,10 +137,15 @@ def name_box(axes, box, more="", up=0):
     drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
 
 
+def is_short(box, radius=0):
+    """Say whether the ``heading``, maybe with a ``radius``, leaves room for something beside it."""
+    digits = sum(len(number(value)) for value in (box.width, box.height, radius or 0))
+    return box.is_plain and digits <= BESIDE
+
+
 def heading(box, more=""):
     """Return the lines that name the sides of the box, ``more`` and the effects."""
-    sides = rf"$w\times h={box.width:g}\times{box.height:g}$"
-    pieces = [*f"{sides}{more}".split(",  "), *effects(box)]
+    pieces = [*rf"$w\times h={sides(box)}${more}".split(",  "), *effects(box)]
     return [",  ".join(pieces[i : i + PIECES]) for i in range(0, len(pieces), PIECES)]
 
 
@@ -118,7 +158,7 @@ def effects(box):
     """Return how many discs a ``Box`` has, if not two, and its effects in symbols, texts."""
     texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
     discs = [f"${box.discs}$ discs"] if box.discs > 2 else []
-    return [*discs, *(EFFECTS[name].symbol.format(value) for name, value in texts)]
+    return [*discs, *(powers(EFFECTS[name].symbol.format(value)) for name, value in texts)]
 
 
 def name_limits(axes, ends):
@@ -276,11 +316,17 @@ def logarithmic(axes, radii, series):
 def label_decades(axis, ratio):
     """Label a logarithmic ``axis`` whose ends have a ``ratio`` below 100 between decades as well.
 
-    That is at 2 and 5 or, below a ratio of 3, at every tick.
+    That is at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or large
+    numbers stands at the end of the axis, as on others.
     """
     if ratio < 100:
         digits = "25" if ratio >= 3 else "123456789"
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in digits else "")
+        power = math.floor(math.log10(max(axis.get_view_interval())))
+        low, high = rcParams["axes.formatter.limits"]
+        unit = 1.0 if low < power < high else float(f"1e{power}")
+        major = FuncFormatter(lambda x, _: f"{x / unit:g}")
+        major.set_offset_string("" if unit == 1.0 else rf"$\times10^{{{power}}}$")
+        axis.set_major_formatter(major)
+        axis.set_minor_formatter(lambda x, _: major(x) if f"{x:e}"[0] in digits else "")
     else:
         axis.set_minor_formatter("")

@@ -37,6 +37,7 @@ SETTINGS = {
     "font.family": ["cmr10", "STIXGeneral"],
     "mathtext.fontset": "cm",
     "axes.formatter.use_mathtext": True,
+    "axes.formatter.limits": [-3, 4],  # longer numbers meet their neighbours on an abscissa
     "font.size": 7.8,
     "axes.labelsize": 7.8,
     "axes.labelpad": 2,

@@ -90,8 +90,8 @@ class Stage:
 
         inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
-        more = f",  $r={radius:g}$"
-        up = SIGN if box.effects and box.discs == 2 else 0
+        more = panels.of_radius(radius)
+        up = 0 if panels.is_short(box, radius) or box.discs > 2 else SIGN
         room = LARGER * panels.room(box, more) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
         self.figure.set_dpi(DPI)

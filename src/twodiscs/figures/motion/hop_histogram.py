@@ -50,7 +50,7 @@ def draw(box, tables):
             at = np.unique(np.searchsorted(middles, wanted))
             axes.stairs(density, edges, baseline=None, color=colour, lw=0.7)
             symbol = panels.open_symbol(colour, marker)
-            name = f"$r={group[0]['radius']:g}$"
+            name = f"$r={panels.number(group[0]['radius'])}$"
             axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])

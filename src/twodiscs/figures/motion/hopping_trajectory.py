@@ -32,8 +32,9 @@ def draw(box, tables, radius=None):
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    above = 0 if box.is_plain else panels.ABOVE  # points: effects are written above the legend
-    more = f",  $r={radius:g}$" if radius else ""
+    # Points: what leaves no room for the legend beside it is written above.
+    above = 0 if panels.is_short(box, radius) else panels.ABOVE
+    more = panels.of_radius(radius)
     room = above / 72 + panels.room(box, more)
     figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)

@@ -62,7 +62,7 @@ def world_lines(box, rows, radius=None):
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: MANY * box.discs + 1]
     times = np.array([row["time"] for row in rows])
-    more = f",  $r={radius:g}$" if radius else ""
+    more = panels.of_radius(radius)
     room = panels.ABOVE / 72 + panels.room(box, more)
     figure = new_figure(panels.BOTTOM + 2 * PANEL + GAP + TOP + room)
     whole = panels.add_panel(figure, panels.BOTTOM + PANEL + GAP, PANEL)

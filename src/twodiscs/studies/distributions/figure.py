@@ -66,10 +66,9 @@ def _rates(axes, rows):
             continue
         first, last, value, error = np.array(shown).T
         middle = (first + last) / 2
-        style = panels.open_symbol(colour, marker, 0.8)
-        axes.errorbar(
-            middle, value, error, ls="-", lw=0.4, elinewidth=0.6, label=f"$r={radius:g}$", **style
-        )
+        style = panels.open_symbol(colour, marker, 0.8) | {"lw": 0.4, "elinewidth": 0.6}
+        name = f"$r={panels.number(radius)}$"
+        axes.errorbar(middle, value, error, ls="-", label=name, **style)
         tests = [row for row in own if row["quantity"] in ("rate", "trend")]
         constant = all(row["p"] > SMALLEST_P for row in tests)
         for row in tests[:1]:

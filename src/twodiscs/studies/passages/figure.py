@@ -149,7 +149,7 @@ def _powers(axes, rows, first, hop):
         distance, value, error = _columns(own, "distance", "estimate", "stderr")
         if inertia is None:
             box = Box(own[0]["width"], own[0]["height"])
-            where = f"${box.width:g}\\times {box.height:g}$, ${QUARTERS[AXIS[event]]}$"
+            where = f"${panels.sides(box)}$, ${QUARTERS[AXIS[event]]}$"
             look = LOOKS[None] if (scene, event) == (first, hop) else next(others)
             _points(axes, distance, 1 - value, error, look, rf"$1-\kappa$, {where}")
         else:

@@ -160,7 +160,9 @@ def _radii(rows):
             texts[key] = rf"${names[row['case']]}\,{_power(row['distance'])}$"
         else:
             tiny = f"$r={_rounded(row['radius'])}$"
-            texts[key] = f"$r={row['radius']:g}$" if row["case"] == "ordinary" else tiny
+            texts[key] = (
+                f"$r={panels.number(row['radius'])}$" if row["case"] == "ordinary" else tiny
+            )
     return texts
 
 
@@ -257,7 +259,7 @@ def _reversal(axes, rows):
         shown = _select(here, quantity="return_error")
         x = [rate * row["count"] / math.log(2) for row in shown]
         y = [row["value"] for row in shown]
-        name = f"$r={radius:g}$: {number['value']:.0f} events ({number['exact']:.0f})"
+        name = f"$r={panels.number(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
         axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
     axes.axhline(2.0**-26, **BOUND)
     axes.set(yscale="log", xlim=(0, 36), ylim=(1e-16, 1e-4))
@@ -289,6 +291,6 @@ def _coverage(axes, rows):
         xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
     )
     axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
-    axes.set_xticklabels([f"$r={radius:g}$" for radius in radii])
+    axes.set_xticklabels([f"$r={panels.number(radius)}$" for radius in radii])
     axes.tick_params(axis="x", length=0)
     axes.legend(loc="upper center", ncols=3, columnspacing=1.0, **SMALL)

@@ -51,7 +51,7 @@ def draw(box, tables):
 
 
 def _name(row):
-    return f"{name_of(row['event'])}, $r={row['radius']:g}$"
+    return f"{name_of(row['event'])}, $r={panels.number(row['radius'])}$"
 
 
 def _values(rows):

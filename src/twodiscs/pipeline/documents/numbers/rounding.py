@@ -108,4 +108,6 @@ def plain(text):
 
 def sides(width, height):
     """Return the box of these sides."""
-    return Number(None, f"${width:g} times {height:g}$")
+    texts = [formula(rounded(side, 6)) for side in (width, height)]
+    texts = [f"({text})" if "times" in text else text for text in texts]
+    return Number(None, f"${' times '.join(texts)}$")
