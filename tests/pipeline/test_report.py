@@ -5,11 +5,14 @@ from io import BytesIO
 from pathlib import PurePosixPath
 
 import pytest
+from browser import ABSENT, BROWSER, browser
+from checkout import REPOSITORY
 from PIL import Image, ImageDraw
 
 from twodiscs.pipeline.documents.report import (
     KEY,
     KEY_OF_ALL,
+    contents,
     key_figures,
     movie,
     page,
@@ -83,3 +86,38 @@ def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path
     still = movie(tmp_path, path, {"one": scene})["still"]
     with Image.open(BytesIO(b64decode(still.partition(",")[2]))) as image:
         assert image.convert("RGB").tobytes() == frames[12].convert("RGB").tobytes()
+
+
+#: Scenes whose names are long, with words in them or none, or whose sides are.
+LONG = [
+    {"name": "plate-of-the-air-table-in-metres", "box": "1.2 × 0.8", "effects": {}},
+    {"name": "a" * 64, "box": "2 × 1", "effects": {"discs": 3, "periodic": "x"}},
+    {"name": "micro", "box": "3.25e-06 × 1.25e-05", "effects": {"mass_ratio": 0.5}},
+]
+
+
+@pytest.fixture(scope="module")
+def report():
+    """The report of ``LONG`` scenes, each with a table."""
+    files = [f"{scene['name']}/mean_times.csv" for scene in LONG]
+    shown = contents(REPOSITORY, files, LONG, DOT, "report-workflow.html")
+    row = {"radii": 12, "comparisons": 1234, "tests": 1234, "failed": 0, "largest": 3.21}
+    shown["agreements"] = [row | scene | {"events": 4.4e10} for scene in LONG]
+    template = REPOSITORY / "workflow" / "report" / "front.html"
+    return page(template.read_text(encoding="utf-8"), shown)
+
+
+def test_boxes_are_described_in_sentences(report):
+    for text in ("1.2 × 0.8", "2 × 1, with 3 discs, periodic x", "with mass ratio 0.5"):
+        assert f"{text}.</p>" in report
+
+
+@pytest.mark.skipif(BROWSER is None, reason=ABSENT)
+@pytest.mark.parametrize("width", [1280, 390])
+def test_long_names_are_not_wider_than_the_window(report, width, tmp_path):
+    (tmp_path / "report.html").write_text(report, encoding="utf-8")
+    with browser(tmp_path) as chromium:
+        chromium.open((tmp_path / "report.html").as_uri(), width=width)
+        assert chromium.look("document.documentElement.scrollWidth") <= width
+        of = "...[...document.querySelectorAll('main *')].map"
+        assert chromium.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width

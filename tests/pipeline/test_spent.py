@@ -3,7 +3,7 @@
 import pytest
 
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.results.spent import spent
+from twodiscs.pipeline.results.spent import main, spent
 
 HEAD = "s\th:m:s\tmax_rss\tmax_vms\tcpu_time\n"
 
@@ -21,6 +21,19 @@ def test_jobs_of_a_kind_are_added_up(tmp_path):
     assert [*table.index] == ["dynamics", "check"]
     assert [*table.loc["dynamics"]] == [3, 6.0, 5.0, 70.0]
     assert [*table.loc["check"]][:3] == [1, 0.5, 0.0]
+
+
+def test_memory_is_printed_with_its_unit(tmp_path, monkeypatch, capsys):
+    (tmp_path / "benchmarks").mkdir()
+    (tmp_path / "benchmarks" / "check.tsv").write_text(f"{HEAD}2.0\t0:00:02\t50.2\t9\t1.5\n")
+    monkeypatch.setattr("sys.argv", ["spent", str(tmp_path)])
+    main()
+    head, _, *rows = capsys.readouterr().out.splitlines()
+    assert head.split() == ["jobs", "seconds", "processor", "memory", "(MiB)"]
+    assert [row.split() for row in rows] == [
+        ["check", "1", "2.0", "1.5", "50.2"],
+        ["all", "1", "2.0", "1.5", "50.2"],
+    ]
 
 
 def test_a_folder_without_measurements_is_refused(tmp_path):

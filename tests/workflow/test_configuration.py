@@ -1,5 +1,7 @@
 """Mistakes in the configuration: one sentence, before anything runs, and nothing is changed."""
 
+import re
+
 import pytest
 from checkout import Checkout
 
@@ -49,3 +51,16 @@ def test_a_mistake_on_the_command_line(unbuilt):
     run = unbuilt.snakemake("--dry-run", "--config", "seed=abc", passes=False)
     assert run.returncode != 0
     assert "Configuration: seed must be" in run.stderr
+
+
+def test_days_of_processor_time_are_written_without_an_exponent(unbuilt, tmp_path):
+    path = tmp_path / "long.yaml"
+    path.write_text(
+        "shard_events: 1e15\n"
+        "scenes: [{name: a, box: {width: 1.5, height: 1}, radii: [0.1, 0.2, 0.3],"
+        " watch: {mean_times: true}, accuracy: 2e-7, event_budget: 1e15}]\n"
+    )
+    run = unbuilt.snakemake("--dry-run", "--configfile", str(path), "--", "results/a/theory.csv")
+    (days,) = re.findall(r"takes some (\S+) days of processor time", run.stdout + run.stderr)
+    assert len(days) == 3
+    assert 100 < int(days) < 1000

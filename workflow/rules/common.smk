@@ -40,8 +40,9 @@ RESULTS = FILES.folder
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
 if (days := cost.days(CONFIGURATION.scenes)) > 1:
+    days = float(f"{days:.2g}")
     logger.warning(
-        f"This configuration takes some {days:.2g} days of processor time;"
+        f"This configuration takes some {days:g} days of processor time;"
         " snakemake forecast says it better."
     )
 

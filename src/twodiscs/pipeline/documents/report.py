@@ -133,11 +133,14 @@ def section(folder, paths, scenes, scene=None):
     movies = [path for path in drawn if path.stem == "animation"]
     key = key_figures(drawn, scene is not None)
     others = [path for path in drawn if path not in key and path not in movies]
-    effects = (scene or {}).get("effects") or {}
+    effects = [
+        f"{value} discs" if name == "discs" else f"{name.replace('_', ' ')} {value}"
+        for name, value in ((scene or {}).get("effects") or {}).items()
+    ]
     return {
         "animation": movie(folder, movies[0], scenes) if movies else None,
         "box": scene and scene["box"],
-        "effects": [f"{name.replace('_', ' ')} {value}" for name, value in effects.items()],
+        "effects": effects,
         "figures": [figure(folder, path, scenes) for path in key],
         "name": scene and scene["name"],
         "tables": [path for path in paths if path.suffix == ".csv"],

@@ -47,6 +47,7 @@ def main():
     parser.add_argument("folder", metavar="RESULTS")
     table = spent(parser.parse_args().folder)
     table.loc["all"] = [*table[["jobs", "seconds", "processor"]].sum(), table["memory"].max()]
+    table = table.rename(columns={"memory": "memory (MiB)"})
     print(table.round(1).astype({"jobs": int}).to_string())
 
 
