@@ -157,8 +157,17 @@ def test_walls_that_are_reached(scene):
 )
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_largest_radius(periodic, width, ratio, depth):
+    check_largest_radius(Scene(width, 1.0, 1e-6, depth, radius_ratio=ratio, periodic=periodic))
+
+
+@pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
+def test_largest_radius_with_every_effect(scene):
+    # A field may keep discs apart before they jam.
+    check_largest_radius(replace(scene, field=0.0))
+
+
+def check_largest_radius(scene):
     """Discs fit below the largest radius and not above it."""
-    scene = Scene(width, 1.0, 1e-6, depth, radius_ratio=ratio, periodic=periodic)
     largest = scene.largest_radius
     assert scene.with_radius(largest * (1 - 1e-12)).largest_radius == largest
     with pytest.raises(ValueError, match="does not fit"):

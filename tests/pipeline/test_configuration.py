@@ -462,7 +462,7 @@ SCENES = {
     "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
     "accuracy: {rihgt_wall: 1}": ".accuracy has an unknown key 'rihgt_wall'; did you mean …?",
     "event_budget: 2.5": ".event_budget must be an integer from 1 to 1e15, not 2.5",
-    "monte_carlo: 1e8": ".monte_carlo must be a block of two keys, …, not '1e8'",
+    "monte_carlo: 1e8": ".monte_carlo must be a block of the keys samples, shell, not '1e8'",
     "montecarlo: {}": " has an unknown key 'montecarlo'; did you mean 'monte_carlo'?",
 }
 

@@ -11,6 +11,8 @@ nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes not
 
 PAGE, NOTEBOOK = REPOSITORY / "docs" / "python.md", REPOSITORY / "docs" / "tutorial.ipynb"
 
+RENEW = "python docs/make/tutorial.py docs/python.md docs/tutorial.ipynb"
+
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
@@ -39,12 +41,12 @@ def same(shown, found):
 
 
 def test_the_page_shows_what_its_blocks_print(made):
-    assert same(PAGE.read_text(encoding="utf-8"), made[0])
+    assert same(PAGE.read_text(encoding="utf-8"), made[0]), RENEW
 
 
 def test_the_notebook_is_the_page(made):
     kept = nbformat.read(NOTEBOOK, as_version=4)
-    assert [cell.source for cell in kept.cells] == [cell.source for cell in made[1].cells]
+    assert [cell.source for cell in kept.cells] == [cell.source for cell in made[1].cells], RENEW
     for old, new in zip(kept.cells, made[1].cells, strict=True):
         for before, after in zip(old.get("outputs", []), new.get("outputs", []), strict=True):
             assert before.output_type == after.output_type

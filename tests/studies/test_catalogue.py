@@ -13,6 +13,7 @@ import twodiscs.studies
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.base import Table
 from twodiscs.figures.catalogue import FIGURES, Entry
+from twodiscs.model.effects import EFFECTS
 from twodiscs.pipeline.configuration.load import load
 from twodiscs.pipeline.configuration.reading import read
 from twodiscs.studies import catalogue
@@ -32,6 +33,15 @@ def loaded(block):
     paths = sorted((CONFIG / "scenes").glob("*.yaml"))
     scenes = tuple(load({"seed": 1} | read(path)).scenes[0] for path in paths)
     return dataclasses.replace(load(block), effect_scenes=scenes)
+
+
+def test_every_effect_has_a_scene(default):
+    assert {*EFFECTS} <= {name for scene in default.effect_scenes for name in scene.effects}
+
+
+@pytest.mark.parametrize("folder", sorted(FOLDERS))
+def test_every_study_has_tests(folder):
+    assert Path(__file__).with_name(f"test_{folder}.py").exists()
 
 
 @pytest.fixture(scope="module")
