@@ -65,6 +65,7 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
     [
         ([*BOX, "--radius", "0.5"], "radius 0.5 does not fit"),
         ([*BOX, "--radius", "x"], "argument --radius: must be a number, not 'x'"),
+        ([*BOX, "--radius", "0,2"], "not '0,2'; decimals follow a point, 0.2"),
         ([*BOX], "the following arguments are required: --radius"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),

@@ -270,6 +270,21 @@ def test_a_start_that_is_no_state_is_refused(wrong, said):
     assert said in str(caught.value)
 
 
+@pytest.mark.parametrize("scene", [SCENE, td.Scene(1.5, 1.0, 0.15, discs=3)])
+def test_what_holds_states_is_no_start_but_they_are(scene):
+    states, path = td.starts(scene, 2), td.trajectory(scene, duration=1)
+    for wrong, hint in (
+        (states, "start[0] is one of these states"),
+        (path, "states_at(times)[0] is a state of a trajectory"),
+        (path.iloc[-1], "states_at(times)[0] is a state of a trajectory"),
+    ):
+        with pytest.raises(td.InputError, match=r"^start must be the numbers x1, .*; ") as caught:
+            td.trajectory(scene, start=wrong)
+        assert str(caught.value).endswith(hint)
+    for right in (states[0], path.states_at([1])[0]):
+        td.trajectory(scene, start=right, duration=1)
+
+
 def test_on_a_periodic_axis_any_image_serves():
     scene = td.Scene(1.5, 1.0, 0.2, periodic="x")
     moved = GOOD | {"x2": GOOD["x2"] + 3.0, "y2": 0.1}
@@ -334,7 +349,11 @@ def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tm
         (lambda some: td.plot(some, figure="volume"), "figure must be one of mean_hop_time, "),
         (lambda some: td.plot([some, 1]), "result must be a scene, a trajectory, results"),
         (lambda some: td.plot(some, "a.txt"), "path must be a .pdf, .png or .svg file"),
-        (lambda some: td.plot(SCENES["field"]), "scene must be plain to be drawn"),
+        (
+            lambda some: td.plot(SCENES["field"]),
+            "scene must be plain to be drawn, but it has field",
+        ),
+        (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "to be drawn, but it has discs 3"),
         (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
         (lambda some: td.simulate(SCENES["field"], seed=-1), "seed must be an integer from 0 to"),
         (lambda some: td.sample(SCENE, 1e6, quantities="volume"), "quantities must be a list of"),

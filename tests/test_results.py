@@ -272,7 +272,7 @@ def test_what_is_observed_is_a_trajectory():
     [
         ({"times": [1, 1]}, "times must be ascending numbers from 0 on, not [1, 1]"),
         ({"times": [-1]}, "times must be ascending numbers from 0 on, not [-1]"),
-        ({"times": [1e9]}, "events are due, not 1e+09"),
+        ({"times": [1e9]}, "where 1e7 events are due, not 1e9"),
         ({"function": 1}, "function must be one of two arrays of states, not 1"),
         ({"function": lambda start, now: 1.0}, "function must return a real number, or as many of"),
         ({"function": lambda start, now: None}, "4096 replicas, not None: is its return missing?"),

@@ -8,7 +8,7 @@ import sys
 import argcomplete
 
 import twodiscs
-from twodiscs.model.checks import PRESETS, InputError
+from twodiscs.model.checks import PRESETS, InputError, comma
 from twodiscs.model.events import EVENTS
 from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
 
@@ -109,7 +109,7 @@ def error(text):
         return text if text in PRESETS else number(text)
     except argparse.ArgumentTypeError:
         allowed = ", ".join(PRESETS)
-        message = f"must be a number or one of {allowed}, not {text!r}"
+        message = f"must be a number or one of {allowed}, not {text!r}{comma(text)}"
         raise argparse.ArgumentTypeError(message) from None
 
 

@@ -437,6 +437,8 @@ SCENES = {
     "field: 1": " has an unknown key 'field'; it belongs into 'effects'",
     "box: {width: 1,5, height: 1}": ".box has an unknown key 5; decimals have a point",
     "box: {width: 1.5, heigth: 1}": ".box has an unknown key 'heigth'; did you mean 'height'?",
+    "box: {width: 1.5, height: '1,2'}": ".box.height must be a positive length …, not '1,2'; "
+    "decimals follow a point, 1.2",
     "box: {width: 1.5, height: tall}": ".box.height must be a positive length …, not 'tall'",
     "radii: []": ".radii must be a non-empty list of radii, or a block …, not []",
     "radii: [0.5]": ".radii: radius 0.5 does not fit: … need a radius below 0.38397459621556…",
@@ -457,7 +459,7 @@ SCENES = {
     "effects: {periodic: [x, x]}": ".effects.periodic must be a list of …, not ['x', 'x']",
     "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",
     "effects: {periodic: [z]}": ".effects: periodic must be … axes x and y (z needs a depth), …",
-    "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e+60, not 1e-70",
+    "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e60, not 1e-70",
     "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
     "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
     "accuracy: {rihgt_wall: 1}": ".accuracy has an unknown key 'rihgt_wall'; did you mean …?",

@@ -24,7 +24,7 @@ from twodiscs.dynamics.law import (
     law_of,
     next_event,
 )
-from twodiscs.model.checks import InputError, length, whole
+from twodiscs.model.checks import InputError, length, shown, whole, written
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import ENERGY, a_scene, two_discs
 from twodiscs.sampling.blocks.threads import in_threads
@@ -269,9 +269,19 @@ def _listed(events, duration, watch):
 
 def _too_long(duration, rate):
     return (
-        f"duration must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are due, "
-        f"not {duration!r}"
+        f"duration must be below {written(MOST_EVENTS / rate, '.3g')}, where "
+        f"{written(MOST_EVENTS, 'g')} events are due, not {duration!r}"
     )
+
+
+def _no_state(names, start):
+    """Return the ``InputError`` for a ``start`` that is not a number for each of the ``names``."""
+    hint = ""
+    if np.shape(start) and getattr(getattr(start, "dtype", None), "names", None):
+        hint = "; start[0] is one of these states"
+    elif hasattr(start, "iloc"):
+        hint = "; states_at(times)[0] is a state of a trajectory"
+    return InputError(f"start must be the numbers {', '.join(names)}, not {shown(start)}{hint}")
 
 
 def _state_of_many(scene, start):
@@ -282,7 +292,7 @@ def _state_of_many(scene, start):
     except (TypeError, ValueError, OverflowError):
         state = np.array([])
     if state.size != len(names) or not np.isfinite(state).all():
-        raise InputError(f"start must be the numbers {', '.join(names)}, not {start!r:.80}")
+        raise _no_state(names, start)
     (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
     for axis in scene.walled:
         centres = x if axis == "x" else y
@@ -321,7 +331,7 @@ def state_of(scene, start):
     except (TypeError, ValueError, OverflowError):
         state = {}
     if len(state) != len(names) or not all(map(math.isfinite, state.values())):
-        raise InputError(f"start must be the numbers {', '.join(names)}, not {start!r}")
+        raise _no_state(names, start)
     apart = {}
     for axis in scene.axes:
         side = scene.side(axis)

@@ -53,7 +53,8 @@ def _in_catalogue(result, figure):
     name = one_of("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
     if not box.is_plain and not entry.needs:
-        raise InputError(f"scene must be plain to be drawn, but it has {', '.join(box.calls_for)}")
+        more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
+        raise InputError(f"scene must be plain to be drawn, but it has {more}")
     draw = import_module(f"twodiscs.{entry.module}").draw
     return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
 

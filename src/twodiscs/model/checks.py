@@ -2,6 +2,7 @@
 
 import math
 import numbers
+import re
 import reprlib
 
 #: Lengths outside this range would overflow or underflow when multiplied four at a time.
@@ -45,13 +46,25 @@ def shown(value):
         return f"a {type(value).__name__}"
 
 
+def written(value, form=""):
+    """Return a number as the pages write it: 1e60 for what Python calls 1e+60."""
+    return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
+
+
+def comma(value):
+    """Return what a sentence adds that shows text with a decimal comma; "" for anything else."""
+    if not isinstance(value, str) or not re.fullmatch(r"[-+]?\d+,\d+", value):
+        return ""
+    return f"; decimals follow a point, {value.replace(',', '.')}"
+
+
 def number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
     ``low`` is positive: anything that is not a real number, finite and positive is refused.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}")
+        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}{comma(value)}")
     try:
         number = float(value)
     except (ValueError, OverflowError):
@@ -59,7 +72,8 @@ def number(name, value, low, high, kind="number"):
     if not math.isfinite(number) or number <= 0:
         raise InputError(f"{name} must be a positive, finite {kind}, not {number!r}")
     if not low <= number <= high:
-        raise InputError(f"{name} must lie between {low!r} and {high!r}, not {number!r}")
+        low, high, number = map(written, (low, high, number))
+        raise InputError(f"{name} must lie between {low} and {high}, not {number}")
     return number
 
 
@@ -84,7 +98,8 @@ def whole(name, value, least=1, most=LARGEST_INTEGER):
 def proportion(name, value):
     """Return ``value`` as a float; raise ``InputError`` unless it is strictly between 0 and 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} must be a number between 0 and 1, not {shown(value)}")
+        wrong = f"{shown(value)}{comma(value)}"
+        raise InputError(f"{name} must be a number between 0 and 1, not {wrong}")
     if not 0 < value < 1:
         raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {shown(value)}")
     return float(value)
@@ -101,7 +116,7 @@ def accuracy(name, value):
     if not real or not 0 < value <= 1:
         raise InputError(
             f"{name} must be a number above 0 and at most 1, or one of {', '.join(PRESETS)}, not "
-            f"{shown(value)}"
+            f"{shown(value)}{comma(value)}"
         )
     return float(value)
 

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, comma, written
 from twodiscs.model.effects import EFFECTS
 
 
@@ -72,7 +72,8 @@ def number(text):
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"must be a number, not {text!r}") from None
+        message = f"must be a number, not {text!r}{comma(text)}"
+        raise argparse.ArgumentTypeError(message) from None
 
 
 def whole_number(text):
@@ -108,7 +109,8 @@ def add_box(parser, required=True):
 def _help(effect):
     """Return what an effect is, with its unit, its range and what is without it."""
     said = [effect.unit] if effect.unit else []
-    said += [f"{effect.low:g} to {effect.high:g}"] if effect.is_number else ["x, y or z"]
+    ends = (written(end, "g") for end in (effect.low, effect.high) if effect.is_number)
+    said += [" to ".join(ends) or "x, y or z"]
     said += [f"{effect.default} without it"] if effect.default else []
     return f"{effect.meaning} ({'; '.join(said)})"
 

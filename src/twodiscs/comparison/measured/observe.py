@@ -12,7 +12,7 @@ from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
-from twodiscs.model.checks import InputError, count, shown
+from twodiscs.model.checks import InputError, count, shown, written
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
@@ -111,8 +111,8 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
     rate = expected_event_rate(scene)
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
-            f"times must be below {MOST_EVENTS / rate:.3g}, where {MOST_EVENTS:g} events are due, "
-            f"not {times[-1]:g}"
+            f"times must be below {written(MOST_EVENTS / rate, '.3g')}, where "
+            f"{written(MOST_EVENTS, 'g')} events are due, not {written(times[-1], 'g')}"
         )
     if scene.discs == 2:
         advance, law, wrapped = advance_all, law_of(scene), 3

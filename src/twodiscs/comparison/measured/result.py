@@ -131,4 +131,6 @@ def load_result(path):
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError, UnicodeDecodeError):
         raise InputError(f"path must be a file that save() wrote, not {str(path)!r}") from None
     except OSError as error:
-        raise InputError(f"path must be a file to read, not {str(path)!r}: {error}") from None
+        raise InputError(
+            f"path must be a file to read, not {str(path)!r}: {error.strerror}"
+        ) from None

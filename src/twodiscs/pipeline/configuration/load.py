@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import PRESETS, InputError
+from twodiscs.model.checks import PRESETS, InputError, comma, written
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
@@ -99,7 +99,7 @@ def _load(mapping):
     if "stability" in shared and not all(LOW <= side <= HIGH for side in main.box.sides):
         raise ConfigError(
             f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
-            f"lie between {LOW:g} and {HIGH:g}, for it goes far below them"
+            f"lie between {written(LOW, 'g')} and {written(HIGH, 'g')}, for it goes far below them"
         )
     return configuration
 
@@ -161,7 +161,7 @@ def _sentence(error):
         else:
             hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
         return f"{path} has an unknown key {shown(unknown)}{hint}"
-    hint = _nearest(value, node.get("enum", ()))
+    hint = _nearest(value, node.get("enum", ())) or comma(value)
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
 
 
@@ -212,8 +212,9 @@ def _scene(block, path, common):
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(
                 f"{path}.watch.hop_histogram must keep to radii at which {LEAST_INTERVALS} "
-                f"intervals fit into its event_budget, {histogram['event_budget']:g}; at "
-                f"{radius!r} each one takes {events:.2g} events"
+                f"intervals fit into its event_budget, "
+                f"{written(histogram['event_budget'], 'g')}; at {radius!r} each one takes "
+                f"{events:.2g} events"
             )
     accuracy = block["accuracy"]
     if not isinstance(accuracy, dict):
