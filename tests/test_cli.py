@@ -269,6 +269,9 @@ def test_a_build_ends_with_verdict_and_report(tmp_path):
         ("twodiscs si", ["simulate"]),
         ("twodiscs simulate --ev", ["--events"]),
         ("twodiscs simulate --events vert", ["vertical_hop"]),
+        ("twodiscs exact --periodic x y", ["y"]),
+        ("twodiscs run config/d", ["config/draft.yaml"]),
+        ("twodiscs run LICEN", []),
         ("twodiscs run my.yaml volu", ["volume"]),
     ],
 )
@@ -279,5 +282,6 @@ def test_a_shell_completes(tmp_path, line, proposed):
         "_ARGCOMPLETE_SUPPRESS_SPACE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)),
         "COMP_TYPE": "9",
     }  # fmt: skip
-    subprocess.run([sys.executable, "-c", program], env={**os.environ, **shell}, timeout=60)
+    where = {"env": {**os.environ, **shell}, "cwd": Path(__file__).parents[1]}
+    subprocess.run([sys.executable, "-c", program], timeout=60, **where)
     assert path.read_text().splitlines() == proposed

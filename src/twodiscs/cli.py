@@ -87,7 +87,8 @@ def _parser():
 
     text = "build a configuration with Snakemake, or some of it, on all cores"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
+    file = some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
+    file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
     targets = some.add_argument(
         "targets", nargs="*", default=[], metavar="TARGET", help="such as volume or report (all)"
     )

@@ -103,7 +103,9 @@ def add_box(parser, required=True):
     effects = parser.add_argument_group("effects", "what the scene calls for besides")
     for effect in EFFECTS.values():
         kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
-        effects.add_argument(_option(effect.name), help=_help(effect), **kind)
+        option = effects.add_argument(_option(effect.name), help=_help(effect), **kind)
+        if not effect.is_number:
+            option.completer = lambda **_: "xyz"
 
 
 def _help(effect):
