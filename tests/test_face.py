@@ -234,6 +234,7 @@ def test_a_scene_prints_what_it_is():
     assert eval(repr(scene), {"Scene": td.Scene}) == scene == td.Box.of(scene).scene(0.2)
     assert str(scene).endswith("in a box of 1.5 × 1.0, mass ratio 2.0, periodic xy")
     assert td.Scene(1.5, 1.0, 0.2, periodic=[]) == SCENE
+    assert str(SCENES["balls"]) == "Two balls of radius 0.2 in a box of 1.5 × 1.0 × 1.2"
 
 
 # States -------------------------------------------------------------------------------------------
@@ -351,9 +352,9 @@ def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tm
         (lambda some: td.plot(some, "a.txt"), "path must be a .pdf, .png or .svg file"),
         (
             lambda some: td.plot(SCENES["field"]),
-            "scene must be plain to be drawn, but it has field",
+            "scene must be two plain discs to be sketched, but it has field",
         ),
-        (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "to be drawn, but it has discs 3"),
+        (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "to be sketched, but it has discs 3"),
         (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
         (lambda some: td.simulate(SCENES["field"], seed=-1), "seed must be an integer from 0 to"),
         (lambda some: td.sample(SCENE, 1e6, quantities="volume"), "quantities must be a list of"),
@@ -381,6 +382,23 @@ def test_what_cannot_be_shown_is_refused(call, said, simulated):
     with pytest.raises(td.InputError) as caught:
         call(simulated)
     assert said in str(caught.value)
+
+
+def test_a_path_that_cannot_be_written_is_refused(sampled, trajectory, tmp_path):
+    there = str(tmp_path / "no" / "a.")
+    for write in (
+        lambda: td.plot(td.Box(1.5, 1.0), f"{there}png"),
+        lambda: td.animate(trajectory, f"{there}gif"),
+        lambda: sampled.save(f"{there}json"),
+        lambda: sampled.save(3.5),
+    ):
+        with pytest.raises(td.InputError, match="path must be a file to write, not"):
+            write()
+
+
+def test_a_scan_repeats_no_radius():
+    with pytest.raises(td.InputError, match=r"radii must differ, .* not \[0\.2, 0\.2\]"):
+        td.scan(1.5, 1.0, [0.2, 0.2])
 
 
 def test_tables_come_back_with_units_and_provenance(simulated, sampled, tmp_path):

@@ -131,8 +131,9 @@ def simulate(
     most 1, or "draft" (1e-2), "paper" (3e-4) or "reference" (1e-4), as in a configuration: one for
     all, or {event: error}. Work comes in whole blocks of 1024 trajectories, 2.4e5 events each
     for a radius of 0.2 in a box of 1.5 × 1. The least is 32 blocks, 7.7e6 events there, however
-    large the error, or as many as the ``budget`` affords, one block at least. ``events`` are those
-    to watch, all that have a place in the scene if None. ``seed`` is an integer ≥ 0.
+    large the error, or as many as the ``budget`` affords, one block at least: for a quick look at
+    many discs say ``budget=1e6``. ``events`` are those to watch, all that have a place in the scene
+    if None. ``seed`` is an integer ≥ 0.
 
     On any number of ``cores`` the numbers are the same. ``progress`` shows how far it is; None
     means in a terminal or a notebook alone. The first call compiles for some seconds; compiled code
@@ -326,7 +327,7 @@ def trajectory(
 def observe(
     scene: Scene,
     function: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    times: Iterable[float],
+    times: float | Iterable[float],
     replicas: float = 2**16,
     seed: int = 1,
     name: str | None = None,
@@ -363,9 +364,9 @@ def plot(
     ``result`` is a trajectory, a ``Scan``, a result of ``simulate``, ``sample`` or ``intervals``, a
     list of such results at several radii of one box, which are drawn beside the exact curves, one
     of ``transmission`` or ``observe``, or a table of a scene that ``load`` returns; a scene or box
-    is sketched. ``figure`` names one of several that suit, as the workflow does. A notebook shows
-    what is returned; at a plain prompt a window does. Raises ``InputError`` for what no figure
-    shows.
+    of two plain discs is sketched. ``figure`` names one of several that suit, as the workflow does.
+    A notebook shows what is returned; at a plain prompt a window does. Raises ``InputError`` for
+    what no figure shows, and for a path that cannot be written.
 
     Example:
 

@@ -49,12 +49,19 @@ def _in_catalogue(result, figure):
     """Return what draws a result in a figure of the workflow."""
     box, tables, fitting, options = _what(result)
     if not fitting:
+        if "table" in getattr(result, "attrs", {}) and "box" not in result.attrs:
+            raise InputError(
+                "result must be a table with the configuration.json of its build beside it, which "
+                f"the target report writes, not {result.attrs['table']!r} alone"
+            )
         raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
     name = one_of("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
     if not box.is_plain and not entry.needs:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
-        raise InputError(f"scene must be plain to be drawn, but it has {more}")
+        raise InputError(
+            f"scene must be two plain discs to be sketched, but it has {more}; draw a trajectory"
+        )
     draw = import_module(f"twodiscs.{entry.module}").draw
     return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
 

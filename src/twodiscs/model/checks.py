@@ -4,6 +4,7 @@ import math
 import numbers
 import re
 import reprlib
+from contextlib import contextmanager
 
 #: Lengths outside this range would overflow or underflow when multiplied four at a time.
 SHORTEST, LONGEST = 1e-60, 1e60
@@ -44,6 +45,16 @@ def shown(value):
         return " ".join(_SHORT.repr(value).split())
     except Exception:  # an integer of more than 4300 digits, or an odd class
         return f"a {type(value).__name__}"
+
+
+@contextmanager
+def writable(path):
+    """Raise ``InputError`` where ``path`` turns out to be nothing that can be written to."""
+    try:
+        yield
+    except (OSError, TypeError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"path must be a file to write, not {str(path)!r}: {why}") from None
 
 
 def written(value, form=""):

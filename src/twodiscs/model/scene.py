@@ -183,7 +183,8 @@ class Scene:
 
     def __str__(self):
         """Say what the scene is, in a line."""
-        words = [f"{name.replace('_', ' ')} {value}" for name, value in self.effects.items()]
+        more = {name: value for name, value in self.effects.items() if name != "depth"}
+        words = [f"{name.replace('_', ' ')} {value}" for name, value in more.items()]
         number = "Two" if self.discs == 2 else self.discs
         discs = f"{number} {self._what} of radius {self.radius!r} in a box of {self._box}"
         return ", ".join([discs, *words])

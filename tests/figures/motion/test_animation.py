@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from figure_cases import unclear
+from matplotlib.patches import Circle
 from PIL import Image
 
 from twodiscs.comparison.tables.trajectory import Trajectory
@@ -42,6 +43,25 @@ def frames(rows, tmp_path_factory):
         assert ours[0] == theirs[0]
         np.testing.assert_array_equal(ours[1], theirs[1])
     return paths[0], gif
+
+
+@pytest.mark.parametrize("discs", [3, 8])
+def test_every_disc_keeps_its_colour(discs, tmp_path):
+    box = Box(0.75 * discs, 1.0, discs=discs)
+    for seed in range(1, 4):
+        rows = Trajectory.rows(box, 0.15, seed)
+        with style.context():
+            animation.animate(box, 0.15, rows, [tmp_path / "a.png"])
+            stage = animation.StageOfMany(box, 0.15, rows)
+        fills = {
+            tuple(np.multiply(artist.get_facecolor(), 255).astype(int))
+            for artist in stage.moving.values()
+            if isinstance(artist, Circle) and artist.get_fill()
+        }
+        assert len(fills) == discs
+        shown = {tuple(c) for _, f in unpacked(tmp_path / "a.png") for c in f.reshape(-1, 3)}
+        for fill in fills:
+            assert any(np.abs(np.subtract(fill[:3], c)).sum() < 9 for c in shown), fill
 
 
 def unpacked(path):

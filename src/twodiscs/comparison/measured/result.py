@@ -14,7 +14,7 @@ import numpy as np
 
 import twodiscs
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, shown
+from twodiscs.model.checks import InputError, shown, writable
 
 if TYPE_CHECKING:
     from twodiscs.model.scene import Scene
@@ -69,8 +69,13 @@ class Result:
         }
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the result to ``path``, a JSON file that ``load_result`` reads."""
-        Path(path).write_text(json.dumps(self.to_dict(), allow_nan=False) + "\n", encoding="utf-8")
+        """Write the result to ``path``, a JSON file that ``load_result`` reads.
+
+        Raises ``InputError`` for a path that cannot be written.
+        """
+        text = json.dumps(self.to_dict(), allow_nan=False) + "\n"
+        with writable(path):
+            Path(path).write_text(text, encoding="utf-8")
 
     def _html(self, header, lines):
         """Return an HTML table with the scene above it."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, overload
 from twodiscs.comparison.measured.measurements import Measurements, box_with, scenes_of, simulate
 from twodiscs.comparison.measured.result import Result
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError, shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,9 +91,12 @@ def scan(
 ):
     """Return the ``Scan`` of mean times over ``radii`` (see the face)."""
     box = box_with(width, height, {} if effects is None else effects)
+    scenes = scenes_of(box, radii)
+    if len({scene.radius for scene in scenes}) < len(scenes):
+        raise InputError(
+            "radii must differ, for the same one has the same random numbers, not "
+            f"{shown([scene.radius for scene in scenes])}; another seed repeats it"
+        )
     return Scan(
-        [
-            simulate(scene, error, seed, budget, events, name, cores, progress)
-            for scene in scenes_of(box, radii)
-        ]
+        [simulate(scene, error, seed, budget, events, name, cores, progress) for scene in scenes]
     )

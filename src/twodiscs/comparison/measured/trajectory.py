@@ -39,7 +39,7 @@ class Trajectory(pd.DataFrame):
         """The scene, which ``attrs`` holds."""
         return self.attrs["scene"]
 
-    def states_at(self, times: Iterable[float]) -> np.ndarray:
+    def states_at(self, times: float | Iterable[float]) -> np.ndarray:
         """Return the states at ``times``, exactly: an array with the named columns of ``starts``.
 
         ``times`` are numbers in any order, from the first to the last one of the trajectory.

@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, fontManager
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import InputError, writable
 
 #: Width of one column of a two-column journal, in inches.
 COLUMN = 3.4
@@ -114,7 +114,7 @@ def save(figure, path, origin=None):
 
     ``origin``, a line on what made it, goes into its metadata.
 
-    Raises ``InputError`` for a file name with another ending.
+    Raises ``InputError`` for a file name with another ending, and where it cannot be written.
     """
     kind = str(path).rpartition(".")[2]
     metadata = {
@@ -124,4 +124,5 @@ def save(figure, path, origin=None):
     }
     if kind not in metadata:
         raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
-    figure.savefig(path, format=kind, metadata=metadata[kind])
+    with writable(path):
+        figure.savefig(path, format=kind, metadata=metadata[kind])

@@ -18,7 +18,7 @@ from PIL import Image
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.figures.motion import many
-from twodiscs.model.checks import InputError, length
+from twodiscs.model.checks import InputError, length, writable
 from twodiscs.model.events import HOPS
 
 #: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
@@ -330,17 +330,27 @@ def animate(box, radius, rows, paths):
             stage.figure.draw_artist(artist)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
 
-    palette = _palette(image(stage.centre))  # in the frame of the hop everything is to be seen
+    fills = {
+        tuple(round(255 * part) for part in artist.get_facecolor()[:3])
+        for artist in stage.moving.values()
+        if isinstance(artist, Circle)
+    }
+    # In the frame of the hop everything is to be seen.
+    palette = _palette(image(stage.centre), sorted(fills))
     first, *others = [image(t).quantize(palette=palette, dither=0) for t in stage.times]
     shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
     shown[-1] = LAST
     for path in paths:
-        first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
+        with writable(path):
+            first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
 
 
-def _palette(image):
-    """Return an image whose palette are the most frequent colours of ``image`` that differ."""
-    chosen = []
+def _palette(image, kept):
+    """Return an image whose palette are the colours ``kept`` and the most frequent other ones.
+
+    Those are colours of ``image`` that differ.
+    """
+    chosen = [*kept]
     for _, colour in sorted(image.getcolors(1 << 24), reverse=True):
         if all(sum(map(abs, np.subtract(colour, other))) >= APART for other in chosen):
             chosen.append(colour)
