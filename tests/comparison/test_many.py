@@ -422,7 +422,7 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
     [
         (lambda s: td.transmission(s, "vertical_hop"), "discs must be 2 for passages, not 3"),
         (lambda s: exact.shell_expectation(s, "vertical_hop", 0.01), "discs must be 2 for shells"),
-        (lambda s: td.plot(s), "scene must be plain to be drawn, but it has discs"),
+        (lambda s: td.plot(s), "scene must be two plain discs to be sketched, but it has discs 3"),
     ],
 )
 def test_what_is_of_two_discs_is_refused_in_a_sentence(call, message):
