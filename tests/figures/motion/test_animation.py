@@ -49,7 +49,7 @@ def frames(rows, tmp_path_factory):
 def test_every_disc_keeps_its_colour(discs, tmp_path):
     box = Box(0.75 * discs, 1.0, discs=discs)
     for seed in range(1, 4):
-        rows = Trajectory.rows(box, 0.15, seed)
+        rows = Trajectory.rows(box, 0.15, seed)[:40]
         with style.context():
             animation.animate(box, 0.15, rows, [tmp_path / "a.png"])
             stage = animation.StageOfMany(box, 0.15, rows)
@@ -59,7 +59,8 @@ def test_every_disc_keeps_its_colour(discs, tmp_path):
             if isinstance(artist, Circle) and artist.get_fill()
         }
         assert len(fills) == discs
-        shown = {tuple(c) for _, f in unpacked(tmp_path / "a.png") for c in f.reshape(-1, 3)}
+        with Image.open(tmp_path / "a.png") as image:
+            shown = [colour for _, colour in image.convert("RGB").getcolors(1 << 24)]
         for fill in fills:
             assert any(np.abs(np.subtract(fill[:3], c)).sum() < 9 for c in shown), fill
 
