@@ -412,6 +412,9 @@ def load_result(
     A file is of use to the version of the package that wrote it. Raises ``InputError`` for another
     version, and for anything that is no such file.
 
+    A checker of types wants to know which of the four it is before it goes on:
+    ``assert isinstance(result, td.Measurements)``.
+
     Example:
 
         td.load_result("hops.json").more(error=5e-3)["vertical_hop"].z
