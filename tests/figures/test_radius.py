@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from figure_cases import BOXES, PAPER, draw, simulated, tables_of, unclear
+from matplotlib import rcParams
 
 from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import curves, style
+from twodiscs.figures.kit import curves, panels, style
+from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
@@ -166,3 +168,51 @@ def test_an_estimate_above_the_curve_is_in_the_picture():
     with style.context():
         main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[1]
     assert main.get_ylim()[1] > 1.3 * first["exact"]
+
+
+def test_where_nothing_is_known_there_are_symbols_only():
+    """No residuals, no curves that approach an end, and nothing about them in the caption."""
+    ring = Box(1.5, 1.0, {"periodic": "x"}, discs=3)
+    unknown = {"exact": None, "z": None, "test": None, "status": "counted", "bound": None}
+    rows = [
+        {"event": event, "radius": r, "estimate": time, "stderr": 1e-3 * time} | unknown
+        for event, times in (("disc_collision", (3, 1, 0.5, 0.2)), ("vertical_hop", (4, 4, 4, 3)))
+        for r, time in zip((0.05, 0.1, 0.15, 0.2), times, strict=True)
+    ]
+    for name in ("mean_hop_time", "mean_collision_time", "pressure"):
+        shown = rows
+        if name == "pressure":
+            shown = [row | {"event": "top_wall"} for row in rows if row["event"] == "vertical_hop"]
+        with style.context():
+            figure = draw(name, ring, {"mean_times": shown})
+            assert unclear(figure) == []
+        (axes,) = figure.axes
+        assert axes.get_xlabel() == "radius $r$"
+        assert any(label.label1.get_visible() for label in axes.xaxis.get_major_ticks())
+        caption = FIGURES[name].full_caption(Shown(ring, None, shown))
+        assert "Residuals" not in caption
+        assert "(b)" not in caption
+        assert "Where no exact value is known there is no line and no residual." in caption
+
+
+def test_a_legend_keeps_away_from_symbols():
+    """It moves if a symbol is half of a letter's height beside it."""
+    ring = Box(1.5, 1.0, {"periodic": "x"}, discs=3)
+    symbol = panels.open_symbol(*style.SERIES[0])
+    with style.context():
+        figure = style.new_figure(2.5)
+        axes = panels.add_panel(figure, 0.4, 2.0)
+        axes.set(xlim=(0, 1), ylim=(0, 1))
+        axes.plot([0.9], [0.95], ls="", **symbol)
+        letter = rcParams["legend.fontsize"] / 72 * figure.dpi
+
+        def place():
+            one = panels.Series("", [], np.array([np.nan]))
+            panels.legend(axes, ring, [one], "best", single="MD")
+            figure.draw_without_rendering()
+            return axes.get_legend().get_texts()[0].get_window_extent()
+
+        before = place()
+        beside = (before.x1 + letter / 2, (before.y0 + before.y1) / 2)
+        axes.plot(*axes.transData.inverted().transform(beside), ls="", **symbol)
+        assert not place().padded(letter).contains(*beside)

@@ -14,6 +14,7 @@ from twodiscs.figures.kit.captions import (
     both,
     cross,
     in_plane,
+    is_judged,
     keeps_side,
     longer_than,
     marked,
@@ -190,23 +191,29 @@ WEIGHTED = Sentence(
     "In a field volumes and areas are weighted with the invariant density.", with_effect("field")
 )
 RESIDUALS = "Residuals z beneath are in standard errors, with guide lines at ±2 and ±5"
+JUDGED = any_row(is_judged)
 
 #: What captions of several figures say alike, {name: sentences}.
 NOTES = {
-    "sampled": sentences((SYMBOLS, CROSSES, *LINES, WEIGHTED, f"{RESIDUALS}.")),
+    "sampled": sentences((SYMBOLS, CROSSES, *LINES, WEIGHTED, Sentence(f"{RESIDUALS}.", JUDGED))),
     "shells": sentences(
         (
             SYMBOLS,
             CROSSES,
             *LINES,
             WEIGHTED,
-            f"""
-            {RESIDUALS}; they are taken against the exact expectation of the shell, whose thickness
-            shifts the estimate slightly off the line.
-            """,
+            Sentence(
+                f"""
+                {RESIDUALS}; they are taken against the exact expectation of the shell, whose
+                thickness shifts the estimate slightly off the line.
+                """,
+                JUDGED,
+            ),
         )
     ),
-    "simulated": sentences((SYMBOLS, CROSSES, BURSTS, ARROWS, *LINES, f"{RESIDUALS}.")),
+    "simulated": sentences(
+        (SYMBOLS, CROSSES, BURSTS, ARROWS, *LINES, Sentence(f"{RESIDUALS}.", JUDGED))
+    ),
 }
 
 
@@ -386,8 +393,11 @@ FIGURES = {
         (
             """
             Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
-            (symbols). In (b) the same times approach the radius r_c at which the hop ends.
+            (symbols).
             """,
+            Sentence(
+                "In (b) the same times approach the radius r_c at which the hop ends.", JUDGED
+            ),
             Sentence(
                 """
                 Dashed lines in (a) are the laws for small discs, to first order in r, and in (b)

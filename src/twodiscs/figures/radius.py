@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from twodiscs.figures.kit import curves, panels
+from twodiscs.figures.kit.captions import is_judged
 from twodiscs.figures.kit.limits import hop_ends
 from twodiscs.figures.kit.style import SERIES
 from twodiscs.model.checks import InputError
@@ -31,8 +32,8 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     ``rooted``, as the square root; ``loc`` that of the legend, and ``single`` the method if there
     is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
     drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
-    radius of their end. Raises ``InputError`` if the table has none of the quantities, and for no
-    table or several.
+    radius of their end. Where no exact value is known there is one panel only, that of the symbols.
+    Raises ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"
@@ -47,7 +48,9 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
     series = list(by_quantity.values())
-    figure, main, lower = panels.panels(box, label, ROOM if approach else 0)
+    judged = any(is_judged(row) for part in series for row in part.rows)
+    approach &= judged
+    figure, main, lower = panels.panels(box, label, ROOM if approach else 0, judged)
     panels.draw_series(main, lower, radii, series, single=bool(single))
     for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), laws)
@@ -127,5 +130,6 @@ def _approach(axes, box, by_quantity):
     axes.set_ylabel(r"mean time $\tau$")
     if box.is_plain:
         handles.append(Line2D([], [], label=panels.LAW_NAME, **panels.LAW))
-    axes.legend(handles=handles, loc="upper right" if box.is_plain else "best")
+    loc = "upper right" if box.is_plain else "best"
+    axes.legend(handles=handles, loc=loc, **panels.CLEAR)
     panels.letter(axes, "b")

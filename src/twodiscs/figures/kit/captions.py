@@ -127,6 +127,11 @@ def any_row(condition):
     return lambda shown: shown.rows is None or any(map(condition, shown.rows))
 
 
+def is_judged(row):
+    """Say whether a ``row`` has a residual to be drawn: one that is not certain to be zero."""
+    return row.get("z") is not None and row.get("test") != "certain"
+
+
 def longer_than(ratio):
     """Return the condition that the longer side of the box is more than ``ratio`` shorter ones."""
 

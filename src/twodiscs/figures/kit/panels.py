@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
 from twodiscs.figures.kit import drawing
+from twodiscs.figures.kit.captions import is_judged
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, SERIES, SIZES, new_figure
 from twodiscs.model.effects import EFFECTS
@@ -54,36 +55,45 @@ class Series:
         return bool(np.any(self.exact > 0)) or any(drawn)
 
 
-def panels(box, label, beneath=0):
+def panels(box, label, beneath=0, judged=True):
     """Return (figure, main axes, axes of the residuals) for curves over the radius.
 
     ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
+    Unless the estimates are ``judged`` there is no panel of residuals, and None instead.
     """
     line = 0 if is_short(box) else LINE
-    figure = new_figure(beneath + BOTTOM + LOWER + GAP + MAIN + TOP + line + room(box))
-    lower = add_panel(figure, beneath + BOTTOM, LOWER)
-    main = add_panel(figure, beneath + BOTTOM + LOWER + GAP, MAIN)
+    under = LOWER + GAP if judged else 0
+    figure = new_figure(beneath + BOTTOM + under + MAIN + TOP + line + room(box))
+    lower = add_panel(figure, beneath + BOTTOM, LOWER) if judged else None
+    main = add_panel(figure, beneath + BOTTOM + under, MAIN)
     main.set_ylabel(label)
-    main.tick_params(labelbottom=False)
-    lower.set(xlabel="radius $r$", ylabel="residual $z$")
-    mark(main, lower, limits(box))
+    (lower or main).set_xlabel("radius $r$")
+    if judged:
+        main.tick_params(labelbottom=False)
+        lower.set_ylabel("residual $z$")
+        scale_residuals(lower)
+    mark((main, lower) if judged else (main,), limits(box))
     name_box(main, box, up=ABOVE if line else 0)
     return figure, main, lower
 
 
-def mark(main, lower, ends):
-    """Mark the limits ``ends`` in both panels, where the abscissa ends, and sizes of residuals."""
+def scale_residuals(lower):
+    """Mark sizes of residuals in their panel, and let it end beyond them."""
     lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
     lower.set_yticks([-5, -2, 0, 2, 5])
     lower.axhline(0, color=GREY, lw=0.5, zorder=0)
     for size, dashes in GUIDES.items():
         for z in (-size, size):
             lower.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
-    for axes in (main, lower):
+
+
+def mark(panels, ends):
+    """Mark the limits ``ends`` in all ``panels``, axes whose abscissa ends there, from the top."""
+    for axes in panels:
         axes.set_xlim(0, 1.02 * ends[-1][0])
         for radius, _ in ends:
             axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    name_limits(main, ends)
+    name_limits(panels[0], ends)
 
 
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
@@ -210,11 +220,15 @@ def spread(wanted, widths, gap, most):
 
 
 def draw_series(main, lower, radii, series, single=False):
-    """Draw the ``series`` in both panels; a ``single`` one has its curve in black."""
+    """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
+
+    ``lower`` is None where there are no residuals.
+    """
     for (colour, marker), part in zip(SERIES, series, strict=False):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
         estimates(main, part.rows, colour, marker)
-        residuals(lower, part.rows, colour, marker)
+        if lower:
+            residuals(lower, part.rows, colour, marker)
 
 
 #: How a limiting law is drawn, and what it is called.
@@ -260,7 +274,7 @@ def open_symbol(colour, marker, scale=1):
 
 def residuals(axes, rows, colour, marker):
     """Draw the residuals of ``rows`` over their radii, but for those that are certain."""
-    rows = [row for row in rows if row["z"] is not None and row["test"] != "certain"]
+    rows = [row for row in rows if is_judged(row)]
     for shown, symbol, clip in (
         ([r for r in rows if abs(r["z"]) <= LARGEST_RESIDUAL], marker, 1),
         ([r for r in rows if r["z"] > LARGEST_RESIDUAL], "^", 0.97),
@@ -270,6 +284,10 @@ def residuals(axes, rows, colour, marker):
         z = [math.copysign(min(abs(v), clip * LARGEST_RESIDUAL), v) for v in z]
         style = open_symbol(colour, symbol) if clip == 1 else {"color": colour, "marker": symbol}
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
+
+
+#: A legend that keeps the height of a letter between itself and symbols that it may avoid.
+CLEAR = {"borderpad": 1.2, "borderaxespad": -0.6}
 
 
 def legend(axes, box, series, loc, single=None, more=()):
@@ -295,7 +313,7 @@ def legend(axes, box, series, loc, single=None, more=()):
     for name, style in more:
         handles.append(Line2D([], [], **style))
         names.append(name)
-    axes.legend(handles, names, loc=loc)
+    axes.legend(handles, names, loc=loc, **CLEAR)
 
 
 def logarithmic(axes, radii, series):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from twodiscs.figures.kit import curves, panels
+from twodiscs.figures.kit.captions import is_judged
 from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, SERIES
 from twodiscs.theory import virial
@@ -23,14 +24,14 @@ def draw(box, tables):
     rows = tables["mean_times"]
     radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
     summed = virial.weights(box.tiny) is not None
-    figure, main, lower = panels.panels(
-        box, "pressure over that of an ideal gas", ROOM if summed else 0
-    )
     events = [event for event in WALLS if any(row["event"] == event for row in rows)]
     series = [
         _series(f"disc 1, {name_of(event)}", box, event, rows, radii, virial.pressure_factor)
         for event in events
     ]
+    label, beneath = "pressure over that of an ideal gas", ROOM if summed else 0
+    judged = any(is_judged(row) for part in series for row in part.rows)
+    figure, main, lower = panels.panels(box, label, beneath, judged)
     panels.draw_series(main, lower, radii, series)
     ideal = {"color": BLACK, "lw": 0.7, "ls": (0, (1, 1.5))}
     main.axhline(1, **ideal)
@@ -48,6 +49,7 @@ def draw(box, tables):
             ]
             panels.asymptote(main, [scene.radius for scene in near], laws)
     panels.logarithmic(main, radii, series)
+    main.set_ylim(min(main.get_ylim()[0], 0.97), None)
     panels.legend(main, box, series, "upper left", more=more)
     if summed:
         panels.letter(main, "a")

@@ -151,11 +151,9 @@ def _sentence(error):
     if error.validator == "additionalProperties":
         known = list(node["properties"])
         unknown = next(key for key in value if key not in known)
-        block = [
-            k for k, child in node["properties"].items() if unknown in child.get("properties", ())
-        ]
-        if block:
-            hint = f"; it belongs into {block[0]!r}"
+        homes = [home for key, home in _keys(schema(), "the configuration") if key == unknown]
+        if homes:
+            hint = f"; it belongs into {homes[0]}"
         elif value[unknown] is None and not isinstance(unknown, str):  # of {width: 1,5}
             hint = "; decimals have a point"
         else:
@@ -163,6 +161,15 @@ def _sentence(error):
         return f"{path} has an unknown key {shown(unknown)}{hint}"
     hint = _nearest(value, node.get("enum", ())) or comma(value)
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
+
+
+def _keys(node, home):
+    """Yield (key, the block that it belongs into) for every key beneath a node of the schema."""
+    for key, child in node.get("properties", {}).items():
+        yield key, home
+        yield from _keys(child, repr(key))
+    if "items" in node:
+        yield from _keys(node["items"], "a scene")
 
 
 def _nearest(word, known):

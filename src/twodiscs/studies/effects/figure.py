@@ -65,7 +65,8 @@ def draw(box=None, *, tables):
         main.tick_params(which="both", labelbottom=False, labelleft=i == 0)
         lower.set(xlabel="radius $r$")
         lower.tick_params(labelleft=i == 0)
-        panels.mark(main, lower, ends)
+        panels.scale_residuals(lower)
+        panels.mark((main, lower), ends)
         panels.label_decades(main.yaxis, 10)
         _title(main, "abc"[i], NAMES_OF.get(event, name_of(event)))
         if i == 0:
