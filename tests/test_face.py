@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 from fabricated import command
+from figure_cases import unclear
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,6 +19,7 @@ from twodiscs import cli
 from twodiscs.comparison.measured.measurements import Measurement
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics.trajectory import state_of
+from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.pipeline import cost
@@ -321,8 +323,13 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
         half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
         assert np.allclose(half, averages.stderr[:, k], rtol=1e-9)
     assert len(axes.containers) == len(axes.get_legend().texts) == 2
-    (axes,) = td.plot(td.observe(SCENE, lambda a, b: b["x1"], [1], replicas=1)).axes
-    assert axes.get_legend() is None
+    long = SCENES["combination"]
+    for some in (SCENE, long):
+        figure = td.plot(td.observe(some, lambda a, b: b["x1"], [1], replicas=1))
+        (axes,) = figure.axes
+        assert axes.get_legend() is None
+        with style.context():
+            assert unclear(figure) == []
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Scene: the geometry that it derives, against bisection in exact arithmetic."""
 
+import pickle
 from dataclasses import FrozenInstanceError
 from fractions import Fraction
 
@@ -76,3 +77,13 @@ def test_a_scene_is_frozen_and_holds_floats():
     assert type(scene.width) is type(scene.radius) is float
     with pytest.raises(FrozenInstanceError):
         scene.width = 2.0
+
+
+def test_a_copy_is_the_same_whatever_was_asked_before():
+    """What is cached does not show in a pickle, by which libraries tell arguments apart."""
+    scene = Scene(1.5, 1.0, 0.25, periodic="x")
+    new = pickle.dumps(scene)
+    assert scene.axes
+    assert scene.largest_radius
+    assert pickle.dumps(scene) == new
+    assert pickle.loads(new) == scene

@@ -177,6 +177,10 @@ class Scene:
                 "they lack it"
             )
 
+    def __getstate__(self):
+        """Return the fields alone: a copy is the same whatever was asked of the scene before."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
     def __repr__(self):
         sides = f"{self.width!r}, {self.height!r}, {self.radius!r}"
         return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.calls_for.items())])})"

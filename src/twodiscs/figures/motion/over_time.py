@@ -15,9 +15,10 @@ HEIGHT, TOP = 1.9, 0.22
 
 def _panel(scene, more=""):
     """Return (figure, its axes) under the sides of the box, the radius, ``more`` and effects."""
-    figure = new_figure(panels.BOTTOM + HEIGHT + TOP)
+    box, more = Box.of(scene), panels.of_radius(scene.radius) + more
+    figure = new_figure(panels.BOTTOM + HEIGHT + TOP + panels.room(box, more))
     axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT)
-    panels.name_box(axes, Box.of(scene), f",  $r={scene.radius:g}${more}")
+    panels.name_box(axes, box, more)
     return figure, axes
 
 
@@ -36,6 +37,7 @@ def observed(result):
     if len(series) > 1:
         axes.legend()
     axes.set(xlabel="time $t$", ylabel="average")
+    axes.ticklabel_format(axis="y", scilimits=(-1, 3))  # short numbers, for the label has no room
     return figure
 
 
