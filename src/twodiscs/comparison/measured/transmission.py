@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     from twodiscs.model.scene import Scene
 
 #: A cluster ends where no hop comes for so many times that a disc of speed 1 takes along the box.
-QUIET = 6
+#: Hops that follow each other after a tenth of that are still correlated; what comes later makes κ
+#: too large by about 1e-3 where hops are most frequent, at a distance of 2⁻⁶, and less elsewhere.
+QUIET = 48
 
-#: Passages must be so rare that this share of them, at most, comes within the gap after another.
-#: Then κ(t) has a plateau there, and what they take from κ is known to its square.
-MOST_MERGED = 0.05
+#: Passages must be so rare that this share of them, at most, comes within the gap after another,
+#: and hops so rare that no more of them come at random. Then κ(t) has a plateau there.
+MOST_MERGED, MOST_IN_GAP = 0.1, 0.25
 
 #: Where κ(t) is recorded, in the same times.
 TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
@@ -75,20 +77,37 @@ def by_total(sums, replicas):
     ]
 
 
-def plateau(seen, time, mean):
+def of_order(x):
+    """Return (κ(t)/κ, its derivative) where x passages come in a time on the average: e^(−2x)."""
+    left = math.exp(-2 * x)
+    return left, -2 * left
+
+
+def of_clusters(x):
+    """Return (fraction of odd clusters over κ, its derivative); x passages come in a gap.
+
+    A cluster has n passages with probability (1 − e^(−x))^(n−1) e^(−x), and there are e^(−x)
+    clusters for each passage: the odd ones come to 1/(2e^x − 1).
+    """
+    left = 1 / (2 * math.exp(x) - 1)
+    return left, -2 * math.exp(x) * left**2
+
+
+def plateau(seen, time, mean, left):
     """Return the coefficient κ that has fallen to the ``Estimate`` ``seen`` in a ``time``.
 
-    Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops: then κ(t) is
-    κ exp(−2 κ t/τ), and to first order the fraction of passages in clusters falls alike with their
-    gap. None where the time has more than ``MOST_MERGED`` passages or a quarter of a hop.
+    Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops, and ``left``
+    says what they leave: ``of_order`` or ``of_clusters``. None where the time has more than
+    ``MOST_MERGED`` passages or ``MOST_IN_GAP`` hops.
     """
-    value = seen.value
-    if value <= 0 or time > mean / 4 or value * time / mean > MOST_MERGED:
+    value, x = seen.value, seen.value * time / mean
+    if value <= 0 or time / mean > MOST_IN_GAP or x > MOST_MERGED:
         return None
-    for _ in range(50):  # a contraction: 2 κ t/τ is small
-        value = seen.value * math.exp(2 * value * time / mean)
-    slope = value / seen.value / (1 - 2 * value * time / mean)
-    return Estimate(value, seen.stderr * slope, seen.n)
+    for _ in range(50):  # a contraction, for x is small
+        value = seen.value / left(value * time / mean)[0]
+    x = value * time / mean
+    factor, derivative = left(x)
+    return Estimate(value, seen.stderr / (factor + x * derivative), seen.n)
 
 
 def seed_of(scene, hop, name, seed, what):
@@ -204,5 +223,6 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
         reached = all_in_rounds(parts, watch, cores, kept)
     (sizes,), (sums,) = reached["clusters"].sums, reached["times"].sums
     clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-    kappa, curve = plateau(by_clusters(sizes), gap, mean), by_total(sums, blocks * REPLICAS)
+    kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
+    curve = by_total(sums, blocks * REPLICAS)
     return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept)

@@ -10,10 +10,13 @@ from itertools import pairwise
 
 from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.comparison.measured.transmission import (
+    MOST_IN_GAP,
     TIMES,
     box_time,
     by_clusters,
     by_time,
+    of_clusters,
+    of_order,
     plateau,
     quiet_time,
     seed_of,
@@ -36,8 +39,9 @@ INERTIAS, ONE_INERTIA = (0.1, 0.25, 0.5, 1.0), 0.5
 #: No more hops are followed for one estimate, and no fewer.
 MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 
-#: Replicas that record κ(t), over those for κ.
-RECORDED = 4
+#: Replicas that record κ(t), over those for κ, which may take so many times the events of others:
+#: most of them are in pauses, where events cost least.
+RECORDED, IN_PAUSES = 4, 4
 
 #: Wall and disc events of a hop, about: in a neck of the relative length √distance smooth discs
 #: meet 2/√distance times, rough ones, which diffuse there, 24/distance.
@@ -120,10 +124,12 @@ class _Hop:
         }
 
     def clusters(self, blocks):
-        """Return (κ or None, the row of it in a list)."""
+        """Return (κ or None, the rows of it)."""
         gap = quiet_time(self.scene, self.hop)
+        if gap / self.mean > MOST_IN_GAP:
+            return None, []
         sizes, events = cluster_sizes(self.scene, self.hop, gap, blocks, self._seed("clusters"))
-        kappa = plateau(by_clusters(sizes), gap, self.mean)
+        kappa = plateau(by_clusters(sizes), gap, self.mean, of_clusters)
         if kappa is None:
             return None, []
         time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
@@ -136,15 +142,15 @@ class _Hop:
         """Yield the rows of κ(t), and of its plateau against ``kappa`` if that is known."""
         gap = quiet_time(self.scene, self.hop)
         box, own = box_time(self.scene, self.hop), []
-        times = sorted({gap, *(box * time for time in TIMES)})
+        times = sorted({*([gap] if kappa else []), *(box * time for time in TIMES)})
         sums, events = hop_sums(self.scene, self.hop, times, blocks, self._seed("times"))
         for time, estimate in zip(times, by_time(sums), strict=True):
             if time == gap:
                 own.append(estimate)
             else:
                 yield self.said("correlation", "hops", estimate, time)
-        flat = plateau(own[0], gap, self.mean)
-        if flat and kappa:
+        flat = plateau(own[0], gap, self.mean, of_order) if kappa else None
+        if flat:
             yield self.said("plateau", "hops", flat, gap, kappa, events)
 
     def slope(self, blocks):
@@ -198,7 +204,7 @@ def near_threshold(name, box, hop, halvings, inertia, events, seed):
     for n in halvings:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
         near, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
-        blocks = blocks_for(scene, 2.0**-n, both, events)
+        blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
         kappa, rows = near.clusters(blocks)
         yield from rows
         yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
