@@ -157,7 +157,7 @@ def _powers(axes, rows, first, hop):
             _points(axes, distance, value, error, LOOKS[inertia], name)
     for power, name, start, height in (
         (1 / 3, r"$\delta^{1/3}$", 5e-5, 0.05),
-        (1 / 2, r"$\delta^{1/2}$", 1.2e-3, 0.052),
+        (1 / 2, r"$\delta^{1/2}$", 2.5e-3, 0.009),
     ):
         x = np.array([start, 30 * start])
         axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
