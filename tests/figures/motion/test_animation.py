@@ -260,3 +260,16 @@ def test_the_heading_of_many_effects_is_within_the_picture(sides, effects):
         stage = animation.Stage(box, 0.125, rows)
         stage.show(stage.centre)
         assert unclear(stage.figure) == []
+
+
+@pytest.mark.parametrize("width", [12.0, 20.0, 50.0])
+def test_the_numbers_of_small_discs_keep_clear_of_the_heading(width):
+    box = Box(width, 1.0)
+    rows = Trajectory.rows(box, 0.2, 1)
+    with style.context():
+        stage = animation.Stage(box, 0.2, rows)
+        for time in stage.times[::10]:
+            stage.show(time)
+            # Discs are where they are: beside each other their numbers may meet.
+            met = [pair for pair in unclear(stage.figure) if {*pair} != {"1", "2"}]
+            assert met == []

@@ -29,6 +29,10 @@ LEFT, RIGHT, TOP, GAP, BOTTOM = 0.5, 0.12, 0.28, 0.1, 0.36
 #: Letters of the heading, over those of other figures; points that the sign of a hop takes.
 LARGER, SIGN = 1.2, 17
 
+#: Points: the number of a disc stands so far to the left of its centre and above it, or lower where
+#: half of a digit would reach beyond the box, into the heading.
+BESIDE, HALF = 9, 4
+
 #: Frames before and after the hop, and those in which a disc at speed one goes as far as the box is
 #: wide and high.
 BEFORE, AFTER, CROSSING = 110, 60, 50
@@ -194,7 +198,7 @@ class Stage:
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
             (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
             artists[f"number {disc}"] = drawing.label(
-                self.box, f"{disc}", (0, 0), (-9, 9), color=edge, fontsize=11
+                self.box, f"{disc}", (0, 0), (-BESIDE, BESIDE), color=edge, fontsize=11
             )
         middle = self.folded(self.places(1, np.array([self.centre])))[0]
         line = ([middle[0]] * 2, [y0, y1]) if self.axis == "x" else ([x0, x1], [middle[1]] * 2)
@@ -245,6 +249,8 @@ class Stage:
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             place = self._show_disc(disc, edge, past, time)
             moving[f"centre {disc}"].set_data(*place[:, None])
+            above = (self.of.height / 2 - place[1]) / drawing.points(self.box)
+            moving[f"number {disc}"].xyann = (-BESIDE, min(BESIDE, above - HALF))
         since = time - self.centre if self.hop else -1
         moving["line"].set_visible(since == 0)
         moving["text"].set_visible(0 <= since < self.marked)
