@@ -68,6 +68,7 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
         ([*BOX, "--radius", "0,2"], "not '0,2'; decimals follow a point, 0.2"),
         ([*BOX], "the following arguments are required: --radius"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
+        ([*BOX, "--radius", "0.1", "--mass_ratio=2"], "--mass_ratio=2; names have dashes"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
         ([*BOX, "--radius", "0.1", "--mass-ratio", "two"], "argument --mass-ratio: must be a num"),
     ],

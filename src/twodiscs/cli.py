@@ -28,7 +28,8 @@ def _main():
     if options.command == "run" and not any(word.startswith("-") for word in rest):
         options.targets += rest  # which argparse does not find behind an option
     elif rest:
-        parser.error(f"unrecognized arguments: {' '.join(rest)}")
+        hint = "; names have dashes" if any("_" in w for w in rest if w.startswith("--")) else ""
+        parser.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
     if options.command is None:
         parser.print_help()
         return
