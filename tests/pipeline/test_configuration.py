@@ -409,6 +409,7 @@ LINES = {
     "scenes: [a]": "scenes[0] must be a block of keys, at least name and box, not 'a'",
     "scenes: [{box: {width: 1, height: 1}}]": "scenes[0] needs the key 'name'",
     "scene: []": "the configuration has an unknown key 'scene'; did you mean 'scenes'?",
+    "sceness: []": "the configuration has an unknown key 'sceness'; its keys are results, …",
     "zz: 1": (
         "the configuration has an unknown key 'zz'; its keys are results, seed, "
         "shard_events, accuracy_cost, "
@@ -567,7 +568,7 @@ def test_a_bad_file_gets_a_sentence(tmp_path, text, expected):
 @pytest.mark.parametrize(("line", "expected"), LINES.items())
 def test_a_bad_line_at_the_top_gets_a_sentence(tmp_path, line, expected):
     good = "scenes: [{name: one, box: {width: 1.5, height: 1}}]\n"
-    alone = line.startswith("scene") or "needs" in expected
+    alone = line.startswith(("scene:", "scenes:")) or "needs" in expected
     sentence = refusal(tmp_path / "bad.yaml", line if alone else good + line)
     assert agrees(sentence, expected)
 

@@ -157,7 +157,8 @@ def _sentence(error):
         elif value[unknown] is None and not isinstance(unknown, str):  # of {width: 1,5}
             hint = "; decimals have a point"
         else:
-            hint = _nearest(unknown, known) or f"; its keys are {', '.join(known)}"
+            free = [key for key in known if key not in value]
+            hint = _nearest(unknown, free) or f"; its keys are {', '.join(known)}"
         return f"{path} has an unknown key {shown(unknown)}{hint}"
     hint = _nearest(value, node.get("enum", ())) or comma(value)
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
