@@ -174,7 +174,12 @@ def test_what_is_said_of_volumes_is_not_said_of_times():
 @pytest.mark.parametrize(
     ("name", "words", "row", "other"),
     [
-        ("hopping_trajectory", "Dots in (a)", {"event": "vertical_hop"}, {"event": "wall_x1"}),
+        (
+            "hopping_trajectory",
+            "Dots in (a)",
+            {"event": "horizontal_hop"},
+            {"event": "vertical_hop"},
+        ),
         ("animation", "stops at a hop", {"event": "vertical_hop"}, {"event": "wall_x1"}),
         ("hop_histogram", "time is exact", {"exact_mean": 1.0}, {"exact_mean": None}),
         ("vertical_hop_area", "at zero", {"exact": 0.0, "hits": 0}, {"exact": 1.0, "hits": 0}),

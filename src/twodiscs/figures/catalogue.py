@@ -13,6 +13,7 @@ from twodiscs.figures.kit.captions import (
     any_row,
     both,
     cross,
+    hops_shown,
     in_plane,
     is_judged,
     keeps_side,
@@ -301,7 +302,7 @@ FIGURES = {
                 Dots in (a) and bars in (b) mark the hops, at which it changes sign: a hop is often
                 undone soon, before collisions have scrambled the motion.
                 """,
-                both(of_two, any_row(lambda row: row["event"] in HOPS)),
+                hops_shown,
             ),
             Sentence(
                 """

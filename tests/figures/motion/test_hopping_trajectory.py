@@ -5,7 +5,9 @@ import pytest
 from figure_cases import tables_of, unclear
 
 from twodiscs.comparison.tables.trajectory import Trajectory
+from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
+from twodiscs.figures.kit.captions import Shown
 from twodiscs.figures.motion import animation, hop_histogram, hopping_trajectory, many
 from twodiscs.model.box import Box
 
@@ -42,6 +44,10 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
         assert axes.get_ylabel() == f"${axis}_2-{axis}_1$"
         dots = next(line for line in axes.lines if line.get_marker() in ("o", "|"))
         assert list(dots.get_xdata()) == times
+    entry = FIGURES["hopping_trajectory"]
+    for some in (rows, [row for row in rows if row["event"] != hop]):
+        said = "mark the hops" in entry.full_caption(Shown(box, None, some))
+        assert said == (some is rows)
     texts = [" ".join(text.get_text() for text in one.axes[0].texts) for one in (figure, bare)]
     assert ["$r=0.24$" in text for text in texts] == [True, False]
 

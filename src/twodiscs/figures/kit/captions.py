@@ -67,6 +67,21 @@ def along_ring(shown):
     return of_many(shown) and "periodic" in box.effects and box.width >= box.height
 
 
+def shown_hop(box):
+    """Return the hop that the figure of a trajectory of two discs in a ``Box`` shows.
+
+    It is that along the longer side unless this is periodic.
+    """
+    periodic = box.effects.get("periodic", "")
+    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
+    return "horizontal_hop" if along_x else "vertical_hop"
+
+
+def hops_shown(shown):
+    """Say whether the figure of a trajectory of two discs has hops in it."""
+    return of_two(shown) and any_row(lambda row: row["event"] == shown_hop(shown.box))(shown)
+
+
 def cross(shown):
     """Say whether more discs than two pass each other along the longer side."""
     box = shown.box

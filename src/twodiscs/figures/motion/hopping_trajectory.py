@@ -3,8 +3,10 @@
 import numpy as np
 
 from twodiscs.figures.kit import panels
+from twodiscs.figures.kit.captions import shown_hop
 from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.figures.motion import many
+from twodiscs.model.events import AXIS
 
 #: Inches: each of the two panels, the gap between them and the room above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
@@ -24,9 +26,8 @@ def draw(box, tables, radius=None):
     """
     if box.discs > 2:
         return many.world_lines(box, tables["trajectory"], radius)
-    periodic = box.effects.get("periodic", "")
-    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
-    axis, hop = ("x", "horizontal_hop") if along_x else ("y", "vertical_hop")
+    hop = shown_hop(box)
+    axis = AXIS[hop]
     rows = tables["trajectory"]
     times = np.array([row["time"] for row in rows])
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
