@@ -216,3 +216,17 @@ def test_a_legend_keeps_away_from_symbols():
         beside = (before.x1 + letter / 2, (before.y0 + before.y1) / 2)
         axes.plot(*axes.transData.inverted().transform(beside), ls="", **symbol)
         assert not place().padded(letter).contains(*beside)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_single_value_has_an_ordinate_around_it():
+    """And there is one where nothing is known at all."""
+    (row,) = tables_of("paper")["volume"][:1]
+    box = Box(3.0, 1.5, discs=8)
+    with style.context():
+        for estimate in (1.4e-3, None):
+            alone = [row | {"exact": None, "z": None, "estimate": estimate}]
+            main = draw("volume", box, {"volume": alone}).axes[0]
+            low, high = main.get_ylim()
+            assert low < (estimate or 1) < high
+            assert 2.9 < high / low < 10

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from figure_cases import PAPER, unclear
+from figure_cases import PAPER, shown_texts, unclear
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -137,3 +137,17 @@ def test_a_short_logarithmic_axis_has_labels(ends, labels):
         shown = [text for _, text in sorted(shown)]
         shown += filter(None, [axes.yaxis.get_offset_text().get_text()])
     assert shown == labels
+
+
+@pytest.mark.parametrize(("sides", "gap"), [((0.01, 0.02), 8), ((1.5, 1.0), 0)], ids=str)
+def test_a_power_of_ten_is_no_factor_of_the_sides(sides, gap):
+    """In points: the name of a box gives way to the power, and starts with the axes without it."""
+    with style.context():
+        figure, main, _ = panels.panels(Box(*sides), "area")
+        main.set_ylim(0, 2 * sides[0] ** 2 * sides[1])
+        shown = shown_texts(figure)
+    (name,) = (box.x0 for text, box in shown if "w\\times h" in text)
+    power = [box.x1 for text, box in shown if text.startswith(r"$\times") and box.x1 < name]
+    left = max(power, default=main.get_position().x0 * style.COLUMN)
+    assert bool(power) == bool(gap)
+    assert 72 * (name - left) > gap - 1e-6

@@ -1,9 +1,9 @@
 """The histogram of intervals between hops: bins that are joined, and exact densities at zero."""
 
 import numpy as np
-from figure_cases import PAPER, draw, tables_of
+from figure_cases import BOXES, PAPER, draw, tables_of
 
-from twodiscs.figures.kit import style
+from twodiscs.figures.kit import panels, style
 from twodiscs.figures.motion import hop_histogram
 
 
@@ -39,3 +39,20 @@ def test_a_density_that_bins_are_too_wide_for_is_not_marked():
         axes = [hop_histogram.draw(PAPER, {"hop_histogram": r}).axes[1] for r in (rows, wide)]
     marked = [sum(not line.get_clip_on() for line in one.lines) for one in axes]
     assert marked[0] > marked[1]
+
+
+def test_the_radii_of_a_legend_are_written_alike():
+    assert panels.numbers([0.1, 0.25]) == ["0.1", "0.25"]
+    assert panels.numbers([7.5e-5, 1.25e-4, 1e-3]) == [
+        r"7.5\times10^{-5}",
+        r"1.25\times10^{-4}",
+        "10^{-3}",
+    ]
+    read = tables_of("tiny")
+    with style.context():
+        figure = draw("hop_histogram", BOXES["tiny"], read)
+    names = [
+        text.get_text() for text in figure.axes[0].get_legend().texts if "r=" in text.get_text()
+    ]
+    assert len(names) > 1
+    assert all("10^" in name for name in names)

@@ -28,6 +28,9 @@ MAIN, GAP, LOWER = 1.9, 0.07, 0.82
 #: Inches and points: a second line above, for the box and its effects.
 LINE, ABOVE = 0.13, 14
 
+#: Points by which the name of a box gives way to the power of ten of the ordinate beside it.
+FACTOR = 9
+
 #: The digits of a box, and of a radius, that leave room for something beside them.
 BESIDE = 11
 
@@ -110,6 +113,15 @@ def number(value):
     return powers(f"{value:g}")
 
 
+def numbers(values):
+    """Return ``values`` in mathtext, all with powers of ten if any is so small or large."""
+    texts = [f"{value:g}" for value in values]
+    if any("e" in text for text in texts):
+        parts = (f"{value:.5e}".split("e") for value in values)
+        texts = [f"{float(digits):g}e{power}" for digits, power in parts]
+    return [powers(text) for text in texts]
+
+
 def powers(text):
     """Return a ``text`` in mathtext with 3e-06 written as 3 × 10⁻⁶, and 1e-06 as 10⁻⁶."""
 
@@ -142,8 +154,14 @@ def name_box(axes, box, more="", up=0):
 
     ``up`` are points by which that is higher than usual. Lines beyond the first take ``room``.
     """
+
+    def frame(renderer):
+        """Return the frame of the axes, moved where a power of ten would read as a factor."""
+        beside = not up and axes.yaxis.get_offset_text().get_text()
+        return axes.bbox.translated(renderer.points_to_pixels(FACTOR) if beside else 0, 0)
+
     text = ",\n".join(heading(box, more))
-    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
+    corner = {"xycoords": frame, "ha": "left", "va": "bottom", "fontsize": 7.5}
     drawing.label(axes, text, (0, 1), (0, 5 + up), **corner)
 
 
@@ -316,6 +334,10 @@ def legend(axes, box, series, loc, single=None, more=()):
     axes.legend(handles, names, loc=loc, **CLEAR)
 
 
+#: The least ratio of the ends of a logarithmic ordinate: there is a tick or two within.
+LEAST = 3
+
+
 def logarithmic(axes, radii, series):
     """Make the ordinate logarithmic and as long as estimates and most of the curves need."""
     seen = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
@@ -324,8 +346,8 @@ def logarithmic(axes, radii, series):
     clear = (np.abs(radii[:, None] - ends) > 0.05 * largest).all(axis=1) & (radii > 0.1 * largest)
     shown = [value for part in series for value in part.exact[clear] if value > 0]
     shown += [value for value in seen if value]
-    low, high = min(shown), max(shown)
-    room = (high / low) ** 0.06
+    low, high = min(shown, default=1.0), max(shown, default=1.0)
+    room = max((high / low) ** 0.06, (LEAST * low / high) ** 0.5)
     axes.set_yscale("log")
     axes.set_ylim(low / room, high * room)
     label_decades(axes.yaxis, high / low)

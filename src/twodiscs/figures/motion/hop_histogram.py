@@ -37,6 +37,7 @@ def draw(box, tables):
     whole = panels.add_panel(figure, panels.BOTTOM + SHORT + GAP, ALL)
     short = panels.add_panel(figure, panels.BOTTOM, SHORT)
     groups = [list(group) for _, group in groupby(rows, key=lambda row: row["radius"])]
+    radii = panels.numbers([group[0]["radius"] for group in groups])
     low, last = 0.1, 1.0
     for i, group in enumerate(groups):
         colour, marker = SERIES[i % len(SERIES)]
@@ -50,8 +51,9 @@ def draw(box, tables):
             at = np.unique(np.searchsorted(middles, wanted))
             axes.stairs(density, edges, baseline=None, color=colour, lw=0.7)
             symbol = panels.open_symbol(colour, marker)
-            name = f"$r={panels.number(group[0]['radius'])}$"
-            axes.errorbar(middles[at], density[at], errors[at], ls="", label=name, **symbol)
+            axes.errorbar(
+                middles[at], density[at], errors[at], ls="", label=f"$r={radii[i]}$", **symbol
+            )
             if axes is whole:
                 low, last = min(low, density.min()), max(last, edges[-1])
         if box.is_plain:
