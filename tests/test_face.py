@@ -323,6 +323,14 @@ def test_what_changes_with_time_is_drawn_with_its_errors(tmp_path):
         half = [np.ptp(bar[:, 1]) / 2 for bar in bars.get_segments()]
         assert np.allclose(half, averages.stderr[:, k], rtol=1e-9)
     assert len(axes.containers) == len(axes.get_legend().texts) == 2
+    many = td.observe(SCENE, lambda a, b: np.stack([b["x1"]] * 9, axis=1), [1], replicas=1)
+    with pytest.raises(td.InputError, match="at most 8 averages at a time to be drawn, not 9"):
+        td.plot(many)
+    eight = td.observe(SCENE, lambda a, b: np.stack([b["x1"]] * 8, axis=1), [1], replicas=1)
+    (axes,) = td.plot(eight).axes
+    symbols = [drawn.lines[0] for drawn in axes.containers]
+    looks = {(s.get_color(), s.get_marker(), s.get_markerfacecolor()) for s in symbols}
+    assert len(looks) == 8
     long = SCENES["combination"]
     for some in (SCENE, long):
         figure = td.plot(td.observe(some, lambda a, b: b["x1"], [1], replicas=1))
@@ -351,6 +359,14 @@ def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tm
         td.plot(found, figure="observed")
 
 
+def test_intervals_of_one_kind_of_hop_are_drawn_together():
+    vertical, horizontal = (
+        td.intervals(SCENE, hop, 1) for hop in ("vertical_hop", "horizontal_hop")
+    )
+    with pytest.raises(td.InputError, match="one kind of hop, not horizontal_hop and vertical_hop"):
+        td.plot([vertical, horizontal])
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
@@ -364,6 +380,8 @@ def test_a_transmission_is_drawn_beside_what_is_known(radius, effects, lines, tm
         (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "to be sketched, but it has discs 3"),
         (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
         (lambda some: td.simulate(SCENES["field"], seed=-1), "seed must be an integer from 0 to"),
+        (lambda some: td.simulate(SCENE, {}), "error must hold some of vertical_hop, horizontal"),
+        (lambda some: td.Box.of(3), "scene must be a Scene, not 3"),
         (lambda some: td.sample(SCENE, 1e6, quantities="volume"), "quantities must be a list of"),
         (lambda some: td.simulate(SCENE, events="any_wall"), "events must be a list of"),
         (lambda some: td.Scene(1.5, 1.0, 0.2, field=-1), "positive, finite number, or 0, not -1.0"),

@@ -48,12 +48,14 @@ def test_results_go_on_and_come_back(name, tmp_path):
     read = td.load_result(path)
     assert type(read) is type(less)
     assert bits(read) == bits(less)
+    assert read == less
     assert (read.kind, read.version) == (name, td.__version__)
     assert read.settings == less.settings
     assert read.settings["seed"] == 5
     more = less.more(**{setting: value})
     assert bits(more) == bits(read.more(**{setting: value}, cores=2))
     assert bits(more) != bits(less)
+    assert more != less
     assert bits(more.more(**{setting: less.settings[setting]})) == bits(less)
 
 
@@ -247,6 +249,8 @@ def test_averages_over_states_have_honest_errors():
     again = td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=3, cores=2)
     assert np.array_equal(again.mean, found.mean)
     assert np.array_equal(again.stderr, found.stderr)
+    assert again == found
+    assert again != td.observe(SCENE, seen, [0, 1, 7.5], 20000, seed=4)
     assert list(found.frame().columns) == [f"{n}_{k}" for n in ("mean", "stderr") for k in range(3)]
 
 
@@ -267,10 +271,54 @@ def test_what_is_observed_is_a_trajectory():
             assert np.allclose([*state], [*now], rtol=0, atol=1e-6)
 
 
+def test_what_is_handed_over_is_read_only():
+    """A start that the function changes would be another one at the next time."""
+    for wrong in (0, 1):
+
+        def seen(*states, wrong=wrong):
+            states[wrong]["x1"] += 1
+            return states[wrong]["x1"]
+
+        with pytest.raises(ValueError, match="read-only"):
+            td.observe(SCENE, seen, [0, 1], 1)
+
+
+def test_times_are_any_iterable():
+    averages = td.observe(SCENE, lambda start, now: now["x1"], [0, 1], 1)
+    path = td.trajectory(SCENE, duration=3)
+    for times in ((0, 1), range(2), map(float, range(2)), (t for t in (0, 1)), {0: 1, 1: 0}.keys()):
+        assert td.observe(SCENE, lambda start, now: now["x1"], times, 1) == averages
+    for times in (iter([0.5, 2]), {0.5: 0, 2: 0}.keys(), np.array([0.5, 2])):
+        assert np.array_equal(path.states_at(times), path.states_at([0.5, 2]))
+    assert path.states_at(np.array(2.0)) == path.states_at(2)
+
+
+def test_a_selection_of_events_has_no_states_in_between(tmp_path):
+    path = td.trajectory(SCENE, duration=30)
+    part = path.iloc[3:-3]
+    time = part["time"].iloc[4]
+    assert part.states_at(time) == path.states_at(time)
+    td.plot(part)
+    collisions = path[path.event == "disc_collision"]
+    between = collisions["time"].iloc[1]
+    for use in (
+        lambda: collisions.states_at(between),
+        lambda: td.plot(collisions),
+        lambda: td.animate(collisions, tmp_path / "a.gif"),
+        lambda: path[::-1].states_at(between),
+    ):
+        with pytest.raises(td.InputError, match=r"must have all rows .* but row \d+ is missing$"):
+            use()
+    missing = path.drop(index=7)
+    with pytest.raises(td.InputError, match="but row 7 is missing"):
+        td.plot(missing)
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
         ({"times": [1, 1]}, "times must be ascending numbers from 0 on, not [1, 1]"),
+        ({"times": {1: 0, 0: 0}}, "times must be ascending numbers from 0 on, not [1, 0]"),
         ({"times": [-1]}, "times must be ascending numbers from 0 on, not [-1]"),
         ({"times": [1e9]}, "where 1e7 events are due, not 1e9"),
         ({"function": 1}, "function must be one of two arrays of states, not 1"),

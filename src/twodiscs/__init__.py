@@ -340,10 +340,10 @@ def observe(
 ) -> Observed:
     """Average what a function of yours sees of trajectories that start in the invariant measure.
 
-    ``function(start, now)`` takes two arrays of states, as those of ``starts``, at time 0 and at
-    one of the ascending ``times`` ≥ 0, and returns an array with a number, or an array, for each of
-    the states. On periodic axes places go on beyond the cell. ``replicas``, an integer, is rounded
-    up to whole blocks of 4096.
+    ``function(start, now)`` takes two arrays of states, as those of ``starts`` but read-only, at
+    time 0 and at one of the ascending ``times`` ≥ 0, and returns an array with a number, or an
+    array, for each of the states. On periodic axes places go on beyond the cell. ``replicas``, an
+    integer, is rounded up to whole blocks of 4096.
 
     The ``Observed`` has ``mean`` and ``stderr`` at each time, from the spread between the replicas,
     which are independent; those of different times belong to the same replicas. ``seed``,

@@ -96,6 +96,9 @@ def _what(result):
             boxes = {Box.of(item.scene) for item in results}
             if len(boxes) > 1:
                 raise InputError("result must be of one box, with the same effects")
+            hops = sorted({item.hop for item in results if isinstance(item, Intervals)})
+            if len(hops) > 1:
+                raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
             results = sorted(results, key=attrgetter("scene.radius"))
             rows = [row for item in results for row in item.rows]
             return boxes.pop(), rows, _figures_of(rows), {}
@@ -135,6 +138,9 @@ def rows_of(trajectory):
             f"trajectory must have two rows at least, and all of its columns, not {len(trajectory)}"
             f" rows without {', '.join(missing) or 'none'}"
         )
+    from twodiscs.comparison.measured.trajectory import require_consecutive
+
+    require_consecutive(trajectory)
     return trajectory.to_dict("records")
 
 

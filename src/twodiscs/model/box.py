@@ -8,7 +8,7 @@ from functools import cached_property
 from twodiscs.model.checks import SHORTEST, InputError, length, one_of, shown
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
-from twodiscs.model.scene import Scene
+from twodiscs.model.scene import Scene, a_scene
 
 #: Larger radii than this share of the shortest side tell nothing of a box that smaller ones do not.
 TINY = 1e-6
@@ -61,7 +61,8 @@ class Box:
 
     @classmethod
     def of(cls, scene: Scene) -> Box:
-        """Return the box of a ``Scene``."""
+        """Return the box of a ``Scene``; raise ``InputError`` for anything else."""
+        a_scene(scene)
         return cls(scene.width, scene.height, scene.effects, scene.discs)
 
     def parameters(self) -> dict[str, object]:

@@ -4,6 +4,7 @@ import math
 import numbers
 import re
 import reprlib
+from collections.abc import Iterable
 from contextlib import contextmanager
 
 #: Lengths outside this range would overflow or underflow when multiplied four at a time.
@@ -137,6 +138,13 @@ def count(name, value, most=LARGEST_INTEGER):
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     return whole(name, value, 1, most)
+
+
+def listed(values):
+    """Return an iterable as a list, also one that is read once; an array or a text as it is."""
+    if isinstance(values, str | bytes) or hasattr(values, "__array__"):
+        return values
+    return [*values] if isinstance(values, Iterable) else values
 
 
 def one_of(name, value, allowed):

@@ -46,9 +46,12 @@ class Measurement:
     ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
     and where the ``status`` is impossible. ``z`` is None without an exact value or an estimate,
     and else it is the standard normal deviate of the estimate from what it is an estimate of: the
-    exact value or, for an area, the exact ``expectation`` of its shell. ``count`` is how many
-    events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none was
-    seen. ``status`` is as in the tables: "too-few" without an honest error, for which there must be
+    exact value or, for an area, the exact ``expectation`` of its shell. Where events are few, or
+    come in few clusters, there is no normal law: then z is that of an upper bound on the chance of
+    such a deviation, often 0, and the ``test`` in ``frame()`` of the result says so. ``count`` is
+    how many events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none
+    was seen. ``status`` is as in the tables: "too-few" without an honest error. For that there must
+    be, of a mean time, 100 replicas and 100 effective events, of which a cluster counts once; else
     100 hits and, of a volume, 100 misses too: discs so small that all of 1048576 draws are hits
     have none.
     """
@@ -247,6 +250,9 @@ class Intervals(Result):
             at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
         )  # fmt: skip
 
+    def __hash__(self):
+        return hash((self.scene, self.hop))
+
     def more(
         self, number: float | None = None, cores: int = 1, progress: bool | None = None
     ) -> Intervals:
@@ -306,6 +312,8 @@ def _named(key, what, names, allowed):
 def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
     possible = a_scene(scene).events
+    if isinstance(error, Mapping) and not error:
+        raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
     if not isinstance(error, Mapping):
         errors = dict.fromkeys(possible, error)
     elif events is None:

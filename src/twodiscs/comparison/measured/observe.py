@@ -12,7 +12,7 @@ from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
-from twodiscs.model.checks import InputError, count, shown, written
+from twodiscs.model.checks import InputError, count, listed, shown, written
 from twodiscs.model.scene import a_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 BLOCK = 4096
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Observed:
     """Averages over independent replicas of the invariant measure of one ``scene``.
 
@@ -41,6 +41,16 @@ class Observed:
     stderr: np.ndarray
     replicas: int
     settings: dict[str, object]
+
+    def __eq__(self, other):
+        if type(other) is not type(self):
+            return NotImplemented
+        return (self.scene, self.settings) == (other.scene, other.settings) and all(
+            np.array_equal(getattr(self, name), getattr(other, name), equal_nan=True)
+            for name in ("times", "mean", "stderr")
+        )
+
+    __hash__ = None
 
     def frame(self) -> pd.DataFrame:
         """Return a pandas ``DataFrame`` by time: mean and stderr, numbered if there are several."""
@@ -63,6 +73,7 @@ class Observed:
 
 
 def _times(times):
+    times = listed(times)
     try:
         checked = np.atleast_1d(np.asarray(times, float))
         ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
@@ -75,6 +86,8 @@ def _times(times):
 
 def _seen(function, start, now):
     """Return what the ``function`` sees of the replicas, an array with a row for each."""
+    # One start is for all times: what is written into it would spoil the later ones.
+    start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
     try:
         seen = np.asarray(returned)

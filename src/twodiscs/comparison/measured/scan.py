@@ -44,6 +44,12 @@ class Scan(Result, Sequence[Measurements]):
     def __iter__(self) -> Iterator[Measurements]:
         return iter(self.results)
 
+    def __eq__(self, other):
+        return self.results == other.results if isinstance(other, Scan) else NotImplemented
+
+    def __hash__(self):
+        return hash((self.box, *self.radii))
+
     def more(
         self,
         error: float | str | Mapping[str, float | str] | None = None,

@@ -11,7 +11,7 @@ import pandas as pd
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.trajectory import DISCS, followed, followed_many, unwrapped
-from twodiscs.model.checks import InputError, shown
+from twodiscs.model.checks import InputError, listed, shown
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:
@@ -43,7 +43,8 @@ class Trajectory(pd.DataFrame):
         """Return the states at ``times``, exactly: an array with the named columns of ``starts``.
 
         ``times`` are numbers in any order, from the first to the last one of the trajectory.
-        Raises ``InputError`` for others, and where columns of the trajectory are missing.
+        Raises ``InputError`` for others, and where columns of the trajectory are missing, or rows
+        in between, as in a selection of events.
         """
         names = components(self.scene)
         missing = [name for name in ("time", *names) if name not in self]
@@ -52,7 +53,8 @@ class Trajectory(pd.DataFrame):
                 "trajectory must have a row at least and all of its columns for the states at a "
                 f"time, not {len(self)} rows without {', '.join(missing) or 'none'}"
             )
-        known = self["time"].to_numpy()
+        require_consecutive(self)
+        known, times = self["time"].to_numpy(), listed(times)
         try:
             at = np.atleast_1d(np.asarray(times, float))
         except (TypeError, ValueError):
@@ -73,6 +75,16 @@ class Trajectory(pd.DataFrame):
                 states[place] += (states[velocity] - falling * since / 2) * since
                 states[velocity] -= falling * since
         return states
+
+
+def require_consecutive(trajectory):
+    """Raise ``InputError`` where rows of a trajectory, which keep their index, are missing."""
+    index = trajectory.index
+    if pd.api.types.is_integer_dtype(index) and (gaps := np.diff(index) != 1).any():
+        raise InputError(
+            "trajectory must have all rows from its first to its last one, for the discs move "
+            f"freely between them, but row {index[gaps.argmax()] + 1} is missing"
+        )
 
 
 def trajectory(scene, seed, start, duration, name, progress=None):

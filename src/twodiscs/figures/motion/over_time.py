@@ -7,6 +7,7 @@ from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
 from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.theory import tails
 
 #: Inches: the panel, and the room above.
@@ -22,18 +23,27 @@ def _panel(scene, more=""):
     return figure, axes
 
 
-def _points(axes, times, values, errors, look, label=None):
-    style = panels.open_symbol(*look)
+def _points(axes, times, values, errors, look, label=None, full=False):
+    style = panels.open_symbol(*look) | ({"markerfacecolor": look[0]} if full else {})
     axes.errorbar(times, values, errors, lw=0.5, elinewidth=0.6, label=label, **style)
 
 
 def observed(result):
-    """Draw the averages of an ``Observed``, numbered as in its frame, with their errors."""
-    figure, axes = _panel(result.scene)
+    """Draw the averages of an ``Observed``, numbered as in its frame, with their errors.
+
+    Raises ``InputError`` for more of them than symbols, open and full ones, tell apart.
+    """
     flat = (values.reshape(result.times.size, -1).T for values in (result.mean, result.stderr))
-    series = [*zip(*flat, strict=True)]
+    series, most = [*zip(*flat, strict=True)], 2 * len(SERIES)
+    if len(series) > most:
+        raise InputError(
+            f"result must have at most {most} averages at a time to be drawn, not {len(series)}; "
+            "frame() has them all"
+        )
+    figure, axes = _panel(result.scene)
     for k, (mean, error) in enumerate(series):
-        _points(axes, result.times, mean, error, SERIES[k % len(SERIES)], f"mean {k}")
+        full, look = divmod(k, len(SERIES))
+        _points(axes, result.times, mean, error, SERIES[look], f"mean {k}", full)
     if len(series) > 1:
         axes.legend()
     axes.set(xlabel="time $t$", ylabel="average")
