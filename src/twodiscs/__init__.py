@@ -137,7 +137,7 @@ def simulate(
 
     On any number of ``cores`` the numbers are the same. ``progress`` shows how far it is; None
     means in a terminal or a notebook alone. The first call compiles for some seconds; compiled code
-    is kept. Ctrl-C stops at once, but for that compilation, which a script ends first: some 10 to
+    is kept. Ctrl-C stops at once; a script that is compiling finishes that first, in some 10 to
     30 s. ``more(error=…)`` of the result goes on from it. Raises ``InputError`` for an unknown
     event or a number out of range.
 

@@ -416,7 +416,7 @@ LINES = {
         "shared, scenes"
     ),
     "1: 2": "the configuration has an unknown key 1; …",
-    "accuracy: 1": "the configuration has an unknown key 'accuracy'; it belongs into a scene",
+    "accuracy: 1": "the configuration has an unknown key 'accuracy'; it belongs in a scene",
     "seed: -1": "seed must be an integer from 0 to 2^63 - 1, not -1",
     "seed: 1e19": "seed must be an integer …, not 10000000000000000000",
     "results: ../elsewhere": "results must be a path, …, not '../elsewhere'",
@@ -435,10 +435,10 @@ SCENES = {
     "name: figures": ".name must be … none of all, benchmarks, …, not 'figures'",
     "box: [1.5, 1]": ".box must be a block {width: …, height: …}, …, not [1.5, 1]",
     "box: {width: 1.5}": ".box needs the key 'height'",
-    "width: 1": " has an unknown key 'width'; it belongs into 'box'",
-    "field: 1": " has an unknown key 'field'; it belongs into 'effects'",
-    "box: {discs: 3}": ".box has an unknown key 'discs'; it belongs into a scene",
-    "effects: {samples: 3}": ".effects has an unknown key 'samples'; it belongs into 'monte_carlo'",
+    "width: 1": " has an unknown key 'width'; it belongs in 'box'",
+    "field: 1": " has an unknown key 'field'; it belongs in 'effects'",
+    "box: {discs: 3}": ".box has an unknown key 'discs'; it belongs in a scene",
+    "effects: {samples: 3}": ".effects has an unknown key 'samples'; it belongs in 'monte_carlo'",
     "box: {width: 1,5, height: 1}": ".box has an unknown key 5; decimals have a point",
     "box: {width: 1.5, heigth: 1}": ".box has an unknown key 'heigth'; did you mean 'height'?",
     "box: {width: 1.5, height: '1,2'}": ".box.height must be a positive length …, not '1,2'; "

@@ -60,10 +60,13 @@ def measures(scene):
 def volume(scene: Scene) -> float:
     """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
 
-    For N discs it is in length^2N, and None where no exact value is known. Within a few roundings
-    of the exact value for every box and radius. In a field it is ∫ (1 − U/E)₊^(D/2 − 1) dq, with
-    the potential energy U, E = 1/2 and D = ``scene.velocity_components``. Raises ``InputError`` for
-    anything that is not a ``Scene``.
+    For N discs it is in length^2N, and None where no exact value is known. In a field it is
+    ∫ (1 − U/E)₊^(D/2 − 1) dq, with the potential energy U, E = 1/2 and D =
+    ``scene.velocity_components``. Raises ``InputError`` for anything that is not a ``Scene``.
+
+    For two discs it is within a few roundings of the exact value, for every box and radius. For
+    three discs relative errors are some 1e-14, and for more in a channel less than 1e-12. These
+    grow where more than two discs hardly fit.
 
     Example:
 

@@ -44,16 +44,16 @@ class Measurement:
 
     ``stderr`` is the standard error; it is None where there is too little for an honest one, and
     ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
-    and where the ``status`` is impossible. ``z`` is None without an exact value or an estimate,
-    and else it is the standard normal deviate of the estimate from what it is an estimate of: the
+    and where the ``status`` is impossible. ``z`` is None without an exact value or an estimate;
+    otherwise it is the standard normal deviate of the estimate from what it is an estimate of: the
     exact value or, for an area, the exact ``expectation`` of its shell. Where events are few, or
     come in few clusters, there is no normal law: then z is that of an upper bound on the chance of
     such a deviation, often 0, and the ``test`` in ``frame()`` of the result says so. ``count`` is
     how many events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none
-    was seen. ``status`` is as in the tables: "too-few" without an honest error. For that there must
-    be, of a mean time, 100 replicas and 100 effective events, of which a cluster counts once; else
-    100 hits and, of a volume, 100 misses too: discs so small that all of 1048576 draws are hits
-    have none.
+    was seen. ``status`` is as in the tables. It is "too-few" without an honest error. A mean time
+    needs 100 replicas and 100 effective events, of which a cluster counts once; anything else 100
+    hits and a volume, besides, 100 misses: where discs are so small that all of 1048576 draws are
+    hits it has no error.
     """
 
     quantity: str

@@ -153,7 +153,7 @@ def _sentence(error):
         unknown = next(key for key in value if key not in known)
         homes = [home for key, home in _keys(schema(), "the configuration") if key == unknown]
         if homes:
-            hint = f"; it belongs into {homes[0]}"
+            hint = f"; it belongs in {homes[0]}"
         elif value[unknown] is None and not isinstance(unknown, str):  # of {width: 1,5}
             hint = "; decimals have a point"
         else:
@@ -165,7 +165,7 @@ def _sentence(error):
 
 
 def _keys(node, home):
-    """Yield (key, the block that it belongs into) for every key beneath a node of the schema."""
+    """Yield (key, the block that it belongs in) for every key beneath a node of the schema."""
     for key, child in node.get("properties", {}).items():
         yield key, home
         yield from _keys(child, repr(key))

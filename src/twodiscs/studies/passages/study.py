@@ -31,7 +31,7 @@ STUDY = Study(
             ones (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0).
             Where hops are rare it has a plateau, which falls as passages follow one another
             (lines): κ is the fraction of odd clusters among all hops, from independent runs. (b)
-            Smooth discs: 1 − κ falls about as δ^(1/3), so that transition state theory becomes
+            Smooth discs: 1 − κ falls about as ∛δ, so that transition state theory becomes
             exact; of rough discs it is κ that vanishes, and the power depends on their moment of
             inertia I, in units of mr². (c) Exact mean time τ between hops (lines, ∝ δ⁻² in the
             end) and mean time τ/κ between passages (symbols), with the powers fitted to all that
