@@ -412,7 +412,7 @@ def load_result(
 ) -> Measurements | Intervals | Transmission | Scan:
     """Read what ``save(path)`` of a result wrote: the same object, which can go on with ``more``.
 
-    A file is of use to the version of the package that wrote it. Raises ``InputError`` for another
+    Only the version of the package that wrote a file can read it. Raises ``InputError`` for another
     version, and for anything that is no such file.
 
     A checker of types wants to know which of the four it is before it goes on:

@@ -65,8 +65,9 @@ def volume(scene: Scene) -> float:
     ``scene.velocity_components``. Raises ``InputError`` for anything that is not a ``Scene``.
 
     For two discs it is within a few roundings of the exact value, for every box and radius. For
-    three discs relative errors are some 1e-14, and for more in a channel less than 1e-12. These
-    grow where more than two discs hardly fit.
+    three discs relative errors are some 1e-14. For more in a channel they are less than 1e-12 if it
+    is longer than the discs in a row, and some 1e-11 if not. Where more than two discs hardly fit
+    they are larger.
 
     Example:
 
@@ -168,8 +169,8 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
     impossible. Wall times are those of disc 1 on the trajectories that can reach the wall: half of
     configuration space where a blocked hop keeps disc 1 from it in the other half. Where a larger
     disc 1 keeps its side and still reaches both walls, the time is one over the mean of its two
-    rates. Of more than two discs it is None where no exact value is known, too, and walls are
-    averaged over all initial conditions. Accuracy and errors as for ``volume``.
+    rates. For more than two discs it is also None where no exact value is known, and wall times
+    are averages over all initial conditions. Accuracy and errors as for ``volume``.
 
     Example:
 

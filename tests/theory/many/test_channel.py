@@ -14,7 +14,7 @@ from twodiscs.theory.many.rates import Measures, rates, virial_sum
 
 BOUND = 1e-10
 
-#: Relative errors where there is room.
+#: Relative errors in channels that are longer than the discs in a row.
 PROMISED = 1e-12
 
 

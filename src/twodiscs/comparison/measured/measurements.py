@@ -207,9 +207,9 @@ class Intervals(Result):
     ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
     and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
     ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
-    estimate is a parabola through the first two bins, so it has no z; of more than two discs, of
-    which another pair may hop next, it is a straight line. Intervals of one chain are correlated,
-    so that all errors are those of the spread between chains.
+    estimate is a parabola through the first two bins, so it has no z. For more than two discs it is
+    a straight line, because another pair may hop next. Intervals of one chain are correlated, so
+    that all errors are those of the spread between chains.
     """
 
     hop: str
