@@ -68,6 +68,24 @@ def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_
     assert {*named} == {*re.findall(r"\w+", spoken)}
 
 
+@pytest.mark.parametrize(
+    ("caption", "variables"),
+    [
+        ("It starts in (a) at r_c", ["(a)", "r_c"]),
+        ("3wh/(8√2 r), with mr", ["3wh", "r", "mr"]),
+        ("1 − κ falls as ∛δ", ["κ", "δ"]),
+    ],
+)
+def test_words_of_captions_are_no_variables(caption, variables):
+    shown = re.search(r'show regex\("(.*\|CV\|.*)"\)', (PAPER / "results.typ").read_text())[1]
+    assert [match[0] for match in re.finditer(shown, caption)] == variables
+
+
+def test_captions_have_no_markup():
+    texts = repr([*FIGURES.values(), *STUDY_FIGURES.values()])
+    assert not re.search(r"[\^`*]", texts)
+
+
 def test_figures_are_only_spoken_of_where_they_are():
     references = re.findall(r"@(\w+)", SOURCE)
     assert not {*FIGURES, *STUDY_FIGURES} & {*references}
