@@ -673,6 +673,7 @@ def test_passages_are_quoted_for_the_hop_that_is_blocked_first():
     assert found == {
         "passages": "8",
         "passages_largest": "$1.6$",
+        "passages_pause": "48",
         "passages_first_distance": "$2^(-3)$",
         "passages_last_distance": "$2^(-9)$",
         "passages_first": "$0.5647 (4)$",

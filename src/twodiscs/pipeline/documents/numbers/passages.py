@@ -3,6 +3,7 @@
 import math
 
 from twodiscs.comparison.estimates import LinearFit
+from twodiscs.comparison.measured.transmission import QUIET
 from twodiscs.pipeline.documents.numbers.agreement import scores
 from twodiscs.pipeline.documents.numbers.rounding import (
     Number,
@@ -70,6 +71,7 @@ def passages(rows, scene):
     if smooth:
         first, last = smooth[0], smooth[-1]
         numbers |= {
+            "passages_pause": whole(QUIET),
             "passages_first_distance": _power_of_two(first["distance"]),
             "passages_last_distance": _power_of_two(last["distance"]),
             "passages_first": _estimate(first),
