@@ -104,6 +104,7 @@ def row_of(scene, point):
     return row
 
 
+@pytest.mark.slow
 def test_bursts_of_collisions_have_no_error_bar():
     """Rough discs that hardly pass each other: rare replicas have a thousand times the mean.
 
