@@ -50,7 +50,6 @@ def test_a_plateau_is_what_passages_leave(law):
     higher = transmission.plateau(Estimate(fallen + step, 0.01, 9), time, mean, law).value
     assert found.stderr == pytest.approx(0.01 * (higher - kappa) / step, rel=1e-3)
     assert transmission.plateau(Estimate(fallen, 0.01, 9), time, 30.0, law) is None
-    assert transmission.plateau(Estimate(0.001, 0.01, 9), time, 10.0, law) is None
     assert transmission.plateau(Estimate(-0.01, 0.01, 9), time, mean, law) is None
 
 
@@ -112,6 +111,7 @@ def test_frequent_hops_have_a_curve_only():
     found = td.transmission(td.Scene(1.5, 1.0, 0.2), "vertical_hop", hops=1000)
     assert found.coefficient is None
     assert found.passage_time is None
+    assert found.clusters == {}  # none are looked for: they would hardly end
     assert "too often" in str(found)
     assert len(found.frame()) == len(transmission.TIMES)
 

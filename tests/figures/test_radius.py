@@ -147,18 +147,17 @@ def test_the_legend_has_no_line_where_no_exact_value_is_known():
     box = Box(1.5, 1.0, discs=5)
     rng = np.random.default_rng(5)
     rows = [
-        simulated(rng, box.scene(r), event, 1.0, 3e-3) | {"exact": None}
+        simulated(rng, box.scene(r), event, 1.0, 3e-3) | {"exact": None, "z": None}
         for r in (0.05, 0.1)
         for event in ("vertical_hop", "horizontal_hop")
     ]
     with style.context():
         figure = draw("mean_hop_time", box, {"mean_times": rows})
         assert unclear(figure) == []
-    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-    for legend in legends:
-        handles = [(line.get_linestyle(), line.get_marker()) for line in legend.get_lines()]
-        assert handles == [("None", marker) for _, marker in style.SERIES[:2]]
-    assert len(legends) == 2
+    (axes,) = figure.axes
+    lines = axes.get_legend().get_lines()
+    handles = [(line.get_linestyle(), line.get_marker()) for line in lines]
+    assert handles == [("None", marker) for _, marker in style.SERIES[:2]]
 
 
 def test_an_estimate_above_the_curve_is_in_the_picture():
@@ -193,6 +192,23 @@ def test_where_nothing_is_known_there_are_symbols_only():
         assert "Residuals" not in caption
         assert "(b)" not in caption
         assert "Where no exact value is known there is no line and no residual." in caption
+
+
+def test_curves_are_drawn_to_their_end_without_any_residual():
+    """Times from too few events for an error: a panel for them, one beneath, and both explained."""
+    rows = [
+        row | {"stderr": None, "z": None, "status": "too-few"}
+        for row in tables_of("paper")["mean_times"]
+        if row["event"] in ("vertical_hop", "horizontal_hop") and row["estimate"]
+    ]
+    with style.context():
+        figure = draw("mean_hop_time", PAPER, {"mean_times": rows})
+    main, approach = figure.axes
+    assert main.get_xlabel() == "radius $r$"
+    assert approach.get_xlabel().startswith("relative distance")
+    caption = FIGURES["mean_hop_time"].full_caption(Shown(PAPER, None, rows))
+    assert "In (b) the same times" in caption
+    assert "Residuals" not in caption
 
 
 def test_a_legend_keeps_away_from_symbols():

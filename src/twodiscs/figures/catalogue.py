@@ -17,6 +17,7 @@ from twodiscs.figures.kit.captions import (
     in_plane,
     is_judged,
     keeps_side,
+    known,
     longer_than,
     marked,
     marked_alone,
@@ -396,9 +397,7 @@ FIGURES = {
             Mean times between successive hops: exact (lines) and by event-driven molecular dynamics
             (symbols).
             """,
-            Sentence(
-                "In (b) the same times approach the radius r_c at which the hop ends.", JUDGED
-            ),
+            Sentence("In (b) the same times approach the radius r_c at which the hop ends.", known),
             Sentence(
                 """
                 Dashed lines in (a) are the laws for small discs, to first order in r, and in (b)

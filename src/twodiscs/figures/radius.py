@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from twodiscs.figures.kit import curves, panels
-from twodiscs.figures.kit.captions import is_judged
+from twodiscs.figures.kit.captions import is_judged, is_unknown
 from twodiscs.figures.kit.limits import hop_ends
 from twodiscs.figures.kit.style import SERIES
 from twodiscs.model.checks import InputError
@@ -32,7 +32,7 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     ``rooted``, as the square root; ``loc`` that of the legend, and ``single`` the method if there
     is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
     drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
-    radius of their end. Where no exact value is known there is one panel only, that of the symbols.
+    radius of their end, unless no exact value is known. Residuals have a panel if there are any.
     Raises ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
@@ -48,8 +48,8 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
     series = list(by_quantity.values())
-    judged = any(is_judged(row) for part in series for row in part.rows)
-    approach &= judged
+    drawn = [row for part in series for row in part.rows]
+    judged, approach = any(map(is_judged, drawn)), approach and not is_unknown(drawn)
     figure, main, lower = panels.panels(box, label, ROOM if approach else 0, judged)
     panels.draw_series(main, lower, radii, series, single=bool(single))
     for quantity in by_quantity:
@@ -110,10 +110,9 @@ def _approach(axes, box, by_quantity):
         times = [mean_times(scene)[event] for scene in scenes]
         exact = np.array(times, float)
         axes.plot(distances, exact, color=colour, zorder=5)
-        known = {"ls": "-"} if np.any(exact > 0) else panels.open_symbol(colour, marker)
         label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
         if part.is_seen():
-            handles.append(Line2D([], [], label=label, **{"ls": "", "color": colour} | known))
+            handles.append(Line2D([], [], label=label, color=colour))
         shown += [time for time in times if time]
         if box.discs > 2:
             shown += [row["estimate"] for row in part.rows if row["estimate"]]

@@ -77,6 +77,11 @@ def by_total(sums, replicas):
     ]
 
 
+def are_rare(scene, hop):
+    """Say whether hops are so rare that the time which ends a cluster holds ``MOST_IN_GAP``."""
+    return quiet_time(scene, hop) * exact.passing_rate(scene, hop) <= MOST_IN_GAP
+
+
 def of_order(x):
     """Return (κ(t)/κ, its derivative) where x passages come in a time on the average: e^(−2x)."""
     left = math.exp(-2 * x)
@@ -98,10 +103,10 @@ def plateau(seen, time, mean, left):
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops, and ``left``
     says what they leave: ``of_order`` or ``of_clusters``. None where the time has more than
-    ``MOST_MERGED`` passages or ``MOST_IN_GAP`` hops.
+    ``MOST_MERGED`` passages.
     """
     value, x = seen.value, seen.value * time / mean
-    if value <= 0 or time / mean > MOST_IN_GAP or x > MOST_MERGED:
+    if value <= 0 or x > MOST_MERGED:
         return None
     for _ in range(50):  # a contraction, for x is small
         value = seen.value / left(value * time / mean)[0]
@@ -121,8 +126,9 @@ class Transmission(Result):
 
     ``coefficient`` is κ as an ``Estimate``, None where hops are so frequent that there is no
     plateau, ``gap`` the time without a hop that ends a cluster, and ``clusters`` {n: how many of
-    the hops are in a cluster of n}. ``exact_mean`` is the mean time τ between hops. ``times`` and
-    ``curve``, a list of ``Estimate``, are κ(t).
+    the hops are in a cluster of n}, empty where hops are too frequent to look for them.
+    ``exact_mean`` is the mean time τ between hops. ``times`` and ``curve``, a list of ``Estimate``,
+    are κ(t).
     """
 
     scene: Scene
@@ -182,7 +188,7 @@ class Transmission(Result):
 
 
 def parts_of(scene, hop, gap, times, blocks, name, seed):
-    """Return the runs {"clusters": …, "times": …} of so many ``blocks``."""
+    """Return the runs {"times": …} of so many ``blocks``, and "clusters" where hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
 
     def clusters(first, stop):
@@ -194,10 +200,11 @@ def parts_of(scene, hop, gap, times, blocks, name, seed):
         return (sums.sum(axis=0),)
 
     events = REPLICAS * exact.event_rate(scene)
-    return {
-        "clusters": fixed(clusters, blocks, 2 * gap * events, exact.work_per_event(scene)),
-        "times": fixed(curve, blocks, times[-1] * events, exact.work_per_event(scene)),
-    }
+    work = exact.work_per_event(scene)
+    parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
+    if are_rare(scene, hop):
+        parts["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
+    return parts
 
 
 def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
@@ -221,8 +228,10 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
     with watched(progress, f"transmission r = {scene.radius:g}") as watch:
         reached = all_in_rounds(parts, watch, cores, kept)
-    (sizes,), (sums,) = reached["clusters"].sums, reached["times"].sums
-    clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-    kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
+    (sums,), clusters, kappa = reached["times"].sums, {}, None
+    if "clusters" in reached:
+        (sizes,) = reached["clusters"].sums
+        clusters = {n: int(number) for n, number in enumerate(sizes) if number}
+        kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
     curve = by_total(sums, blocks * REPLICAS)
     return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept)

@@ -147,6 +147,17 @@ def is_judged(row):
     return row.get("z") is not None and row.get("test") != "certain"
 
 
+def is_unknown(rows):
+    """Say whether the ``rows`` have estimates, but no exact value is known of any of them."""
+    measured = [row for row in rows if row.get("estimate") is not None]
+    return bool(measured) and all(row.get("exact") is None for row in measured)
+
+
+def known(shown):
+    """Say whether there are exact values that the figure can show as curves."""
+    return shown.rows is None or not is_unknown(shown.rows)
+
+
 def longer_than(ratio):
     """Return the condition that the longer side of the box is more than ``ratio`` shorter ones."""
 

@@ -65,14 +65,10 @@ def transmission(result):
         start = 1 - 2 * tails.density_at_zero(scene, hop) * early
         axes.plot(early, start, color=BLACK, ls=(0, (3, 1.5)), zorder=5, label="exact slope at 0")
     if result.coefficient is not None:
-        late, kappa = (
-            np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30),
-            result.coefficient.value,
-        )
+        kappa, name = result.coefficient.value, r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"
+        late = np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30)
         end = kappa * np.exp(-2 * kappa * late / result.exact_mean)
-        axes.plot(
-            late, end, color=BLACK, zorder=5, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"
-        )
+        axes.plot(late, end, color=BLACK, zorder=5, label=name)
     axes.set(xscale="log", xlabel="time $t$", ylabel=r"transmission $\kappa(t)$")
     axes.xaxis.set_major_formatter("{x:g}")
     if axes.get_legend_handles_labels()[0]:

@@ -10,8 +10,8 @@ from itertools import pairwise
 
 from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.comparison.measured.transmission import (
-    MOST_IN_GAP,
     TIMES,
+    are_rare,
     box_time,
     by_clusters,
     by_time,
@@ -126,7 +126,7 @@ class _Hop:
     def clusters(self, blocks):
         """Return (κ or None, the rows of it)."""
         gap = quiet_time(self.scene, self.hop)
-        if gap / self.mean > MOST_IN_GAP:
+        if not are_rare(self.scene, self.hop):
             return None, []
         sizes, events = cluster_sizes(self.scene, self.hop, gap, blocks, self._seed("clusters"))
         kappa = plateau(by_clusters(sizes), gap, self.mean, of_clusters)
