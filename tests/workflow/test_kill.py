@@ -40,21 +40,25 @@ def wait_until(condition, seconds=300):
         time.sleep(0.1)
 
 
+def begun(checkout, *words):
+    """Return a process of a Python module with its arguments, as of a terminal, with a job at work."""
+    run = subprocess.Popen(
+        [sys.executable, "-m", *words],
+        cwd=checkout.path,
+        env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    wait_until(lambda: processes(checkout.path))
+    return run
+
+
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
 @pytest.mark.parametrize("name", ["SIGKILL", "SIGTERM", "SIGINT"])
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
-    environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
-    command = [sys.executable, "-m", "snakemake", "--cores", "1", JOB]
-    run = subprocess.Popen(
-        command,
-        cwd=checkout.path,
-        env=environment,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    wait_until(lambda: processes(checkout.path))
+    run = begun(checkout, "snakemake", "--cores", "1", JOB)
     # A second run while the first one lives is refused as ever.
     assert "LockException" in checkout.snakemake("--cores", "1", JOB, passes=False).stderr
     if name == "SIGKILL":
@@ -77,16 +81,7 @@ def test_a_build_ends_with_twodiscs_run(tmp_path, name):
     """Killed or interrupted in a terminal, it takes the jobs along: nobody else works there."""
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
-    environment = os.environ | {"PYTHONPATH": str(checkout.path / "src")}
-    command = [sys.executable, "-m", "twodiscs", "run", str(checkout.configuration), JOB]
-    run = subprocess.Popen(
-        command,
-        cwd=checkout.path,
-        env=environment,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
-    wait_until(lambda: processes(checkout.path))
+    run = begun(checkout, "twodiscs", "run", str(checkout.configuration), JOB)
     if name == "SIGKILL":
         run.kill()
         run.wait(60)
