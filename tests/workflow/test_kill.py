@@ -41,7 +41,7 @@ def wait_until(condition, seconds=300):
 
 
 def begun(checkout, *words):
-    """Return a process of a Python module with its arguments, as of a terminal, with a job at work."""
+    """Return a process of a Python module, as of a terminal, when a job of it is at work."""
     run = subprocess.Popen(
         [sys.executable, "-m", *words],
         cwd=checkout.path,
