@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
+from twodiscs.arguments import run
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.pipeline.arguments import run
 from twodiscs.theory import exact
 
 BOX = Box(1.5, 1.0)

@@ -35,7 +35,7 @@ def draw(name, box, tables):
     """Draw a figure of the catalogue as its job does, with the tables that it reads."""
     entry = FIGURES[name]
     given = {table: tables[table] for table in entry.tables}
-    return import_module(f"twodiscs.{entry.module}").draw(box, given, **entry.options)
+    return import_module(entry.module).draw(box, given, **entry.options)
 
 
 # Tables -------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from twodiscs import arguments
 from twodiscs.comparison import estimates, scores
 from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model import checks, effects, radii
@@ -18,10 +19,9 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import arguments
-from twodiscs.pipeline.configuration import load
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact, laws, tails
+from twodiscs_paper.pipeline.configuration import load
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)

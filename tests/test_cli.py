@@ -11,18 +11,17 @@ from pathlib import Path
 import pytest
 from fabricated import command
 
-from twodiscs import cli
+from twodiscs import arguments, cli
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline import arguments
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.jobs import build
-from twodiscs.studies.catalogue import STUDIES
 from twodiscs.theory.exact import exact as exact_numbers
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.jobs import build
 
 BOX = ["--width", "1.5", "--height", "1"]
 

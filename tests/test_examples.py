@@ -25,11 +25,11 @@ import twodiscs
 from twodiscs import cli
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline import cost
-from twodiscs.pipeline.configuration import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.documents.numbers.rounding import rounded_up
-from twodiscs.pipeline.results import verdict
+from twodiscs_paper.pipeline import cost
+from twodiscs_paper.pipeline.configuration import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.documents.numbers.rounding import rounded_up
+from twodiscs_paper.pipeline.results import verdict
 
 PAGES = [
     *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),

@@ -8,13 +8,13 @@ from pathlib import Path
 import architecture
 import pytest
 
-from twodiscs.model.sources import PACKAGE, imports_of, modules
+from twodiscs.model.sources import PACKAGES, ROOT, imports_of, modules
 
 REPOSITORY = Path(__file__).parents[1]
 
 
 def entries(folder):
-    """Return what stands in a folder of the package, without what Python and tools put there."""
+    """Return what stands in a folder of the packages, without what Python and tools put there."""
     return [
         path.name
         for path in folder.iterdir()
@@ -41,6 +41,15 @@ def test_imports_between_rooms_point_down():
     assert upwards == []
 
 
+def test_the_library_imports_nothing_of_the_paper():
+    upwards = [
+        ".".join(module)
+        for module in modules()
+        if module[0] == "twodiscs" and any(t[0] != "twodiscs" for t in imports_of(module))
+    ]
+    assert upwards == []
+
+
 def test_no_module_imports_itself_by_a_detour():
     graph = {module: set(imports_of(module)) - {module} for module in modules()}
     assert circle(graph) == ()
@@ -63,20 +72,22 @@ def test_what_stands_in_a_folder_imports_one_way(folder):
     assert not found, ", ".join(found)
 
 
-def test_every_room_is_known_and_none_is_crowded():
-    rooms = {name.removesuffix(".py") for name in entries(PACKAGE)}
-    rooms -= {"py.typed", "__main__"}
-    assert rooms == set(architecture.ROOMS)
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_room_is_known_and_none_is_crowded(package):
+    rooms = {f"{package}.{name.removesuffix('.py')}" for name in entries(ROOT / package)}
+    rooms -= {f"{package}.{name}" for name in ("py.typed", "__main__")}
+    assert rooms == {room for room in architecture.ROOMS if room.split(".")[0] == package}
     assert len(rooms) <= 12
-    folders = [path for path in PACKAGE.rglob("*") if path.is_dir() and path.name != "__pycache__"]
+    found = (ROOT / package).rglob("*")
+    folders = [path for path in found if path.is_dir() and path.name != "__pycache__"]
     # Studies are rooms of one kind, with a catalogue of them.
     assert [f.name for f in folders if len(entries(f)) > 8 and f.name != "studies"] == []
 
 
 def test_initial_files_hold_a_docstring_only():
     """An ``__init__`` that imports would make every edit rerun every job."""
-    for path in PACKAGE.rglob("__init__.py"):
-        if path.parent != PACKAGE:
+    for path in ROOT.rglob("__init__.py"):
+        if path.parent != ROOT / "twodiscs":
             body = ast.parse(path.read_text(encoding="utf-8")).body
             assert len(body) == 1, path
             assert isinstance(body[0], ast.Expr), path
@@ -84,7 +95,7 @@ def test_initial_files_hold_a_docstring_only():
 
 def test_the_model_is_quick_to_import():
     """It takes the standard library alone: the Snakefile reads it, and so does the command line."""
-    for path in (PACKAGE / "model").glob("*.py"):
+    for path in (ROOT / "twodiscs/model").glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom):
                 assert node.module.split(".")[0] not in ("numpy", "scipy", "numba"), path
@@ -95,7 +106,8 @@ def test_the_model_is_quick_to_import():
 def test_tests_mirror_the_rooms():
     tests = REPOSITORY / "tests"
     folders = {path.parent.relative_to(tests).parts[0] for path in tests.glob("*/**/*.py")}
-    rooms = {name for name in entries(PACKAGE) if (PACKAGE / name).is_dir()}
+    packages = [ROOT / package for package in PACKAGES]
+    rooms = {name for folder in packages for name in entries(folder) if (folder / name).is_dir()}
     assert rooms <= folders
     assert folders - rooms == {"workflow"}
 

@@ -199,8 +199,9 @@ def test_progress_is_true_or_false():
 
 def test_jobs_of_the_pipeline_do_not_import_what_shows_progress(tmp_path):
     code = (
-        "import sys; from twodiscs.pipeline.jobs import point; sys.argv[1:] = 'dynamics --width 1.5"
-        f" --height 1 --radius 0.2 --target any_wall=0.5 --budget 1 --seed 1 --output {tmp_path}/p'"
+        "import sys; from twodiscs_paper.pipeline.jobs import point; sys.argv[1:] = 'dynamics"
+        " --width 1.5 --height 1 --radius 0.2 --target any_wall=0.5 --budget 1 --seed 1"
+        f" --output {tmp_path}/p'"
         ".split(); point.main(); assert not {'tqdm', 'pandas'} & {*sys.modules}"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
@@ -362,7 +363,7 @@ def test_every_argument_has_a_type():
     [
         ["-m", "twodiscs", "exact", "--width", "1.5", "--height", "1", "--radius", "0.2"],
         ["-m", "twodiscs", "--version"],
-        ["-m", "twodiscs.pipeline.results.spent", "results"],
+        ["-m", "twodiscs_paper.pipeline.results.spent", "results"],
     ],
 )
 def test_who_reads_may_stop_reading(words, tmp_path):

@@ -1,4 +1,4 @@
-"""The picture of docs/architecture.md: the folders of the package and what they import.
+"""The picture of docs/architecture.md: the folders of both packages and what they import.
 
 python docs/make/architecture.py docs/architecture.svg
 """
@@ -7,15 +7,18 @@ import ast
 from pathlib import Path
 from textwrap import fill
 
-from twodiscs.model.sources import PACKAGE, imports_of, modules
-from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.documents.report import direct
+from twodiscs.arguments import Parser, run
+from twodiscs.model.sources import ROOT, imports_of, modules
+from twodiscs_paper.pipeline.documents.report import direct
 
-#: The rooms of the package from the lowest floor up; one may import those before it, and itself.
+#: The rooms of the packages from the lowest floor up; one may import those before it, and itself.
+LIBRARY = (
+    "model", "theory", "sampling", "dynamics", "comparison", "figures", "arguments", "cli",
+)  # fmt: skip
+PAPER = ("study", "errata", "studies", "catalogue", "pipeline", "benchmark")
 ROOMS = (
-    *("model", "theory", "sampling", "dynamics", "comparison", "figures", "studies", "pipeline"),
-    *("benchmark", "cli"),
-)
+    *(f"twodiscs.{room}" for room in LIBRARY), *(f"twodiscs_paper.{room}" for room in PAPER),
+)  # fmt: skip
 
 #: Inches: width of the picture and of a room, height of a floor, the gap beneath it, margins.
 WIDTH, WIDE, FLOOR, GAP, MARGIN = 7.4, 2.3, 0.86, 0.22, 0.06
@@ -25,9 +28,9 @@ def arrows():
     """Return {room: rooms that its modules import, without itself}, in the order of ``ROOMS``."""
     found = {room: set() for room in ROOMS}
     for module in modules():
-        if module and module != ("__main__",):  # which is the cli
-            room = module[0]
-            found[room] |= {target[0] for target in imports_of(module) if target} - {room}
+        if len(module) > 1 and module[1] != "__main__":  # which is the cli
+            room = ".".join(module[:2])
+            found[room] |= {".".join(target[:2]) for target in imports_of(module)} - {room}
     return {room: [other for other in ROOMS if other in found[room]] for room in ROOMS}
 
 
@@ -44,7 +47,7 @@ def purpose(room):
 
     A room with a catalogue has rooms for its entries, which the catalogue names.
     """
-    folder = PACKAGE / room
+    folder = ROOT.joinpath(*room.split("."))
     path = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
     text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
     inside = sorted(
@@ -98,7 +101,7 @@ def draw():
         )  # fmt: skip
         says, names = purpose(room)
         text = {"ha": "center", "va": "center", "family": "sans-serif"}
-        axes.text(x, y + FLOOR - 0.12, room, fontsize=9, color=BLUE, **text)
+        axes.text(x, y + FLOOR - 0.12, room.removeprefix("twodiscs."), fontsize=9, color=BLUE, **text)
         axes.text(x, y + FLOOR - 0.38, fill(says, 44), fontsize=6.5, **text)
         axes.text(x, y + 0.19, fill("  ".join(names), 50), fontsize=6, color=GREY, **text)
     return figure

@@ -20,12 +20,12 @@ from unittest.mock import patch
 
 import twodiscs
 from twodiscs import cli
+from twodiscs.arguments import Parser, run
 from twodiscs.comparison import check
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.configuration.schema import document, schema
-from twodiscs.pipeline.documents.numbers.table import PaperNumbers
-from twodiscs.studies.catalogue import STUDIES, TABLES
+from twodiscs_paper.catalogue import STUDIES, TABLES
+from twodiscs_paper.pipeline.configuration.schema import document, schema
+from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers
 
 INTRODUCTION = """\
 Tables are CSV files with one row per statement. Floats are written with all their digits,

@@ -15,11 +15,11 @@ from tempfile import TemporaryDirectory
 
 from PIL import Image
 
+from twodiscs.arguments import Parser, run
 from twodiscs.figures.kit import panels, style
-from twodiscs.pipeline.arguments import Parser, run
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.jobs.figure import ENTRIES, drawn
-from twodiscs.pipeline.jobs.study import read_tables
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.jobs.figure import ENTRIES, drawn
+from twodiscs_paper.pipeline.jobs.study import read_tables
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {

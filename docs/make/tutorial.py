@@ -13,7 +13,7 @@ from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
-from twodiscs.pipeline.arguments import Parser, run
+from twodiscs.arguments import Parser, run
 
 #: A block of Python, and the text beneath it.
 BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```text\n.*?```\n)?", re.DOTALL)

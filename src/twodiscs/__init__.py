@@ -402,7 +402,7 @@ def load(folder: str | PathLike[str]) -> dict[str, pd.DataFrame]:
     tables, and a table that is damaged. After a build
     ``td.plot(td.load("results/paper")["mean_times"])`` draws one of them.
     """
-    from twodiscs.pipeline.results import frames
+    from twodiscs.comparison import frames
 
     return frames.load(folder)
 

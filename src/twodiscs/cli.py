@@ -8,9 +8,10 @@ import sys
 import argcomplete
 
 import twodiscs
+from twodiscs.arguments import Parser, add_scene, number, run, scene_of, whole_number
 from twodiscs.model.checks import PRESETS, InputError, comma
 from twodiscs.model.events import EVENTS
-from twodiscs.pipeline.arguments import Parser, add_scene, number, run, scene_of, whole_number
+from twodiscs.model.plugins import plugin
 
 #: What the examples of ``--help`` are about.
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
@@ -126,9 +127,7 @@ def _seed(command):
 
 def _targets(**_):
     """Return what a shell proposes as a target."""
-    from twodiscs.pipeline.jobs.build import TARGETS
-
-    return TARGETS
+    return _build().TARGETS
 
 
 def _run(options):
@@ -147,8 +146,8 @@ def _build():
         raise InputError(
             f"twodiscs {sys.argv[1]} needs Snakemake: pip install '.[workflow]' in the repository"
         ) from None
-    from twodiscs.pipeline.jobs import build
-
+    if (build := plugin("build")) is None:
+        raise InputError(f"twodiscs {sys.argv[1]} needs the package twodiscs_paper")
     return build
 
 

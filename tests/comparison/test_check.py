@@ -16,9 +16,9 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
-from twodiscs.pipeline.results import verdict
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
+from twodiscs_paper.pipeline.results import verdict
 
 SCENE = BOX.scene(0.2)
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell

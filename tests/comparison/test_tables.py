@@ -17,8 +17,8 @@ from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, 
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost, Forecast
 from twodiscs.comparison.tables.exact import Theory
-from twodiscs.studies.catalogue import STUDY_TABLES
-from twodiscs.studies.effects.table import Benchmark
+from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs_paper.studies.effects.table import Benchmark
 
 EVERY_TABLE = SCENE_TABLES | STUDY_TABLES | {"forecast": Forecast, "benchmark": Benchmark}
 
@@ -258,13 +258,13 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
 @pytest.mark.parametrize(
     ("module", "absent"),
     [
-        ("comparison.scene_tables", ("numpy", "scipy", "pandas")),
-        ("theory.exact", ("numpy", "scipy", "pandas")),
-        ("pipeline.results.verdict", ("numpy", "scipy", "pandas")),
-        ("comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
+        ("twodiscs.comparison.scene_tables", ("numpy", "scipy", "pandas")),
+        ("twodiscs.theory.exact", ("numpy", "scipy", "pandas")),
+        ("twodiscs_paper.pipeline.results.verdict", ("numpy", "scipy", "pandas")),
+        ("twodiscs.comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
     ],
 )
 def test_imports_stay_light(module, absent):
-    code = f"import sys, twodiscs.{module}; print(*(m for m in {absent!r} if m in sys.modules))"
+    code = f"import sys, {module}; print(*(m for m in {absent!r} if m in sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == ""

@@ -8,7 +8,7 @@ import pytest
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.studies.stability import measure as stability
+from twodiscs_paper.studies.stability import measure as stability
 
 BOXES = [
     (1.5, 1.0), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1.0, 1.5), (1.98, 1.0), (100.0, 1.0),

@@ -16,8 +16,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.separations import draw_constants
-from twodiscs.studies.accuracy_cost import scalar
 from twodiscs.theory.exact import mean_times
+from twodiscs_paper.studies.accuracy_cost import scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
 

@@ -13,8 +13,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.studies.stability import measure as stability
 from twodiscs.theory.exact import mean_times, shell_expectation, volume
+from twodiscs_paper.studies.stability import measure as stability
 
 BOX = Box(1.5, 1.0)
 RADII = (0.05, 0.2, 0.24, 0.3, 0.38)

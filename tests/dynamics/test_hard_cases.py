@@ -14,7 +14,7 @@ from twodiscs.dynamics.trajectory import follow
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.stability.measure import advance, box_units, hard_radii
+from twodiscs_paper.studies.stability.measure import advance, box_units, hard_radii
 
 PAPER = Scene(1.5, 1.0, 0.2)
 BOXES = [(1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1e-6, 1e6), (1e6, 1e-6)]

@@ -11,7 +11,7 @@ from twodiscs.dynamics.trajectory import follow
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.stability import measure as stability
+from twodiscs_paper.studies.stability import measure as stability
 
 
 @pytest.mark.parametrize("sides", [(1.5, 1.0), (3.0, 1.0), (1e-3, 1.3e-3)])

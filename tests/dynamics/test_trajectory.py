@@ -10,8 +10,8 @@ from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states
-from twodiscs.studies.accuracy_cost import scalar
 from twodiscs.theory.exact import event_rate, mean_times
+from twodiscs_paper.studies.accuracy_cost import scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
 

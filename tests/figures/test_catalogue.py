@@ -17,8 +17,8 @@ from twodiscs.figures.kit.captions import Sentence, Shown
 from twodiscs.figures.kit.limits import LARGEST, limits
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs.theory.virial import weights
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 
 ALL = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
 QUANTITIES = {
@@ -31,10 +31,10 @@ EFFECTS = {"field": 1.5}
 
 
 def test_the_modules_that_draw_are_those_of_the_entries():
-    folder = Path(twodiscs.__file__).parent
+    folder = Path(twodiscs.__file__).parents[1]
     drawing = {
         ".".join(path.relative_to(folder).with_suffix("").parts)
-        for floor in ("figures", "studies")
+        for floor in ("twodiscs/figures", "twodiscs_paper/studies")
         for path in (folder / floor).rglob("*.py")
         for node in ast.parse(path.read_text(encoding="utf-8")).body
         if isinstance(node, ast.FunctionDef) and node.name == "draw"
@@ -45,7 +45,7 @@ def test_the_modules_that_draw_are_those_of_the_entries():
 @pytest.mark.parametrize("name", FIGURES | STUDY_FIGURES)
 def test_the_options_are_those_that_the_module_takes(name):
     entry = ALL[name]
-    signature(import_module(f"twodiscs.{entry.module}").draw).bind(None, tables={}, **entry.options)
+    signature(import_module(entry.module).draw).bind(None, tables={}, **entry.options)
 
 
 @pytest.mark.parametrize(
@@ -53,11 +53,11 @@ def test_the_options_are_those_that_the_module_takes(name):
 )
 def test_a_study_of_any_scenes_is_drawn_without_a_box(name):
     entry = ALL[name]
-    signature(import_module(f"twodiscs.{entry.module}").draw).bind(tables={}, **entry.options)
+    signature(import_module(entry.module).draw).bind(tables={}, **entry.options)
 
 
 def test_only_the_animation_animates():
-    assert callable(import_module(f"twodiscs.{ANIMATION.module}").animate)
+    assert callable(import_module(ANIMATION.module).animate)
     assert ANIMATION.tables == ("trajectory",)
     assert ANIMATION.is_called({"trajectory"})
     assert ANIMATION.is_called({"trajectory"}, {"discs": 3})
@@ -295,7 +295,7 @@ def test_scenes_with_effects_have_no_drawings_but_an_animation():
 
 
 def test_catalogues_are_quick_to_import():
-    code = "import sys, twodiscs.studies.catalogue; print(*sys.modules)"
+    code = "import sys, twodiscs_paper.catalogue; print(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
     assert "twodiscs.figures.catalogue" in loaded.split()
     assert not {"numpy", "matplotlib", "mpmath", "scipy", "numba"} & set(loaded.split())

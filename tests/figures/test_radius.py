@@ -13,7 +13,7 @@ from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
 
-OVER_RADIUS = [name for name, entry in FIGURES.items() if entry.module == "figures.radius"]
+OVER_RADIUS = [name for name, entry in FIGURES.items() if entry.module == "twodiscs.figures.radius"]
 
 
 @pytest.fixture(scope="module")

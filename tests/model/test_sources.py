@@ -58,14 +58,14 @@ CASES = {
 
 @pytest.fixture
 def place(monkeypatch):
-    """Return a function that makes a folder the package to be read, or forgets what was read."""
+    """Return a function that reads packages from a folder, or forgets what was read."""
 
     def look_at(folder):
-        monkeypatch.setattr(sources, "PACKAGE", folder)
+        monkeypatch.setattr(sources, "ROOT", folder)
         for known in (sources._file, sources._imports, sources._read, sources.fingerprint):
             known.cache_clear()
 
-    real = sources.PACKAGE
+    real = sources.ROOT
     yield look_at
     look_at(real)
 
@@ -76,43 +76,60 @@ def package(tmp_path, place):
     for name, text in MODULES.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
-    place(root)
+    place(tmp_path)
     return root
 
 
 @pytest.mark.parametrize("module", CASES)
 def test_imports_are_followed(package, module):
     expected = {f"{name}.py" for name in CASES[module]}
-    found = sources.imported(module)
+    found = sources.imported(f"twodiscs.{module}")
     assert {path.relative_to(package).as_posix() for path in found} == expected
     assert found == sorted(found)
 
 
-@pytest.mark.parametrize("module", ["", "nothing", "pack.nothing", "..alone", "alone.py", None, 3])
+@pytest.mark.parametrize(
+    "module",
+    [
+        "",
+        "alone",
+        "twodiscs.nothing",
+        "twodiscs.pack.nothing",
+        "..alone",
+        "twodiscs.alone.py",
+        "os",
+        None,
+        3,
+    ],
+)
 def test_unknown_module_is_an_error(package, module):
     for function in (sources.imported, sources.fingerprint):
-        with pytest.raises(ValueError, match="module must be a module of twodiscs"):
+        with pytest.raises(
+            ValueError, match="module must be a module of twodiscs or twodiscs_paper"
+        ):
             function(module)
 
 
 def test_modules_are_left_out_with_what_only_they_import(package):
-    found = sources.imported("chain", "pack.inner", without=["pack"])
+    found = sources.imported("twodiscs.chain", "twodiscs.pack.inner", without=["twodiscs.pack"])
     assert {path.relative_to(package).as_posix() for path in found} == {
         *("chain.py", "absolute.py", "alone.py", "pack/inner.py", "pack/sibling.py"),
     }
-    assert sources.imported("chain", without=["alone", "helper"]) == sources.imported(
-        "chain", without=["alone"]
-    )
-    with pytest.raises(ValueError, match="module must be a module of twodiscs, not 'nothing'"):
-        sources.imported("chain", without=["nothing"])
+    both = sources.imported("twodiscs.chain", without=["twodiscs.alone", "twodiscs.helper"])
+    assert both == sources.imported("twodiscs.chain", without=["twodiscs.alone"])
+    with pytest.raises(ValueError, match=r"module must be a module of .*, not 'nothing'"):
+        sources.imported("twodiscs.chain", without=["nothing"])
 
 
 def test_modules_and_what_the_code_of_one_imports(package):
-    assert sources.modules()[:2] == [(), ("absolute",)]
-    assert {("pack",), ("pack", "inner")} < {*sources.modules()}
+    assert sources.modules()[:2] == [("twodiscs",), ("twodiscs", "absolute")]
+    assert {("twodiscs", "pack"), ("twodiscs", "pack", "inner")} < {*sources.modules()}
     assert len(sources.modules()) == len(MODULES)
     # Its parents are imported too, but not by its code.
-    assert sorted(sources.imports_of(("pack", "inner"))) == [("alone",), ("pack", "sibling")]
+    assert sorted(sources.imports_of(("twodiscs", "pack", "inner"))) == [
+        ("twodiscs", "alone"),
+        ("twodiscs", "pack", "sibling"),
+    ]
 
 
 # Fingerprints -------------------------------------------------------------------------------------
@@ -181,8 +198,8 @@ def print_of(package, place):
 
     def fingerprint(text):
         (package / "alone.py").write_text(text, encoding="utf-8")
-        place(package)
-        return sources.fingerprint("chain")
+        place(package.parent)
+        return sources.fingerprint("twodiscs.chain")
 
     return fingerprint
 
@@ -201,12 +218,12 @@ def test_what_is_code_changes_the_fingerprint(print_of, old, new):
 
 def test_fingerprints_follow_imports_and_names_and_see_no_time_stamps(package, place):
     def now(*modules):
-        place(package)
-        return sources.fingerprint(*modules)
+        place(package.parent)
+        return sources.fingerprint(*(f"twodiscs.{module}" for module in modules))
 
     before = {name: now(name) for name in CASES}
     assert len(before["chain"]) == 16
-    assert sources.fingerprint("chain", without=("alone",)) != before["chain"]
+    assert sources.fingerprint("twodiscs.chain", without=("twodiscs.alone",)) != before["chain"]
     assert now("chain", "absolute") == now("absolute", "chain") == before["chain"]
     os.utime(package / "alone.py", (1, 1))
     assert {name: now(name) for name in CASES} == before
@@ -233,19 +250,21 @@ def without_comments(text):
 
 
 def all_modules():
-    return [".".join(name) for name in sources.modules() if name]
+    return [".".join(name) for name in sources.modules()]
 
 
 def test_no_comment_of_this_package_is_taken_for_code(tmp_path, place):
     """A second method: here the tokenizer finds the comments, there it is the syntax tree."""
-    before, copy = sources.fingerprint(*all_modules()), tmp_path / "twodiscs"
-    shutil.copytree(sources.PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    before = sources.fingerprint(*all_modules())
+    for name in sources.PACKAGES:
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(sources.ROOT / name, tmp_path / name, ignore=ignored)
     cut = 0
-    for path in copy.rglob("*.py"):
+    for path in tmp_path.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         path.write_text(without_comments(text), encoding="utf-8")
         cut += without_comments(text) != text
-    place(copy)
+    place(tmp_path)
     assert cut > 20
     assert sources.fingerprint(*all_modules()) == before
 
@@ -272,7 +291,7 @@ def test_fingerprints_are_the_same_for_another_version_of_python():
     )
     run = subprocess.run(
         [python, "-c", code, *all_modules()],
-        env=os.environ | {"PYTHONPATH": str(sources.PACKAGE.parent)},
+        env=os.environ | {"PYTHONPATH": str(sources.ROOT)},
         capture_output=True,
         text=True,
         check=True,
@@ -288,8 +307,8 @@ def test_what_python_really_imports_is_listed():
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {Path(name).resolve() for name in run.stdout.split()}
-    face = sources.PACKAGE / "__init__.py"
-    assert loaded <= {face, *sources.imported("dynamics.counting")}
+    face = sources.ROOT / "twodiscs" / "__init__.py"
+    assert loaded <= {face, *sources.imported("twodiscs.dynamics.counting")}
 
 
 def test_standard_library_only():
@@ -299,7 +318,7 @@ def test_standard_library_only():
             sys.executable,
             "-S",
             "-c",
-            f"import sys; sys.path.insert(0, {str(sources.PACKAGE.parent)!r}); {code}",
+            f"import sys; sys.path.insert(0, {str(sources.ROOT)!r}); {code}",
         ],
         capture_output=True,
         text=True,

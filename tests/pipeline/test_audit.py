@@ -3,12 +3,12 @@
 import pytest
 from fabricated import BOX, command
 
+from twodiscs.comparison.digests import write_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.digests import write_json
-from twodiscs.pipeline.jobs.point import monte_carlo
-from twodiscs.pipeline.jobs.table import rows_of
-from twodiscs.pipeline.results import audit, manifest
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.jobs.point import monte_carlo
+from twodiscs_paper.pipeline.jobs.table import rows_of
+from twodiscs_paper.pipeline.results import audit, manifest
 
 CONFIGURATION = {
     "scenes": [

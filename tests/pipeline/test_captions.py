@@ -4,8 +4,8 @@ import pytest
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.pipeline.documents.captions import caption, said
-from twodiscs.studies.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.pipeline.documents.captions import caption, said
 
 ENTRIES, TABLES = FIGURES | STUDY_FIGURES, SCENE_TABLES | STUDY_TABLES
 SCENE = {"name": "one", "width": 1.5, "height": 1.0}

@@ -19,10 +19,10 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline.configuration import load, schema
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.configuration.request import STAGES, Watch
-from twodiscs.studies.catalogue import STUDIES
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration import load, schema
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.configuration.request import STAGES, Watch
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -119,7 +119,7 @@ def test_every_effect_is_a_key_with_its_meaning_range_and_default():
 
 def test_reading_a_configuration_needs_no_numerical_package():
     code = (
-        "import sys; from twodiscs.pipeline.configuration import load, reading;"
+        "import sys; from twodiscs_paper.pipeline.configuration import load, reading;"
         "load.load(reading.read('config/config.yaml'));"
         "print({'numpy', 'pandas', 'numba', 'scipy', 'matplotlib'} & set(sys.modules))"
     )

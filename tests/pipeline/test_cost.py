@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twodiscs.pipeline import cost
-from twodiscs.pipeline.configuration.load import load
+from twodiscs_paper.pipeline import cost
+from twodiscs_paper.pipeline.configuration.load import load
 
 
 def scene(**keys):
@@ -100,7 +100,7 @@ def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
 
 
 def test_the_limit_of_a_study_grows_with_what_is_asked_of_it():
-    from twodiscs.studies.catalogue import STUDIES
+    from twodiscs_paper.catalogue import STUDIES
 
     def limit(seconds):
         configuration = load({"accuracy_cost": {"seconds": seconds}, "scenes": [BLOCK]})

@@ -7,10 +7,10 @@ import pytest
 from checkout import REPOSITORY
 from fabricated import BOX, command
 
-from twodiscs.pipeline.arguments import box_arguments
-from twodiscs.pipeline.digests import digest
-from twodiscs.pipeline.documents import crate
-from twodiscs.pipeline.jobs import figure, table
+from twodiscs.arguments import box_arguments
+from twodiscs.comparison.digests import digest
+from twodiscs_paper.pipeline.documents import crate
+from twodiscs_paper.pipeline.jobs import figure, table
 
 pytest.importorskip("rocrate", reason="rocrate, of the extra workflow, is not installed")
 

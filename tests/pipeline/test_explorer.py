@@ -16,8 +16,8 @@ from checkout import REPOSITORY
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
-from twodiscs.pipeline.documents import explorer
 from twodiscs.theory import exact
+from twodiscs_paper.pipeline.documents import explorer
 
 SOURCES = REPOSITORY / "workflow" / "explorer"
 PARTS = [path for path in SOURCES.rglob("*") if path.is_file()]

@@ -9,9 +9,9 @@ import pytest
 from twodiscs.figures.catalogue import FIGURES, NOTES
 from twodiscs.figures.kit import style
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.documents import manuscript
-from twodiscs.pipeline.documents.numbers.rounding import Number
-from twodiscs.studies.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.pipeline.documents import manuscript
+from twodiscs_paper.pipeline.documents.numbers.rounding import Number
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()

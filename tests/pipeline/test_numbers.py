@@ -8,16 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from twodiscs.comparison.digests import read_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.digests import read_json
-from twodiscs.pipeline.documents.numbers import (
+from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.documents.numbers import (
     agreement,
     costs,
     distributions,
@@ -27,7 +28,6 @@ from twodiscs.pipeline.documents.numbers import (
     rounding,
     table,
 )
-from twodiscs.studies.catalogue import STUDY_TABLES
 
 SOURCE = (Path(__file__).resolve().parents[2] / "paper" / "paper.typ").read_text()
 TABLES = SCENE_TABLES | STUDY_TABLES

@@ -6,7 +6,7 @@ from pictures import HEIGHT, PANELS, WHOLE, alone
 
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
-from twodiscs.studies.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import STUDY_FIGURES
 
 
 def test_pictures_are_of_figures_that_there_are():

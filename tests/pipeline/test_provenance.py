@@ -3,7 +3,7 @@
 import re
 import subprocess
 
-from twodiscs.pipeline.results import provenance
+from twodiscs_paper.pipeline.results import provenance
 
 
 def git(folder, *words):

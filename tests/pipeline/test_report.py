@@ -9,7 +9,7 @@ from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 from PIL import Image, ImageDraw
 
-from twodiscs.pipeline.documents.report import (
+from twodiscs_paper.pipeline.documents.report import (
     KEY,
     KEY_OF_ALL,
     contents,
@@ -19,7 +19,7 @@ from twodiscs.pipeline.documents.report import (
     rules,
     short,
 )
-from twodiscs.pipeline.results.verdict import summary
+from twodiscs_paper.pipeline.results.verdict import summary
 
 DOT = """digraph snakemake_dag {
     graph[bgcolor=white, margin=0];

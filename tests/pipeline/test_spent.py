@@ -3,7 +3,7 @@
 import pytest
 
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.results.spent import main, spent
+from twodiscs_paper.pipeline.results.spent import main, spent
 
 HEAD = "s\th:m:s\tmax_rss\tmax_vms\tcpu_time\n"
 

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
+from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.comparison.tables.monte_carlo import Areas
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.digests import read_json, write_json
-from twodiscs.pipeline.results import verify
-from twodiscs.pipeline.results.manifest import is_reproducible, manifest
-from twodiscs.studies.catalogue import STUDIES
-from twodiscs.studies.stability.table import Stability
-from twodiscs.studies.thresholds.table import Thresholds
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.pipeline.results import verify
+from twodiscs_paper.pipeline.results.manifest import is_reproducible, manifest
+from twodiscs_paper.studies.stability.table import Stability
+from twodiscs_paper.studies.thresholds.table import Thresholds
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 

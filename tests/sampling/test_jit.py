@@ -130,7 +130,7 @@ def test_where_one_folder_cannot_be_made_another_is_taken_or_a_sentence_says_so(
     blocked = sources.parent / "file"
     blocked.touch()
     environment |= {"NUMBA_CACHE_DIR": str(blocked / "below")}
-    name = f"kernels-{fingerprint('sampling.streams')}"
+    name = f"kernels-{fingerprint('twodiscs.sampling.streams')}"
     assert cache_folder(environment) == sources / "__pycache__" / name
     shutil.rmtree(sources / "__pycache__")
     (sources / "__pycache__").touch()

@@ -10,10 +10,10 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.studies.accuracy_cost import figure, figure_by_radius, scalar
-from twodiscs.studies.accuracy_cost import measure as accuracy_cost
-from twodiscs.studies.accuracy_cost.table import AccuracyCost
 from twodiscs.theory import exact
+from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar
+from twodiscs_paper.studies.accuracy_cost import measure as accuracy_cost
+from twodiscs_paper.studies.accuracy_cost.table import AccuracyCost
 
 PAPER = Scene(1.5, 1.0, 0.2)
 AREA = accuracy_cost.AREA

@@ -9,19 +9,22 @@ from types import SimpleNamespace
 
 import pytest
 
-import twodiscs.studies
+import twodiscs_paper
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.base import Table
 from twodiscs.figures.catalogue import FIGURES, Entry
 from twodiscs.model.effects import EFFECTS
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.studies import catalogue
-from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
-from twodiscs.studies.effects.table import Benchmark
+from twodiscs_paper import catalogue
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.studies.effects.table import Benchmark
 
 CONFIG = Path(__file__).parents[2] / "config"
-FOLDERS = {path.parent.name for path in Path(twodiscs.studies.__path__[0]).glob("*/table.py")}
+PACKAGE = Path(twodiscs_paper.__file__).parent
+FOLDERS = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("**/table.py")}
+FOLDERS = {".".join(folder.parts) for folder in FOLDERS if folder.parts[0] != "pipeline"}
+
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 
 #: What a job hands on of itself, if the function takes it.
@@ -41,7 +44,8 @@ def test_every_effect_has_a_scene(default):
 
 @pytest.mark.parametrize("folder", sorted(FOLDERS))
 def test_every_study_has_tests(folder):
-    assert Path(__file__).with_name(f"test_{folder}.py").exists()
+    *_, name = folder.split(".")
+    assert (Path(__file__).parents[1] / folder.split(".")[0] / f"test_{name}.py").exists()
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +65,15 @@ def test_only_long_runs_are_built_when_asked_for():
 
 
 def test_every_folder_and_every_table_has_its_study():
-    modules = {study.tables[0].__module__.split(".")[2] for study in STUDIES.values()}
+    modules = {
+        study.tables[0].__module__.removeprefix("twodiscs_paper.").removesuffix(".table")
+        for study in STUDIES.values()
+    }
     assert modules == FOLDERS
     declared = [
         value
         for folder in FOLDERS
-        for value in vars(import_module(f"twodiscs.studies.{folder}.table")).values()
+        for value in vars(import_module(f"twodiscs_paper.{folder}.table")).values()
         if isinstance(value, type) and issubclass(value, Table) and value is not Table
     ]
     assert set(declared) == {Benchmark, *STUDY_TABLES.values()}
@@ -76,10 +83,11 @@ def test_every_folder_and_every_table_has_its_study():
 
 def test_a_folder_that_declares_a_study_is_enough(tmp_path, monkeypatch):
     """And studies stand in their order, those of the same by name."""
-    (tmp_path / "waits").mkdir()
-    (tmp_path / "waits" / "study.py").touch()
+    (tmp_path / "studies" / "waits").mkdir(parents=True)
+    (tmp_path / "studies" / "waits" / "study.py").touch()
     first = dataclasses.replace(STUDIES["errata"], name="waits", order=2)
-    modules = {"twodiscs.studies.waits.study": SimpleNamespace(STUDY=first, other=3)}
+    modules = {"twodiscs_paper.studies.waits.study": SimpleNamespace(STUDY=first, other=3)}
+    modules["twodiscs_paper.errata.study"] = SimpleNamespace()
     monkeypatch.setattr(catalogue, "__file__", str(tmp_path / "catalogue.py"))
     monkeypatch.setattr(catalogue, "import_module", modules.__getitem__)
     assert list(catalogue._declared()) == [first]
@@ -161,8 +169,8 @@ def test_figures_are_drawn_from_tables_of_the_study_or_of_one_before(study):
     names = list(STUDY_TABLES)
     known = names[: names.index(study.tables[-1].name()) + 1]
     for entry in study.figures.values():
-        assert callable(import_module(f"twodiscs.{entry.module}").draw)
-        assert entry.module.startswith(f"studies.{study.name}.")
+        assert callable(import_module(entry.module).draw)
+        assert entry.module.startswith(f"twodiscs_paper.studies.{study.name}.")
         assert set(entry.tables) <= set(known)
         assert {table.name() for table in study.tables} <= set(entry.tables)
         assert not entry.needs

@@ -18,12 +18,12 @@ from twodiscs.dynamics import intervals
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.studies.distributions import figure
-from twodiscs.studies.distributions import measure as distributions
-from twodiscs.studies.distributions.table import Distributions
-from twodiscs.studies.tails.measure import tail
-from twodiscs.studies.thresholds import figure as thresholds_figure
 from twodiscs.theory import tails
+from twodiscs_paper.studies.distributions import figure
+from twodiscs_paper.studies.distributions import measure as distributions
+from twodiscs_paper.studies.distributions.table import Distributions
+from twodiscs_paper.studies.tails.measure import tail
+from twodiscs_paper.studies.thresholds import figure as thresholds_figure
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)

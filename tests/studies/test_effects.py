@@ -10,7 +10,6 @@ from fabricated import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
-from twodiscs import benchmark
 from twodiscs.comparison import estimates
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
@@ -22,15 +21,16 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.effects import figure
-from twodiscs.studies.effects import measure as effects
-from twodiscs.studies.effects.study import SCENES
-from twodiscs.studies.effects.table import Effects, EffectsCost
 from twodiscs.theory import exact, tails
+from twodiscs_paper import benchmark
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.studies.effects import figure
+from twodiscs_paper.studies.effects import measure as effects
+from twodiscs_paper.studies.effects.study import SCENES
+from twodiscs_paper.studies.effects.table import Effects, EffectsCost
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]

@@ -2,8 +2,8 @@
 
 import pytest
 
-from twodiscs.studies.more_discs import figure, measure
-from twodiscs.studies.more_discs.table import MoreDiscs
+from twodiscs_paper.studies.more_discs import figure, measure
+from twodiscs_paper.studies.more_discs.table import MoreDiscs
 
 
 @pytest.fixture(scope="module")

@@ -20,9 +20,9 @@ from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.many import Gas
 from twodiscs.sampling.starts import state_in
-from twodiscs.studies.passages import exclusion, figure, file, measure
-from twodiscs.studies.passages.table import Passages
 from twodiscs.theory import exact
+from twodiscs_paper.studies.passages import exclusion, figure, file, measure
+from twodiscs_paper.studies.passages.table import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
 

@@ -8,8 +8,8 @@ import pytest
 from twodiscs.dynamics import counting, ensemble, law
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
-from twodiscs.studies.accuracy_cost import precision, scalar
 from twodiscs.theory import exact
+from twodiscs_paper.studies.accuracy_cost import precision, scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
 

@@ -16,10 +16,10 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
-from twodiscs.studies.stability import figure
-from twodiscs.studies.stability import measure as stability
-from twodiscs.studies.stability.table import LongRuns, Stability
 from twodiscs.theory import exact
+from twodiscs_paper.studies.stability import figure
+from twodiscs_paper.studies.stability import measure as stability
+from twodiscs_paper.studies.stability.table import LongRuns, Stability
 
 PAPER = Box(1.5, 1.0)
 BOXES = [

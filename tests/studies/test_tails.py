@@ -19,11 +19,11 @@ from twodiscs.model.events import HOPS
 from twodiscs.sampling import starts
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.tails import figure
-from twodiscs.studies.tails import measure as tails
-from twodiscs.studies.tails.table import Tails
 from twodiscs.theory import exact
 from twodiscs.theory.tails import tail_constant
+from twodiscs_paper.studies.tails import figure
+from twodiscs_paper.studies.tails import measure as tails
+from twodiscs_paper.studies.tails.table import Tails
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)

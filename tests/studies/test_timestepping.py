@@ -8,8 +8,8 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
-from twodiscs.studies.accuracy_cost import scalar, timestepping
 from twodiscs.theory import exact
+from twodiscs_paper.studies.accuracy_cost import scalar, timestepping
 
 PAPER = Scene(1.5, 1.0, 0.2)
 

@@ -174,7 +174,7 @@ def fresh(path):
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    checkout.replace("src/twodiscs/studies/passages/measure.py", *DISTANCES)
+    checkout.replace("src/twodiscs_paper/studies/passages/measure.py", *DISTANCES)
     return checkout
 
 

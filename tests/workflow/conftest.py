@@ -26,7 +26,7 @@ def complete(tmp_path_factory):
     """A checkout in which everything is built, not to be changed."""
     checkout = fresh(tmp_path_factory.mktemp("complete") / "checkout")
     scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
-    checkout.replace("src/twodiscs/studies/effects/study.py", scenes, repr(EFFECTS))
+    checkout.replace("src/twodiscs_paper/studies/effects/study.py", scenes, repr(EFFECTS))
     checkout.snakemake("--cores", "2")
     return checkout
 

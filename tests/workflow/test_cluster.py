@@ -87,7 +87,7 @@ def kill_a_job(jobs):
             with suppress(psutil.NoSuchProcess, ValueError):
                 job = psutil.Process(int(file.read_text()))
                 processes = [job, *job.children(recursive=True)]
-                if any("twodiscs.pipeline.jobs.point" in one.cmdline() for one in processes):
+                if any("twodiscs_paper.pipeline.jobs.point" in one.cmdline() for one in processes):
                     for one in processes:
                         with suppress(psutil.NoSuchProcess):
                             one.kill()

@@ -1,6 +1,6 @@
 """Effects as a target: the mean times of the scenes of config/scenes, and what is made of them."""
 
-from twodiscs.studies.effects.study import SCENES
+from twodiscs_paper.studies.effects.study import SCENES
 
 FILES = sorted(SCENES)
 FIGURE = ("shared_figure", ("figure=effects",))

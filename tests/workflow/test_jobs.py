@@ -98,7 +98,7 @@ def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
 
 
 def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
-    built.edit("src/twodiscs/studies/tails/table.py", CODE)
+    built.edit("src/twodiscs_paper/studies/tails/table.py", CODE)
     jobs = built.jobs()
     assert {*expected(("tails_table",), ("shared_figure", "figure=tails"))} <= {*jobs}
     assert {rule for rule, _ in jobs} == {rule for rule, *_ in DOCUMENTS} | {
@@ -108,7 +108,7 @@ def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
 
 def test_edit_of_a_caption_counts_nothing_again(built):
     built.replace(
-        "src/twodiscs/studies/distributions/study.py", "How often a hop", "How often hops"
+        "src/twodiscs_paper/studies/distributions/study.py", "How often a hop", "How often hops"
     )
     jobs = built.jobs()
     assert ("shared_figure", ("figure=distributions",)) in jobs

@@ -30,7 +30,7 @@ def processes(folder):
                     found[int(entry.name)] = file.read().replace("\0", " ")
         except OSError:
             continue
-    return {pid: line for pid, line in found.items() if "-m twodiscs.pipeline.jobs." in line}
+    return {pid: line for pid, line in found.items() if "-m twodiscs_paper.pipeline.jobs." in line}
 
 
 def wait_until(condition, seconds=300):

@@ -15,8 +15,8 @@ from browser import ABSENT, BROWSER
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
-from twodiscs.pipeline.documents.captions import caption
-from twodiscs.studies.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.pipeline.documents.captions import caption
 
 #: The scene that figures of no scene are about.
 SIX = {"name": "six", "width": 1.5, "height": 1.0}

@@ -6,10 +6,10 @@ from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.events import HOPS, WALLS
-from twodiscs.pipeline.configuration.load import load
-from twodiscs.pipeline.configuration.reading import read
-from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.studies.catalogue import STUDIES
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.configuration.request import STAGES
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}

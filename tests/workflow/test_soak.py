@@ -17,8 +17,8 @@ import pytest
 import yaml
 from checkout import Checkout
 
-from twodiscs.pipeline.results.audit import of_points
-from twodiscs.pipeline.results.manifest import is_reproducible
+from twodiscs_paper.pipeline.results.audit import of_points
+from twodiscs_paper.pipeline.results.manifest import is_reproducible
 
 BUILD = {
     "shared": [],

@@ -11,7 +11,7 @@ from checkout import REPOSITORY
 
 import twodiscs
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.studies.catalogue import STUDIES
+from twodiscs_paper.catalogue import STUDIES
 
 #: They build nothing.
 WITHOUT_OUTPUT = ("verify", "forecast", "audit")

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from twodiscs.pipeline.digests import read_json, write_json
+from twodiscs.comparison.digests import read_json, write_json
 
 
 def test_verification_is_one_job_whatever_there_is(unbuilt):
@@ -36,7 +36,7 @@ def test_the_manifest_tells_what_is_there(complete):
 
 def test_what_differs_is_said_and_nothing_is_built(built):
     written = subprocess.run(
-        [sys.executable, "-m", "twodiscs.pipeline.results.verify", "--write"],
+        [sys.executable, "-m", "twodiscs_paper.pipeline.results.verify", "--write"],
         cwd=built.path,
         env=os.environ | {"PYTHONPATH": str(built.path / "src")},
         check=False,

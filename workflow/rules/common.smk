@@ -6,13 +6,18 @@ from dataclasses import replace
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
-from twodiscs.pipeline.arguments import box_arguments, word, words
-from twodiscs.pipeline.configuration.files import GATHERED, Files, assigned, braced
-from twodiscs.pipeline.configuration.request import STAGES
-from twodiscs.pipeline.jobs.figure import ENTRIES
+from twodiscs.arguments import box_arguments, word, words
+from twodiscs_paper.pipeline.configuration.files import (
+    GATHERED,
+    Files,
+    assigned,
+    braced,
+)
+from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.pipeline.jobs.figure import ENTRIES
 from twodiscs.model.sources import fingerprint
-from twodiscs.studies.catalogue import STUDIES, STUDY_FIGURES
-from twodiscs.studies.effects.study import SCENES as EFFECTS
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
+from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 
@@ -72,7 +77,11 @@ def code(*modules, without=()):
 
     Catalogues are left out: of them a job uses the entry that its parameters name.
     """
-    catalogues = ("figures.catalogue", "studies.catalogue", "comparison.scene_tables")
+    catalogues = (
+        "twodiscs.figures.catalogue",
+        "twodiscs_paper.catalogue",
+        "twodiscs.comparison.scene_tables",
+    )
     return fingerprint(*modules, without=(*catalogues, *without))
 
 
@@ -105,7 +114,10 @@ def work_of(stage):
 
 # The module of each stage is imported by its own jobs alone.
 POINT = {
-    stage: code("pipeline.jobs.point", without=tuple({*STAGES.values()} - {module}))
+    stage: code(
+        "twodiscs_paper.pipeline.jobs.point",
+        without=tuple({*STAGES.values()} - {module}),
+    )
     for stage, module in STAGES.items()
 }
 
@@ -129,7 +141,11 @@ def radius_of(w):
 
 def figure_code(w):
     """Return the fingerprint of the code that draws a figure."""
-    return code("pipeline.jobs.figure", "figures.kit.style", ENTRIES[w.figure].module)
+    return code(
+        "twodiscs_paper.pipeline.jobs.figure",
+        "twodiscs.figures.kit.style",
+        ENTRIES[w.figure].module,
+    )
 
 
 def figure_tables(w, input):

@@ -1,6 +1,6 @@
 # What is made of all results: the manuscript, the report, fingerprints and the comparison with what is
 # expected; and what is measured of this machine, a forecast and the speed of the engines.
-from twodiscs.pipeline.results.manifest import is_reproducible
+from twodiscs_paper.pipeline.results.manifest import is_reproducible
 
 if MAIN:
 
@@ -49,9 +49,9 @@ if MAIN:
             ),
             seed=CONFIGURATION.seed,
             configuration=FILES.configuration_hash(),
-            code=code("pipeline.documents.manuscript"),
+            code=code("twodiscs_paper.pipeline.documents.manuscript"),
         shell:
-            "python -m twodiscs.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
+            "python -m twodiscs_paper.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
             " {input.studied} --template {input.template} --boxes {params.boxes} --seed {params.seed}"
             " --long-run {input.long_run} --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
             " > {log} 2>&1"
@@ -93,13 +93,13 @@ rule report:
     params:
         configuration=json.dumps(config, indent=1, sort_keys=True),
         scenes=json.dumps(FILES.report()),
-        code=code("pipeline.documents.report"),
+        code=code("twodiscs_paper.pipeline.documents.report"),
     shell:
         "{{ printf '%s\\n' {params.configuration:q} > {output.configuration};"
         ' again() {{ snakemake --snakefile "$TWODISCS_SNAKEFILE" --nolock --workflow-profile none'
         ' "$@" --configfile {output.configuration} -- {input.results}; }};'
         " again --report {output.workflow} --report-stylesheet {input.style} & whole=$!;"
-        " again --rulegraph dot | python -m twodiscs.pipeline.documents.report {input.results}"
+        " again --rulegraph dot | python -m twodiscs_paper.pipeline.documents.report {input.results}"
         " --template {input.front} --scenes {params.scenes:q} --workflow report-workflow.html"
         " --output {output.html} && wait $whole; }} > {log} 2>&1"
 
@@ -116,9 +116,9 @@ rule manifest:
         f"{RESULTS}/benchmarks/manifest.tsv"
     localrule: True
     params:
-        code=code("pipeline.results.manifest"),
+        code=code("twodiscs_paper.pipeline.results.manifest"),
     shell:
-        "python -m twodiscs.pipeline.results.manifest {input.files} --output {output.manifest}"
+        "python -m twodiscs_paper.pipeline.results.manifest {input.files} --output {output.manifest}"
         " > {log} 2>&1"
 
 
@@ -135,9 +135,9 @@ rule provenance:
     localrule: True
     params:
         sources=os.path.dirname(source("CITATION.cff")) or ".",
-        code=code("pipeline.results.provenance"),
+        code=code("twodiscs_paper.pipeline.results.provenance"),
     shell:
-        "python -m twodiscs.pipeline.results.provenance {input.files} --sources {params.sources}"
+        "python -m twodiscs_paper.pipeline.results.provenance {input.files} --sources {params.sources}"
         " --output {output.json} > {log} 2>&1"
 
 
@@ -154,8 +154,8 @@ rule explorer:
             source(f"workflow/explorer/{name}")
             for name in (
                 "explorer.html",
-                "theory.js",
-                "dynamics.js",
+                "twodiscs.theory.js",
+                "twodiscs.dynamics.js",
                 "page.js",
                 "uPlot/uPlot.iife.min.js",
                 "uPlot/uPlot.min.css",
@@ -172,9 +172,9 @@ rule explorer:
     params:
         scenes=json.dumps(FILES.report()),
         seed=CONFIGURATION.seed,
-        code=code("pipeline.documents.explorer"),
+        code=code("twodiscs_paper.pipeline.documents.explorer"),
     shell:
-        "python -m twodiscs.pipeline.documents.explorer {input.tables} --parts {input.parts}"
+        "python -m twodiscs_paper.pipeline.documents.explorer {input.tables} --parts {input.parts}"
         " --scenes {params.scenes:q} --seed {params.seed} --output {output.html} > {log} 2>&1"
 
 
@@ -201,9 +201,9 @@ rule crate:
         f"{RESULTS}/benchmarks/crate.tsv"
     localrule: True
     params:
-        code=code("pipeline.documents.crate"),
+        code=code("twodiscs_paper.pipeline.documents.crate"),
     shell:
-        "python -m twodiscs.pipeline.documents.crate {input.files} {input.provenance} --provenance {input.provenance}"
+        "python -m twodiscs_paper.pipeline.documents.crate {input.files} {input.provenance} --provenance {input.provenance}"
         " --citation {input.citation} --texts {input.texts} --output {output.json} > {log} 2>&1"
 
 
@@ -219,7 +219,7 @@ rule audit:
     params:
         configuration=json.dumps(config, sort_keys=True),
     shell:
-        "python -m twodiscs.pipeline.results.audit --results $(dirname $(dirname {log}))"
+        "python -m twodiscs_paper.pipeline.results.audit --results $(dirname $(dirname {log}))"
         " --configuration {params.configuration:q} 2> {log}"
 
 
@@ -233,7 +233,7 @@ rule verify:
         # What is expected does not come with a wheel: there it says so.
         expected=os.path.join(os.path.dirname(source("paper/paper.typ")), "expected"),
     shell:
-        "python -m twodiscs.pipeline.results.verify --results $(dirname $(dirname {log}))"
+        "python -m twodiscs_paper.pipeline.results.verify --results $(dirname $(dirname {log}))"
         " --expected {params.expected} --configuration {params.configuration:q} 2> {log}"
 
 
@@ -246,7 +246,7 @@ rule forecast:
     params:
         configuration=json.dumps(config, sort_keys=True),
     shell:
-        "python -m twodiscs.pipeline.forecast --configuration {params.configuration:q}"
+        "python -m twodiscs_paper.pipeline.forecast --configuration {params.configuration:q}"
         " --cores {threads} --output $(dirname $(dirname {log}))/forecast.csv 2> {log}"
 
 
@@ -263,6 +263,6 @@ rule benchmark:
     localrule: True
     threads: 64  # all that there are: it must run alone
     params:
-        code=code("benchmark"),
+        code=code("twodiscs_paper.benchmark"),
     shell:
-        "python -m twodiscs.benchmark --scenes {input.scenes} --output {output.table} > {log} 2>&1"
+        "python -m twodiscs_paper.benchmark --scenes {input.scenes} --output {output.table} > {log} 2>&1"

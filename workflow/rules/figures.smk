@@ -40,7 +40,7 @@ for name, folder, entries in (
             options=lambda w: str(ENTRIES[w.figure].options),
             code=figure_code,
         shell:
-            "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
+            "python -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
             " --tables {params.tables} --origin '{params.origin}, code {params.code}'"
             " --output {output.pdf} {output.png} > {log} 2>&1"
 
@@ -72,7 +72,7 @@ rule animate:
         caption=caption,
         code=figure_code,
     shell:
-        "python -m twodiscs.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
+        "python -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"
         " --tables {params.tables} --output {output.gif} {output.png} > {log} 2>&1"
 
 

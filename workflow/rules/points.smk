@@ -16,9 +16,11 @@ rule exact:
     params:
         box=box,
         radii=lambda w: word(SCENES[w.scene].exact_radii(w.table)),
-        code=code("pipeline.jobs.table", "comparison.tables.exact"),
+        code=code(
+            "twodiscs_paper.pipeline.jobs.table", "twodiscs.comparison.tables.exact"
+        ),
     shell:
-        "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --radii {params.radii}"
+        "python -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box} --radii {params.radii}"
         " --output {output.table} > {log} 2>&1"
 
 
@@ -46,7 +48,7 @@ for stage in STAGES:
             shards=lambda w, input: braced(input.shards),
             code=POINT[stage],
         shell:
-            "python -m twodiscs.pipeline.jobs.point {params.stage} {params.box} --radius {wildcards.radius}"
+            "python -m twodiscs_paper.pipeline.jobs.point {params.stage} {params.box} --radius {wildcards.radius}"
             " {params.work} --shards {params.shards} --output {output.point} > {log} 2>&1"
 
 
@@ -65,7 +67,7 @@ rule shard:
         work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
         code=lambda w: POINT[w.stage],
     shell:
-        "python -m twodiscs.pipeline.jobs.point {wildcards.stage} {params.box} --radius {wildcards.radius}"
+        "python -m twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box} --radius {wildcards.radius}"
         " {params.work} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
         " --output {output.shard} > {log} 2>&1"
 
@@ -82,7 +84,10 @@ rule trajectory:
         box=box,
         radius=lambda w: SCENES[w.scene].watch.trajectory,
         seed=lambda w: SCENES[w.scene].trajectory_seed,
-        code=code("pipeline.jobs.table", "comparison.tables.trajectory"),
+        code=code(
+            "twodiscs_paper.pipeline.jobs.table",
+            "twodiscs.comparison.tables.trajectory",
+        ),
     shell:
-        "python -m twodiscs.pipeline.jobs.table trajectory {params.box} --radius {params.radius}"
+        "python -m twodiscs_paper.pipeline.jobs.table trajectory {params.box} --radius {params.radius}"
         " --seed {params.seed} --output {output.table} > {log} 2>&1"

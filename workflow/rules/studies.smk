@@ -29,11 +29,11 @@ for name, study in ALLOWED.items():
                 FILES.study_reads(study), input.tables
             ),
             code=code(
-                "pipeline.jobs.study",
-                study.tables[0].__module__.partition(".")[2],
+                "twodiscs_paper.pipeline.jobs.study",
+                study.tables[0].__module__,
             ),
         shell:
-            "python -m twodiscs.pipeline.jobs.study {params.table} --parameters {params.parameters:q}"
+            "python -m twodiscs_paper.pipeline.jobs.study {params.table} --parameters {params.parameters:q}"
             " --tables {params.tables} --output {output.table} > {log} 2>&1"
 
 
@@ -50,9 +50,9 @@ rule effects_cost:
     benchmark:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
     params:
-        code=code("benchmark"),
+        code=code("twodiscs_paper.benchmark"),
     shell:
-        "python -m twodiscs.benchmark --table effects_cost --scenes {input.scenes}"
+        "python -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes}"
         " --output {output.table} > {log} 2>&1"
 
 

@@ -34,11 +34,11 @@ rule table:
         dynamics=lambda w, input: braced(input.dynamics),
         intervals=lambda w, input: braced(input.intervals),
         code=lambda w: code(
-            "pipeline.jobs.table",
-            SCENE_TABLES[w.table].__module__.partition(".")[2],
+            "twodiscs_paper.pipeline.jobs.table",
+            SCENE_TABLES[w.table].__module__,
         ),
     shell:
-        "python -m twodiscs.pipeline.jobs.table {wildcards.table} {params.box} --areas {params.areas}"
+        "python -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box} --areas {params.areas}"
         " --theory {input.theory} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
         " --intervals {params.intervals} --results $(dirname $(dirname {output.table})) --output {output.table}"
         " > {log} 2>&1"
@@ -65,7 +65,7 @@ rule check:
         f"{RESULTS}/benchmarks/check.tsv"
     localrule: True
     params:
-        code=code("pipeline.results.verdict"),
+        code=code("twodiscs_paper.pipeline.results.verdict"),
     shell:
-        "python -m twodiscs.pipeline.results.verdict {input.tables} --studies {input.studies}"
+        "python -m twodiscs_paper.pipeline.results.verdict {input.tables} --studies {input.studies}"
         " --output {output.passed} > {log} 2>&1"

@@ -223,8 +223,8 @@ def _over_radius(title, category, caption, table, names, **options):
     """Return the entry of quantities ``names``, {quantity: name in the legend}, over the radius."""
     note = options.pop("note")
     return Entry(
-        title, category, caption, "figures.radius", note, tables=(table,), needs=frozenset(names),
-        options={"names": names, **options},
+        title, category, caption, "twodiscs.figures.radius", note, tables=(table,),
+        needs=frozenset(names), options={"names": names, **options},
     )  # fmt: skip
 
 
@@ -285,7 +285,7 @@ FIGURES = {
             """,
             Sentence("Boxes longer than 4:1 are drawn shorter.", longer_than(4)),
         ),
-        "figures.geometry.model",
+        "twodiscs.figures.geometry.model",
     ),
     "hopping_trajectory": Entry(
         "Hopping dynamics",
@@ -316,7 +316,7 @@ FIGURES = {
             Sentence("Where lines cross, discs hop.", cross),
             Sentence("On the periodic axis places go on beyond the box.", along_ring),
         ),
-        "figures.motion.hopping_trajectory",
+        "twodiscs.figures.motion.hopping_trajectory",
         tables=("trajectory",),
         needs=frozenset({"trajectory"}),
     ),
@@ -331,7 +331,7 @@ FIGURES = {
         quarters, where all four coordinates are positive, hold a sixteenth of the volume. Each
         square is drawn to a scale of its own.
         """,
-        "figures.geometry.configuration_space",
+        "twodiscs.figures.geometry.configuration_space",
     ),
     "volume": _over_radius(
         "Volume of configuration space",
@@ -514,7 +514,7 @@ FIGURES = {
                 walled,
             ),
         ),
-        "figures.motion.pressure",
+        "twodiscs.figures.motion.pressure",
         note="simulated",
         tables=("mean_times",),
         needs=frozenset({"right_wall_time", "top_wall_time"}),
@@ -545,7 +545,7 @@ FIGURES = {
                 plain,
             ),
         ),
-        "figures.motion.hop_histogram",
+        "twodiscs.figures.motion.hop_histogram",
         tables=("hop_histogram",),
         needs=frozenset({"hop_histogram"}),
     ),
@@ -558,7 +558,7 @@ FIGURES = {
         other: then each disc spans the shorter one. (b) Which hops are possible in boxes of any
         shape, with this box marked.
         """,
-        "figures.geometry.largest_radius",
+        "twodiscs.figures.geometry.largest_radius",
     ),
     "integration_regimes": Entry(
         "Regimes of the integration",
@@ -571,7 +571,7 @@ FIGURES = {
         where it exceeds A vertical ones, and the overlaps are a sector (hatched) and triangles
         (dotted).
         """,
-        "figures.geometry.integration_regimes",
+        "twodiscs.figures.geometry.integration_regimes",
     ),
     "surface_shell": Entry(
         "Shells around surfaces",
@@ -585,7 +585,7 @@ FIGURES = {
             """,
             Sentence("Boxes longer than 1.8:1 are drawn shorter.", longer_than(1.8)),
         ),
-        "figures.geometry.surface_shell",
+        "twodiscs.figures.geometry.surface_shell",
     ),
 }
 
@@ -630,7 +630,7 @@ ANIMATION = Entry(
         ),
         Sentence("The spin of rough discs is not shown.", with_effect("moment_of_inertia")),
     ),
-    "figures.motion.animation",
+    "twodiscs.figures.motion.animation",
     tables=("trajectory",),
     needs=frozenset({"trajectory"}),
 )

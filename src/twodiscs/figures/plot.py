@@ -62,7 +62,7 @@ def _in_catalogue(result, figure):
         raise InputError(
             f"scene must be two plain discs to be sketched, but it has {more}; draw a trajectory"
         )
-    draw = import_module(f"twodiscs.{entry.module}").draw
+    draw = import_module(entry.module).draw
     return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
 
 
@@ -124,7 +124,8 @@ def _figures_of(rows):
     if "left" in rows[0]:
         return ["hop_histogram"]
     shown = {row.get("quantity") or f"{row['event']}_time" for row in rows}
-    return [n for n, e in FIGURES.items() if e.module == "figures.radius" and e.needs & shown]
+    over_radius = {n: e for n, e in FIGURES.items() if e.module == "twodiscs.figures.radius"}
+    return [name for name, entry in over_radius.items() if entry.needs & shown]
 
 
 def rows_of(trajectory):

@@ -65,6 +65,17 @@ class Box:
         a_scene(scene)
         return cls(scene.width, scene.height, scene.effects, scene.discs)
 
+    @classmethod
+    def configured(cls, sides, effects, discs=2) -> Box:
+        """Return the box of the blocks ``box`` and ``effects`` of a configuration.
+
+        ``sides`` are {"width": …, "height": …} and maybe a depth, which is an effect here; axes may
+        be listed. Raises ``InputError`` as the class does.
+        """
+        named = effects | {"periodic": "".join(sorted(effects.get("periodic", "")))}
+        named |= {name: side for name, side in sides.items() if name in EFFECTS}
+        return cls(sides["width"], sides["height"], named, discs)
+
     def parameters(self) -> dict[str, object]:
         """Return {"discs": …, "effects": …, "height": …, "width": …}: plain values.
 

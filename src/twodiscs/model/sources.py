@@ -1,4 +1,4 @@
-"""Which sources of this package a module is made of, and a fingerprint of them.
+"""The sources that a module of these packages is made of, and a fingerprint of them.
 
 The workflow passes fingerprints to its jobs, so that an edit reruns what it can change and nothing
 else: they follow the import statements, and see neither comments nor docstrings nor time stamps.
@@ -13,7 +13,9 @@ from pathlib import Path
 
 from twodiscs.model.checks import InputError
 
-PACKAGE = Path(__file__).resolve().parents[1]
+#: The folder of the packages, and those whose sources count.
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("twodiscs", "twodiscs_paper")
 
 #: A string, which is kept, or a comment.
 STRING_OR_COMMENT = re.compile(
@@ -24,13 +26,12 @@ STRING_OR_COMMENT = re.compile(
 
 
 def imported(*modules, without=()):
-    """Return the sorted paths of all files of this package that importing ``modules`` may read.
+    """Return the sorted paths of all files of ``PACKAGES`` that importing ``modules`` may read.
 
-    They are dotted names below the package, "dynamics.counting" say. Imports are followed wherever
-    they stand, in functions too, through ``__init__.py`` files and relative names; a module that is
-    imported by a computed name is not seen. Those in ``without`` are left out, with what only they
-    import: what they say is of no consequence there. Raises ``InputError`` for a name that is no
-    module of this package.
+    Modules are dotted names, "twodiscs.dynamics.counting" say. Imports are followed wherever they
+    stand, in functions too, through ``__init__.py`` files and relative names. A module that is
+    imported by a computed name is not followed. Those in ``without`` are left out, with what only
+    they import. Raises ``InputError`` for a name that is no module of ``PACKAGES``.
     """
     left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
     collected = set()
@@ -43,16 +44,17 @@ def imported(*modules, without=()):
 
 
 def _parts(module):
-    """Return the parts of the dotted name of a module below the package."""
+    """Return the parts of the dotted name of a module."""
     name = tuple(module.split(".")) if isinstance(module, str) else ()
-    if not name or not all(part.isidentifier() for part in name) or _file(name) is None:
-        raise InputError(f"module must be a module of {PACKAGE.name}, not {module!r}")
+    if not all(part.isidentifier() for part in name) or _file(name) is None:
+        raise InputError(f"module must be a module of {' or '.join(PACKAGES)}, not {module!r}")
     return name
 
 
 def modules():
-    """Return all modules of this package, tuples of names below it, sorted; the package is ()."""
-    paths = (path.relative_to(PACKAGE).with_suffix("") for path in PACKAGE.rglob("*.py"))
+    """Return all modules of ``PACKAGES``, sorted: the parts of their dotted names, as tuples."""
+    found = (path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    paths = (path.relative_to(ROOT).with_suffix("") for path in found)
     return sorted(p.parts[:-1] if p.name == "__init__" else p.parts for p in paths)
 
 
@@ -70,18 +72,18 @@ def fingerprint(*modules, without=()):
     """
     digest = blake2b(digest_size=8)
     for path in imported(*modules, without=without):
-        digest.update(f"{path.relative_to(PACKAGE).as_posix()} {_read(path)[0]}\n".encode())
+        digest.update(f"{path.relative_to(ROOT).as_posix()} {_read(path)[0]}\n".encode())
     return digest.hexdigest()
 
 
 @cache
 def _file(name):
-    """Return the file of the module ``name``, a tuple of the parts below the package, or None."""
-    path = PACKAGE.joinpath(*name)
-    for candidate in (path / "__init__.py", path.with_name(path.name + ".py")):
-        if path.is_relative_to(PACKAGE) and candidate.is_file():
-            return candidate
-    return None
+    """Return the file of the module ``name``, a tuple of parts, or None."""
+    if not name or name[0] not in PACKAGES:
+        return None
+    path = ROOT.joinpath(*name)
+    files = (path / "__init__.py", path.with_name(path.name + ".py"))
+    return next((file for file in files if file.is_file()), None)
 
 
 @cache
@@ -123,24 +125,17 @@ def _cut(lines, node):
 
 @cache
 def _imports(name):
-    """Return the modules of this package that the module ``name`` imports, its parents included.
+    """Return the modules of ``PACKAGES`` that the module ``name`` imports, its parents included.
 
-    But for the package itself: the face is imported with every module, and nothing depends on it.
+    The packages themselves are left out: every module imports them, and none depends on them.
     """
     path = _file(name)
     here = name if path.name == "__init__.py" else name[:-1]
-    imported = {name[:depth] for depth in range(1, len(name))}
+    imported = {name[:depth] for depth in range(2, len(name))}
     for module, level, names in _read(path)[1]:
-        base = _below_package(module)
+        base = tuple(module.split("."))
         if level:
-            base = here[: len(here) + 1 - level] + tuple(module.split(".") if module else ())
-        targets = [] if base is None else [base, *((*base, name) for name in names)]
-        for target in filter(None, targets):
-            imported.update(target[:depth] for depth in range(1, len(target) + 1))
+            base = here[: len(here) + 1 - level] + (base if module else ())
+        for target in (base, *((*base, name) for name in names)):
+            imported.update(target[:depth] for depth in range(2, len(target) + 1))
     return [target for target in imported if _file(target) is not None]
-
-
-def _below_package(dotted):
-    """Return the parts of an absolute module name below this package, None if it lies outside."""
-    package, *parts = dotted.split(".")
-    return tuple(parts) if package == PACKAGE.name else None

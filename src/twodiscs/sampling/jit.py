@@ -21,7 +21,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from twodiscs.model.sources import PACKAGE, fingerprint
+from twodiscs.model.sources import PACKAGES, fingerprint
 
 
 def _use_wide_vectors():
@@ -77,7 +77,7 @@ def cache_home():
 
     It is NUMBA_CACHE_DIR, ``twodiscs`` in XDG_CACHE_HOME or in ``~/.cache``, or else the package's.
     """
-    homes = [PACKAGE / "__pycache__"]
+    homes = [Path(__file__).parents[1] / "__pycache__"]
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
         homes.insert(0, Path(chosen))
     elif chosen := os.environ.get("XDG_CACHE_HOME"):
@@ -100,7 +100,7 @@ def cache_home():
 
 @cache
 def cache_folder(module):
-    """Return the folder of the compiled code of a ``module`` of this package, named from it on.
+    """Return the folder of the compiled code of a ``module``, a dotted name.
 
     What has been there unused for long is removed when a new one is made.
     """
@@ -118,8 +118,7 @@ class BySources(caching.UserProvidedCacheLocator):
     """Tells numba's cache where a function is kept: its sources are in the name of the folder."""
 
     def __init__(self, function, file):
-        module = function.__module__.removeprefix(f"{PACKAGE.name}.")
-        self._cache_path = str(cache_folder(module))
+        self._cache_path = str(cache_folder(function.__module__))
 
     def get_source_stamp(self):
         """Return what else compiled code depends on; numba sees to its own version and Python's."""
@@ -140,7 +139,7 @@ def compiled(function):
 
     It is kept on disk, where that is possible.
     """
-    if cache_home() is None or not function.__module__.startswith(PACKAGE.name):
+    if cache_home() is None or function.__module__.partition(".")[0] not in PACKAGES:
         return numba.njit(function, **OPTIONS)
     usual = numba.config.CACHE_LOCATOR_CLASSES
     numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{BySources.__name__}"

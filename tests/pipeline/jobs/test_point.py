@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from fabricated import command
 
+from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.model.scene import Scene
-from twodiscs.pipeline.digests import read_json, write_json
-from twodiscs.pipeline.jobs import point
+from twodiscs_paper.pipeline.jobs import point
 
 SCENE = Scene(1.5, 1.0, 0.2)
 BOX = ("--width", 1.5, "--height", 1, "--radius", 0.2)

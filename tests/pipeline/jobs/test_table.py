@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from fabricated import BOX, RADII, Laws, command, scenes
 
+from twodiscs.arguments import box_arguments
+from twodiscs.comparison.digests import write_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
-from twodiscs.pipeline.arguments import box_arguments
-from twodiscs.pipeline.digests import write_json
-from twodiscs.pipeline.jobs import figure, study, table
-from twodiscs.studies.catalogue import STUDY_TABLES
+from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs_paper.pipeline.jobs import figure, study, table
 
 WORDS = box_arguments(BOX).split()
 

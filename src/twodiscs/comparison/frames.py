@@ -1,0 +1,88 @@
+"""The tables of a folder of results, as pandas reads them."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import pandas as pd
+
+from twodiscs.comparison.digests import digest
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs.model.plugins import plugin
+
+#: What the values of a column are to pandas: kinds that know an empty cell.
+KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
+
+
+def load(folder):
+    """Return {name: ``DataFrame``} of the tables in a folder of results (see the face)."""
+    if not isinstance(folder, str | Path):
+        raise InputError(f"folder must be the path of a folder, not {folder!r}")
+    frames, folder = {}, Path(folder)
+    if not folder.is_dir():
+        what = "is no folder" if folder.exists() else "does not exist"
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} {what}")
+    known = plugin("tables") or SCENE_TABLES
+    for path in sorted(folder.glob("*.csv")):
+        if path.stem in known:
+            frames[path.stem] = read(path, known[path.stem])
+    if not frames:
+        raise InputError(f"folder must hold tables of results, but {str(folder)!r} has none")
+    return frames
+
+
+def read(path, table):
+    """Return the file of a ``Table`` as a ``DataFrame``, with what is in it in ``attrs``."""
+    rows = table.read(path)
+    table = table.of(rows[0] if rows else ())
+    columns = table.columns()
+    kinds = {name: KINDS[column.kind] for name, column in columns.items()}
+    # N! parts of configuration space may be more than 64 bits hold.
+    whole = [name for name, kind in kinds.items() if kind == KINDS[int]]
+    kinds |= {n: "object" for n in whole if max((row[n] or 0 for row in rows), default=0) >= 2**63}
+    configuration = _configuration(path)
+    # Floats with all their digits: pandas' own parser may be off in the last one.
+    frame = pd.DataFrame(rows, columns=list(columns)).astype(kinds)
+    frame.attrs = {
+        "table": table.name(),
+        "meaning": table.meaning(),
+        "meanings": table.meanings(),
+        "units": {name: column.unit for name, column in columns.items()},
+        "path": str(path),
+        "sha256": digest(path),
+        "configuration": configuration,
+    }
+    if (box := _box(configuration)) is not None:
+        frame.attrs["box"] = box
+    return frame
+
+
+def _box(configuration):
+    """Return the ``Box`` of the only scene of a configuration; None if there is none."""
+    scenes = configuration.get("scenes", []) if isinstance(configuration, Mapping) else []
+    try:
+        (scene,) = scenes
+        # YAML reads 1e0 as text.
+        sides, effects = (
+            {name: value if name == "periodic" else float(value) for name, value in block.items()}
+            for block in (scene["box"], scene.get("effects", {}))
+        )
+        return Box.configured(sides, effects, scene.get("discs", 2))
+    except (InputError, AttributeError, KeyError, TypeError, ValueError):
+        return None
+
+
+def _configuration(path):
+    """Return what the configuration said, of the scene of a table alone; None if unknown."""
+    for folder in (path.parent, path.parent.parent):
+        try:
+            known = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if folder == path.parent or not isinstance(known, Mapping):
+            return known
+        scenes = [s for s in known.get("scenes", []) if s.get("name") == path.parent.name]
+        return {**known, "scenes": scenes}
+    return None

@@ -1,0 +1,14 @@
+"""What packages on top of this one offer it, by entry points of the group "twodiscs"."""
+
+from importlib import metadata
+
+
+def plugin(name):
+    """Return what an installed package offers as ``name``, None if none does.
+
+    ``tables`` are its tables, {name: ``Table``}; ``build`` is the module of ``twodiscs run`` and
+    ``twodiscs new``.
+    """
+    for entry in metadata.entry_points(group="twodiscs", name=name):
+        return entry.load()
+    return None

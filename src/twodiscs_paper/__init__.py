@@ -1,0 +1,1 @@
+"""The paper on top of the library ``twodiscs``: its studies, and the pipeline that builds them."""

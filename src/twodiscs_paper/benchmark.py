@@ -1,0 +1,307 @@
+"""How fast the engines are, measured side by side.
+
+    python -m twodiscs_paper.benchmark --scenes config/scenes/*.yaml --output results/benchmark.csv
+
+Every variant of a benchmark runs in turn, again and again, and the medians are compared, so that a
+machine that slows down slows them all. All numbers are for one core, processor time, but the
+speed-up of two processes, which is of wall-clock time. The scene is the paper's box at r = 0.2.
+"""
+
+import math
+import multiprocessing
+import time
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+from twodiscs.arguments import Parser, run
+from twodiscs.dynamics import counting, many
+from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.intervals import hop_intervals
+from twodiscs.model.events import EVENTS, SHELLS, WALLS
+from twodiscs.model.many import Gas
+from twodiscs.model.scene import Scene
+from twodiscs.sampling import montecarlo
+from twodiscs.sampling.separations import draw_constants
+from twodiscs.sampling.starts import states
+from twodiscs.theory.exact import event_rate
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.studies.accuracy_cost import scalar
+from twodiscs_paper.studies.effects.table import Benchmark, EffectsCost
+
+SCENE = Scene(1.5, 1.0, 0.2)
+REPETITIONS = 7
+
+#: Blocks of one timed run of the lock-step ensemble and of the scalar engine.
+BLOCKS = 200
+
+#: The same, and the repetitions, where it must be quick.
+QUICK = {"blocks": 40, "repetitions": 5}
+
+
+def timed(work):
+    """Return (result, processor seconds) of ``work()``."""
+    start = time.process_time()
+    result = work()
+    return result, time.process_time() - start
+
+
+def interleaved(variants, repetitions=REPETITIONS):
+    """Return {name: median speed} of {name: function that returns (units, seconds)}."""
+    for work in variants.values():
+        work()
+    speeds = {name: [] for name in variants}
+    for _ in range(repetitions):
+        for name, work in variants.items():
+            units, seconds = work()
+            speeds[name].append(units / seconds)
+    return {name: median(values) for name, values in speeds.items()}
+
+
+def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
+    """Count ``events``, all of them if not told, fixed end time, statistics by replica."""
+    duration = counting.replica_duration(scene)
+    counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
+    return counting.simulated_events(counted[0]), seconds
+
+
+def lockstep_of_many(discs, blocks=BLOCKS // 8):
+    """Count all events of so many discs by the kernel of N discs, which takes two as well."""
+    gas = Gas(discs, SCENE.width, SCENE.height, SCENE.radius / 2)
+    duration = many.duration_of(gas)
+    counted, seconds = timed(lambda: many.run_blocks(gas, 1, 0, blocks, duration))
+    return many.simulated_events(counted[0]), seconds
+
+
+def lockstep_intervals(intervals=5_000_000):
+    """Record exact intervals between vertical hops; events are as many as their time holds."""
+    summary, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
+    return summary["intervals"] * summary["mean"] * event_rate(SCENE), seconds
+
+
+def scalar_engine(blocks=BLOCKS // 8):
+    """Do the same as ``lockstep`` one trajectory at a time."""
+    duration = counting.replica_duration(SCENE)
+    draw = draw_constants(SCENE)
+    arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
+    counted, seconds = timed(lambda: scalar.count_blocks(np.uint64(1), 0, blocks, *arguments))
+    return scalar.simulated_events(counted[0]), seconds
+
+
+def plain_python(replicas=200):
+    """Do the same without a compiler."""
+    starts = [tuple(map(float, state)) for state in states(SCENE, replicas, 1)[:8].T]
+    end = counting.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
+    counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
+    return sum(map(scalar.simulated_events, counts)), seconds
+
+
+def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
+    """Return {variant: events per second} of scenes with ``effects``, {name: {effect: value}}.
+
+    All that has a place in a scene is watched. Variants without effects are ``plain`` and
+    ``plain_walls``, in which no hop is detected.
+    """
+    scenes = {"plain": SCENE} | {name: replace(SCENE, **some) for name, some in effects.items()}
+    variants = {
+        name: partial(lockstep, blocks, scene, scene.events) for name, scene in scenes.items()
+    }
+    variants["plain_walls"] = partial(lockstep, blocks, SCENE, (*WALLS, "any_wall"))
+    return interleaved(variants, repetitions)
+
+
+def effects_rows(effects, **amount):
+    """Return the rows of effects_cost.csv; the arguments are those of ``with_effects``."""
+    return compared("effects", with_effects(effects, **amount), "1/s", "plain")
+
+
+QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
+
+
+def sampling_engine(blocks=100):
+    """Sample the volume and all shells with the compiled kernel."""
+    samples = blocks * montecarlo.BLOCK
+    point, seconds = timed(lambda: montecarlo.sample_point(SCENE, QUANTITIES, samples, 0.02, 1))
+    return point["samples"], seconds
+
+
+def numpy_sampler(chunks=1000, chunk=16384):
+    """Sample the same sets with numpy, in pieces that stay in the cache, the fastest way known."""
+    range_x, range_y, sigma = SCENE.range_x, SCENE.range_y, SCENE.contact_distance
+    ranges = {"x": range_x, "y": range_y}
+    ends = montecarlo.shell_ends(
+        [montecarlo.shell_thickness(SCENE, event, 0.02) for event in SHELLS],
+        lambda thick: (sigma + thick) ** 2,
+        lambda axis, side, thick: 1 - thick / ranges[axis] if side > 0 else thick / ranges[axis],
+    )
+    generator = np.random.Generator(np.random.SFC64(1))
+    hits = np.zeros(1 + len(SHELLS), np.int64)
+
+    def sample():
+        for _ in range(chunks):
+            x1, x2, y1, y2 = generator.random((4, chunk))
+            uu, vv = ((x1 - x2) * range_x) ** 2, ((y1 - y2) * range_y) ** 2
+            square = uu + vv
+            free = square >= sigma**2
+            sample_in = (uu, vv), square, (x1, y1), ends
+            shells = [free & montecarlo.IN_SHELL[event](*sample_in) for event in SHELLS]
+            hits[:] += [np.count_nonzero(members) for members in (free, *shells)]
+
+    _, seconds = timed(sample)
+    return chunks * chunk, seconds
+
+
+def count_until(error):
+    """Return (events, processor seconds) until counting knows the mean vertical hop time."""
+    result, seconds = timed(
+        lambda: counting.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
+    )
+    return result["events"], seconds
+
+
+def intervals_until(error):
+    """Return (intervals, processor seconds) until drawn intervals know their mean to ``error``."""
+
+    def work():
+        intervals = 500_000
+        while True:
+            summary = hop_intervals(SCENE, "vertical_hop", intervals, 1)
+            excess = summary["stderr"] / summary["mean"] / error
+            if excess <= 1:
+                return summary
+            intervals = math.ceil(1.05 * excess**2 * summary["intervals"])
+
+    summary, seconds = timed(work)
+    return summary["intervals"], seconds
+
+
+def _shard(blocks, ready, go, done):
+    lockstep(1)
+    ready.release()
+    go.acquire()
+    lockstep(blocks)
+    done.release()
+
+
+def shards_at_once(processes, blocks):
+    """Return wall-clock seconds in which ``processes`` processes do ``blocks`` blocks each."""
+    context = multiprocessing.get_context("spawn")
+    ready, go, done = (context.Semaphore(0) for _ in range(3))
+    workers = [
+        context.Process(target=_shard, args=(blocks, ready, go, done)) for _ in range(processes)
+    ]
+    for worker in workers:
+        worker.start()
+    for _ in workers:
+        ready.acquire()
+    start = time.perf_counter()
+    for _ in workers:
+        go.release()
+    for _ in workers:
+        done.acquire()
+    seconds = time.perf_counter() - start
+    for worker in workers:
+        worker.join()
+    return seconds
+
+
+def two_process_speedup(repetitions=5, blocks=600):
+    """Return how much faster two processes do two shards than one process does both."""
+    ratios = []
+    for _ in range(repetitions):
+        alone = shards_at_once(1, 2 * blocks)
+        ratios.append(alone / shards_at_once(2, blocks))
+    return median(ratios)
+
+
+def compared(name, values, unit, baseline, larger_is_better=True):
+    """Return the rows of a benchmark from {variant: value}, with ratios to the ``baseline``."""
+    ratios = {variant: value / values[baseline] for variant, value in values.items()}
+    return [
+        {
+            "benchmark": name,
+            "variant": variant,
+            "value": value,
+            "unit": unit,
+            "ratio": ratios[variant] if larger_is_better else 1 / ratios[variant],
+        }
+        for variant, value in values.items()
+    ]
+
+
+#: The engine of two discs, and the kernel of N with two, three, four and eight at half the radius.
+MANY = {"lockstep": partial(lockstep, BLOCKS // 8, replace(SCENE, radius=SCENE.radius / 2))}
+MANY |= {f"discs_{discs}": partial(lockstep_of_many, discs) for discs in (2, 3, 4, 8)}
+
+
+def benchmarks(effects):
+    """Run everything and return the rows of benchmark.csv; ``effects`` as in ``with_effects``."""
+    rows = effects_rows(effects)
+
+    def add(*arguments, **options):
+        rows.extend(compared(*arguments, **options))
+
+    speeds = interleaved(
+        {
+            "lockstep": lockstep,
+            "lockstep_intervals": lockstep_intervals,
+            "scalar": scalar_engine,
+            "python": plain_python,
+        }
+    )
+    add("md_events_per_second", speeds, "1/s", "scalar")
+    add(
+        "mc_samples_per_second",
+        interleaved({"engine": sampling_engine, "numpy": numpy_sampler}),
+        "1/s",
+        "numpy",
+    )
+    add("md_events_per_second_of_many", interleaved(MANY), "1/s", "lockstep")
+    for error in (1e-3, 1e-4):
+        events = count_until(error)[0]
+        seconds = {
+            "lockstep": median(count_until(error)[1] for _ in range(5)),
+            "lockstep_intervals": median(intervals_until(error)[1] for _ in range(5)),
+        }
+        baseline = "lockstep"
+        if error == 1e-3:
+            scalar_blocks = math.ceil(events / (scalar_engine(1)[0]))
+            seconds["scalar"] = median(scalar_engine(scalar_blocks)[1] for _ in range(5))
+            baseline = "scalar"
+            # A run of a minute or more: its length follows from the speed measured above.
+            seconds["python"] = events / speeds["python"]
+        add(f"seconds_to_relative_error_{error:g}", seconds, "s", baseline, larger_is_better=False)
+    speedup = two_process_speedup()
+    rows.append(
+        {"benchmark": "two_process_speedup", "variant": "lockstep", "value": speedup, "unit": "1",
+         "ratio": speedup}
+    )  # fmt: skip
+    return rows
+
+
+def main():
+    """Run the benchmarks and write the table."""
+    parser = Parser(description=__doc__)
+    parser.add_argument("--scenes", nargs="*", default=[], help="files of scenes with effects")
+    parser.add_argument("--table", choices=("benchmark", "effects_cost"), default="benchmark")
+    parser.add_argument("--output", default="results/benchmark.csv")
+    given = parser.parse_args()
+    requests = (request for path in given.scenes for request in load(read(path)).scenes)
+    effects = {r.name: r.box.effects for r in requests if r.box.effects and r.box.discs == 2}
+    quick = given.table == "effects_cost"
+    rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
+    Path(given.output).parent.mkdir(parents=True, exist_ok=True)
+    (EffectsCost if quick else Benchmark).write(given.output, rows)
+    for row in rows:
+        print(
+            f"{row['benchmark']:<34}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"
+            f"{row['ratio']:>10.3g}"
+        )
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,34 @@
+"""Every study: an analysis with a folder, tables and figures of its own.
+
+Each folder of ``studies``, and ``errata``, declares one or several in its module ``study``. Target,
+key in the configuration, forecast, report and README follow from that. Standard library only: the
+Snakefile imports this.
+"""
+
+from importlib import import_module
+from pathlib import Path
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Forecast
+from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs_paper.study import Study
+
+
+def _declared():
+    """Yield the studies of all folders."""
+    here = Path(__file__).parent
+    for path in (here / "errata/study.py", *here.glob("studies/*/study.py")):
+        folder = ".".join(path.parent.relative_to(here).parts)
+        module = import_module(f"{__package__}.{folder}.study")
+        yield from (value for value in vars(module).values() if isinstance(value, Study))
+
+
+#: {name: ``Study``}
+STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order, study.name))}
+
+#: The figures of studies, {name: ``Entry``}.
+STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
+
+#: The tables of studies, {name: table}, and all that there are.
+STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
+TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}

@@ -1,0 +1,380 @@
+"""From a configuration file to what it asks for, or to one sentence about a mistake.
+
+Quick to import, for the Snakefile reads it: no numerical package but for effects.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from copy import deepcopy
+from difflib import get_close_matches
+from pathlib import Path
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import PRESETS, InputError, comma, written
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.radii import even_radii, radii
+from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration.reading import ConfigError, shown
+from twodiscs_paper.pipeline.configuration.request import Configuration, SceneRequest, Watch
+from twodiscs_paper.pipeline.configuration.schema import schema
+
+#: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
+HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
+
+#: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
+TRAJECTORY_FRACTION = 0.24
+
+#: The same for a scene with effects, over the radius at which the first hop becomes blocked: in a
+#: field it is rare long before.
+BELOW_THRESHOLD = 0.5
+
+#: The default grid of a scene with effects ends at this fraction of its largest radius.
+LAST_FRACTION = 0.9
+
+#: The range of sides that the study of stability can take: lengths end at 1e-60 and 1e60.
+LOW, HIGH = 1e-40, 1e40
+
+#: The fewest intervals of a hop that are recorded.
+LEAST_INTERVALS = 2**16
+
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+def load(mapping):
+    """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
+
+    Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
+    with one sentence that names the key, what it may hold and what it holds, and the scene; of
+    several mistakes with a line for each.
+    """
+    try:
+        return _load(mapping)
+    except ConfigError as error:
+        sentences = (_with_scene(sentence, mapping) for sentence in str(error).split("\n"))
+        raise ConfigError(*sentences) from None
+
+
+def _with_scene(sentence, mapping):
+    """Return a ``sentence`` on a mistake with the name of its scene, if it is in one."""
+    match = re.match(r"scenes\[(\d+)\](?!\.name)", sentence)
+    block = mapping["scenes"][int(match[1])] if match else None
+    name = block.get("name") if isinstance(block, Mapping) else None
+    return f"{sentence} (scene {shown(name)})" if name else sentence
+
+
+def check_results(results, home):
+    """Raise ``ConfigError`` unless ``results`` may be a folder beside the sources at ``home``."""
+    node, path = schema()["properties"]["results"], Path(results).resolve()
+    home = Path(home).resolve()
+    inside = path.is_relative_to(home)
+    a_file = any(folder.exists() and not folder.is_dir() for folder in (path, *path.parents))
+    if a_file or (inside and not re.match(node["pattern"], path.relative_to(home).as_posix())):
+        raise ConfigError(f"results must be {node['allowed']}, not {results!r}")
+
+
+def _load(mapping):
+    if not isinstance(mapping, Mapping):
+        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {shown(mapping)}")
+    settled = _settled(mapping, schema(), "")
+    _validate(settled)
+    _fill_defaults(settled, schema())
+    common = {name: settled[name] for name in ("seed", "shard_events")}
+    scenes = tuple(
+        _scene(block, f"scenes[{i}]", common) for i, block in enumerate(settled["scenes"])
+    )
+    names = [scene.name for scene in scenes]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise ConfigError(
+                f"scenes[{i}].name must differ from every other scene's, not {name!r}"
+            )
+    shared = _shared(settled["shared"], all(scene.effects for scene in scenes))
+    configuration = Configuration(
+        settled["results"], settled["seed"], shared, scenes, settled["accuracy_cost"]
+    )
+    main = configuration.main
+    if "stability" in shared and not all(LOW <= side <= HIGH for side in main.box.sides):
+        raise ConfigError(
+            f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
+            f"lie between {written(LOW, 'g')} and {written(HIGH, 'g')}, for it goes far below them"
+        )
+    return configuration
+
+
+def _settled(value, node, path):
+    """Copy ``value`` with every number in one form: float, or int where an integer is asked."""
+    if isinstance(value, Mapping):
+        known = node.get("properties", {})
+        return {k: _settled(v, known.get(k, {}), f"{path}.{k}") for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        items = node.get("items", {})
+        return [_settled(v, items, f"{path}[{i}]") for i, v in enumerate(value)]
+    types = node.get("type", [])
+    types = {types} if isinstance(types, str) else {*types}
+    if isinstance(value, bool) or not {"number", "integer"} & types:
+        return value
+    if isinstance(value, str) and _NUMBER.fullmatch(value):
+        value = float(value) if re.search(r"[.eE]", value) else int(value)
+    if isinstance(value, float) and math.isnan(value):
+        # A comparison with NaN is never true, so no limit of the schema would catch it.
+        raise ConfigError(f"{path.lstrip('.')} must be {node['allowed']}, not nan")
+    if "integer" in types:
+        return int(value) if isinstance(value, float) and value.is_integer() else value
+    try:
+        return float(value) if isinstance(value, int) else value
+    except OverflowError:
+        return value
+
+
+def _validate(settled):
+    from jsonschema import Draft202012Validator
+
+    errors = list(Draft202012Validator(schema()).iter_errors(settled))
+    # A misspelt key often explains a missing one, so it goes first.
+    errors.sort(key=lambda error: error.validator != "additionalProperties")
+    # Of each block or value what is wrong first, for the rest may follow from it.
+    first = {tuple(error.absolute_path): error for error in reversed(errors)}
+    if first:
+        raise ConfigError(*map(_sentence, reversed(first.values())))
+
+
+def _sentence(error):
+    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.absolute_path)
+    path = "".join(steps).lstrip(".") or "the configuration"
+    node, value = error.schema, error.instance
+    if error.validator == "required":
+        missing = next(key for key in error.validator_value if key not in value)
+        return f"{path} needs the key {missing!r}"
+    if error.validator == "additionalProperties":
+        known = list(node["properties"])
+        unknown = next(key for key in value if key not in known)
+        homes = [home for key, home in _keys(schema(), "the configuration") if key == unknown]
+        if homes:
+            hint = f"; it belongs in {homes[0]}"
+        elif value[unknown] is None and not isinstance(unknown, str):  # of {width: 1,5}
+            hint = "; decimals have a point"
+        else:
+            free = [key for key in known if key not in value]
+            hint = _nearest(unknown, free) or f"; its keys are {', '.join(known)}"
+        return f"{path} has an unknown key {shown(unknown)}{hint}"
+    hint = _nearest(value, node.get("enum", ())) or comma(value)
+    return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
+
+
+def _keys(node, home):
+    """Yield (key, the block that it belongs in) for every key beneath a node of the schema."""
+    for key, child in node.get("properties", {}).items():
+        yield key, home
+        yield from _keys(child, repr(key))
+    if "items" in node:
+        yield from _keys(node["items"], "a scene")
+
+
+def _nearest(word, known):
+    near = get_close_matches(str(word)[:100], known, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def _fill_defaults(value, node):
+    if isinstance(value, dict):
+        for key, below in node.get("properties", {}).items():
+            if "default" in below:
+                value.setdefault(key, deepcopy(below["default"]))
+            if key in value:
+                _fill_defaults(value[key], below)
+    elif isinstance(value, list):
+        for item in value:
+            _fill_defaults(item, node.get("items", {}))
+
+
+def _scene(block, path, common):
+    box = _box(block, path)
+    radii = _radii(block["radii"], box, f"{path}.radii")
+    scene = box.scene(radii[0])
+    watched = block.get("watch")
+    if watched is None:
+        watched = dict.fromkeys(Watch.__dataclass_fields__, True)
+        watched["trajectory"] = bool(_hops(scene))
+        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and scene.discs == 2
+    histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
+    watch = Watch(
+        volume=watched["volume"],
+        areas=_events(watched["areas"], scene, f"{path}.watch.areas"),
+        mean_times=_events(watched["mean_times"], scene, f"{path}.watch.mean_times"),
+        hop_histogram=histogram.pop("radii"),
+        trajectory=_trajectory(watched["trajectory"], box, scene, f"{path}.watch.trajectory"),
+    )
+    if not watch.quantities:
+        known = ", ".join(Watch.__dataclass_fields__)
+        raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
+    if watch.mean_times:
+        try:
+            box.scene(radii[-1]).require_followable()
+        except InputError as error:
+            raise ConfigError(f"{path}.radii: {error}") from None
+    for radius in watch.hop_histogram if scene.discs == 2 else ():
+        events = events_per_interval(box.scene(radius), histogram["event"])
+        if events * LEAST_INTERVALS > histogram["event_budget"]:
+            raise ConfigError(
+                f"{path}.watch.hop_histogram must keep to radii at which {LEAST_INTERVALS} "
+                f"intervals fit into its event_budget, "
+                f"{written(histogram['event_budget'], 'g')}; at {radius!r} each one takes "
+                f"{events:.2g} events"
+            )
+    accuracy = block["accuracy"]
+    if not isinstance(accuracy, dict):
+        accuracy = {"default": accuracy}
+    asked = {event: accuracy.get(event, accuracy["default"]) for event in watch.mean_times}
+    return SceneRequest(
+        name=block["name"],
+        box=box,
+        radii=radii,
+        watch=watch,
+        monte_carlo=block["monte_carlo"],
+        dynamics={
+            "accuracy": {event: PRESETS.get(asked[event], asked[event]) for event in sorted(asked)},
+            "event_budget": block["event_budget"],
+        },
+        histogram=histogram,
+        **common,
+    )
+
+
+def _box(block, path):
+    """Return the ``Box`` of a scene; its effects are checked to go together."""
+    try:
+        return Box.configured(block["box"], block["effects"], block["discs"])
+    except InputError as error:
+        raise ConfigError(f"{path}.effects: {error}") from None
+
+
+def _radii(asked, box, path):
+    if isinstance(asked, list):
+        return _checked(asked, box, path)
+    usual = _short(box.shortest / max(1, box.effects.get("radius_ratio", 1)) / 100)
+    smallest = asked.get("smallest", usual)
+    _checked([smallest], box, f"{path}.smallest")
+    include = _checked(asked.get("include", []), box, f"{path}.include")
+    try:
+        if not box.is_plain:
+            generated = even_radii(smallest, LAST_FRACTION * box.last_radius, asked["count"])
+        else:
+            generated = radii(box.width, box.height, smallest, asked["count"])
+    except InputError as error:
+        raise ConfigError(f"{path}: {error}") from None
+    return _checked(tuple({*generated, *include}), box, path)
+
+
+def _hops(scene):
+    return [hop for hop in HOPS if hop in scene.events]
+
+
+def _is_smooth(scene):
+    return scene.moment_of_inertia is None
+
+
+def _histogram(asked, box, scene, path):
+    """Return the histogram's block with its radii (a tuple, empty if it is off) and event."""
+    if isinstance(asked, bool):
+        asked = {} if asked else {"radii": []}
+    elif isinstance(asked, list):
+        asked = {"radii": asked}
+    keys = schema()["properties"]["scenes"]["items"]["properties"]["watch"]["properties"]
+    _fill_defaults(asked, keys["hop_histogram"])
+    hops = _hops(scene)
+    event = asked.get("event", next(iter(hops), None))
+    if asked.get("radii") == []:
+        return {**asked, "radii": (), "event": event}
+    if not _is_smooth(scene):
+        raise ConfigError(
+            f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
+            "have no exact mean; watch mean_times instead"
+        )
+    if not hops:
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if event not in hops:
+        raise ConfigError(
+            f"{path}.event must have a place in the scene, as {hops[0]} has, not {event!r}"
+        )
+    threshold = box.threshold(event)
+    default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
+    radii = _checked(asked.get("radii", default), box, path)
+    for radius in radii:
+        if not box.scene(radius).is_possible(event):
+            raise ConfigError(
+                f"{path} must keep to radii below {threshold!r}, where {event} is possible, "
+                f"not {radius!r}"
+            )
+    return {**asked, "radii": radii, "event": event}
+
+
+def _trajectory(asked, box, scene, path):
+    if asked is False:
+        return None
+    if not _hops(scene):
+        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+    if asked is not True:
+        radius = asked
+    elif not box.is_plain:
+        radius = _short(BELOW_THRESHOLD * min(map(box.threshold, _hops(scene))))
+    else:
+        radius = _short(TRAJECTORY_FRACTION * box.shortest)
+    return _checked([radius], box, path)[0]
+
+
+def _events(asked, scene, path):
+    """Return the events asked for in the order of ``EVENTS``, if all have a place in the scene."""
+    if isinstance(asked, bool):
+        return scene.events if asked else ()
+    for event in asked:
+        if event not in scene.events:
+            raise ConfigError(
+                f"{path} must keep to what has a place in the scene, {', '.join(scene.events)}, "
+                f"not {event!r}"
+            )
+    return tuple(event for event in EVENTS if event in asked)
+
+
+def _checked(radii, box, path):
+    """Return radii as an ascending tuple if all of them fit and none appears twice."""
+    seen = set()
+    for radius in radii:
+        try:
+            scene = box.scene(radius)
+        except InputError as error:
+            raise ConfigError(f"{path}: {error}") from None
+        two = scene.discs == 2
+        if two and scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
+            raise ConfigError(
+                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
+                f"places with {_effects_of(box)}, and at least {MIN_FRACTION:g} of it is needed"
+            )
+        if radius in seen:
+            raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
+        seen.add(radius)
+    return tuple(sorted(radii))
+
+
+def _effects_of(box):
+    return ", ".join(f"{name} {value}" for name, value in box.effects.items())
+
+
+def _shared(asked, all_have_effects):
+    """Return the names of what is built once, in the order of the schema."""
+    known = schema()["properties"]["shared"]["items"]["enum"]
+    studies = [study.name for study in STUDIES.values() if study.shared]
+    about_plain = {name for name in studies if STUDIES[name].about_plain} | {"paper"}
+    for name in asked:
+        if all_have_effects and name in about_plain:
+            raise ConfigError(
+                f"shared must leave out {name!r} where every scene has effects, for it is about a "
+                "scene without them"
+            )
+    wanted = {*asked, *(studies if "paper" in asked else ())}
+    return tuple(name for name in known if name in wanted)
+
+
+def _short(value):
+    return float(f"{value:.3g}")

@@ -1,0 +1,114 @@
+"""Configuration files, read with limits before anything else reads them.
+
+The Snakefile calls ``read`` before its own ``configfile:``.
+"""
+
+import sys
+
+import yaml
+
+from twodiscs.model import checks
+from twodiscs.model.checks import InputError
+from twodiscs_paper.pipeline.configuration.schema import schema
+
+#: Far beyond any configuration: bytes of a file, letters of one value, blocks within blocks, and
+#: values once every alias is written out.
+BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
+
+
+class ConfigError(InputError):
+    """Mistakes in a configuration, each told in one sentence and on one line."""
+
+
+def read(path):
+    """Return the mapping in the YAML file ``path``.
+
+    Raises ``ConfigError`` with file and line for what YAML does not allow, for a key given twice
+    (the last one would win in silence), for what exceeds the limits of this module, and for a file
+    that cannot be read or holds no mapping.
+    """
+    try:
+        with open(path, "rb") as file:
+            content = file.read(BYTES + 1)
+    except OSError as error:
+        raise ConfigError(f"{path}: {error.strerror}") from None
+    if len(content) > BYTES:
+        raise ConfigError(f"{path} must be a file of at most {BYTES} bytes")
+    try:
+        mapping = yaml.load(content.decode(), _StrictLoader)
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        byte = content[error.start]
+        raise ConfigError(f"{path}, line {line}: must be UTF-8, not the byte {byte:#x}") from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}") from None
+    except (yaml.YAMLError, ArithmeticError, ValueError) as error:
+        raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
+    if not isinstance(mapping, dict):
+        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {shown(mapping)}")
+    return mapping
+
+
+def or_exit(function, *arguments):
+    """Return ``function(*arguments)``, or end the program with the sentence of a mistake."""
+    try:
+        return function(*arguments)
+    except ConfigError as error:
+        sys.exit("\n".join(f"Configuration: {sentence}" for sentence in str(error).split("\n")))
+
+
+def shown(value):
+    """Return a ``value`` as a sentence shows it: shortened."""
+    return "empty" if value is None else checks.shown(value)
+
+
+def _mistake(problem, node):
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML as usual, within limits, and a key given twice is a mistake."""
+
+    def __init__(self, stream):
+        super().__init__(stream)
+        self.path, self.sizes, self.total = [], {}, 0
+
+    def compose_node(self, parent, index):
+        # Values are counted where they are composed: an alias stands for as many as its anchor.
+        if len(self.path) > DEPTH:
+            raise _mistake(f"there must be at most {DEPTH} blocks within blocks", parent)
+        if self.check_event(yaml.AliasEvent):
+            node = super().compose_node(parent, index)
+            if node not in self.sizes:
+                raise _mistake("an alias must not stand within what it stands for", node)
+        else:
+            self.path.append(0)
+            node = super().compose_node(parent, index)
+            self.sizes[node] = self.path.pop() + 1
+        if isinstance(node, yaml.ScalarNode) and len(node.value) > LETTERS:
+            raise _mistake(f"a value must have at most {LETTERS} letters", node)
+        if self.path:
+            self.path[-1] += self.sizes[node]
+        self.total += 1
+        if max(self.total, self.sizes[node]) > VALUES:
+            raise _mistake(f"there must be at most {VALUES} values, aliases written out", node)
+        return node
+
+    def compose_mapping_node(self, anchor):
+        node = super().compose_mapping_node(anchor)
+        seen = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    raise _mistake(f"the key {key.value!r} is given a second time", key)
+                seen.add(key.value)
+        return node
+
+    def construct_object(self, node, deep=False):
+        try:
+            return super().construct_object(node, deep)
+        except yaml.YAMLError:
+            raise
+        except Exception as error:  # of many kinds: what int(), float() and datetime say
+            raise _mistake(f"{node.value!r:.40} cannot be read: {error}", node) from None

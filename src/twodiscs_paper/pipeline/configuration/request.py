@@ -1,0 +1,195 @@
+"""What a configuration asks for, checked and with every default filled in."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs.model.radii import key, stream_seed
+
+#: The stages whose jobs run once for each radius, and the module that does the work of each.
+STAGES = {
+    "monte_carlo": "twodiscs.sampling.montecarlo",
+    "dynamics": "twodiscs.dynamics.counting",
+    "intervals": "twodiscs.dynamics.intervals",
+}
+
+#: The thickness of shells in jobs that sample no area: any will do, and so an edit of the
+#: configured one does not concern them.
+NO_SHELL = 0.5
+
+#: The most events that any budget allows.
+MOST_EVENTS = 10**15
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What a scene computes and measures; an empty tuple, ``False`` or ``None`` means not at all.
+
+    ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
+    radii, ``trajectory`` a radius.
+    """
+
+    volume: bool
+    areas: tuple
+    mean_times: tuple
+    hop_histogram: tuple
+    trajectory: float | None
+
+    @property
+    def quantities(self):
+        """Everything watched, as a set of names: those of theory.csv, and the two others.
+
+        Such as {"volume", "right_wall_area", "right_wall_time", "hop_histogram", "trajectory"}.
+        """
+        names = {f"{event}_area" for event in self.areas}
+        names |= {f"{event}_time" for event in self.mean_times}
+        names |= {n for n in ("volume", "hop_histogram", "trajectory") if getattr(self, n)}
+        return frozenset(names)
+
+
+@dataclass(frozen=True)
+class SceneRequest:
+    """One scene of the configuration.
+
+    ``radii`` ascend. ``monte_carlo``, ``dynamics`` and ``histogram`` are the settings of the
+    stages, blocks of the configuration. A job of one radius is named by its key.
+    """
+
+    name: str
+    box: Box
+    radii: tuple
+    watch: Watch
+    monte_carlo: dict
+    dynamics: dict
+    histogram: dict
+    seed: int
+    shard_events: int
+
+    @property
+    def effects(self):
+        """What the box calls for beyond two equal, smooth discs between walls, {name: value}.
+
+        That is its effects, and ``discs`` where they are more than two.
+        """
+        return self.box.calls_for
+
+    @property
+    def event_budget(self):
+        """The most events that the simulation of one radius may spend."""
+        return self.dynamics["event_budget"]
+
+    @cached_property
+    def keys(self):
+        """{stage: {key: radius}} of the jobs that there are."""
+        watch = self.watch
+        radii = {
+            "monte_carlo": self.radii if watch.volume or watch.areas else (),
+            "dynamics": self.radii if watch.mean_times else (),
+            "intervals": watch.hop_histogram,
+        }
+        return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
+
+    def exact_radii(self, table):
+        """Return the radii of a table of exact values: in theory those of histograms, too."""
+        return sorted({*self.radii, *(self.watch.hop_histogram if table == "theory" else ())})
+
+    @cached_property
+    def tables(self):
+        """The names of the tables that the scene calls for."""
+        jobs = any(self.keys.values())
+        measured = {
+            "volume": self.watch.volume,
+            "areas": self.watch.areas,
+            "mean_times": self.watch.mean_times,
+            "hop_histogram": self.watch.hop_histogram,
+            "trajectory": self.watch.trajectory,
+            "check": jobs,
+            "cost": jobs,
+        }
+        return ("grid", "theory", *(name for name, called in measured.items() if called))
+
+    @property
+    def quantities(self):
+        """What Monte Carlo samples: the volume, and areas of events."""
+        return ["volume"] * self.watch.volume + [f"{event}_area" for event in self.watch.areas]
+
+    @property
+    def shell(self):
+        """The thickness of the shells that Monte Carlo measures areas by."""
+        return self.monte_carlo["shell"] if self.watch.areas else NO_SHELL
+
+    @property
+    def target(self):
+        """{event: relative standard error asked for} of the mean times."""
+        return self.dynamics["accuracy"]
+
+    def arguments(self, stage, radius):
+        """Return what the job of a ``stage`` depends on, beside its scene, by name."""
+        settings = {
+            "monte_carlo": {
+                "quantities": self.quantities,
+                "samples": self.monte_carlo["samples"],
+                "shell": self.shell,
+            },
+            "dynamics": {"target": self.target, "budget": self.event_budget},
+            "intervals": {
+                "event": self.histogram["event"],
+                "intervals": self.histogram["intervals"],
+                "budget": self.histogram["event_budget"],
+            },
+        }
+        return settings[stage] | {"seed": self.seed_of(stage, radius)}
+
+    def shard_arguments(self, stage, radius):
+        """Return ``arguments`` of a shard, to which accuracy and budgets are of no consequence."""
+        whatever = {
+            "monte_carlo": {"samples": 1},
+            "dynamics": {"target": dict.fromkeys(self.target, 0.5), "budget": 1},
+            "intervals": {"intervals": 1, "budget": MOST_EVENTS},
+        }
+        return self.arguments(stage, radius) | whatever[stage]
+
+    @property
+    def trajectory_seed(self):
+        """The seed of the random streams of the trajectory."""
+        return self.seed_of("trajectory", self.watch.trajectory)
+
+    def seed_of(self, stage, radius):
+        """Return the seed of the random streams of a job; ``radius`` is a key or a number."""
+        return stream_seed(self.seed, self.name, stage, key(float(radius)))
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """A whole configuration: the folder of results, the root seed and the scenes in their order.
+
+    ``accuracy_cost`` is the block of this name, and ``shared`` names what is built once, in the
+    order of the schema, with all that the manuscript reads. ``effect_scenes`` are the scenes of the
+    study of effects, whatever ``scenes`` are.
+    """
+
+    results: str
+    seed: int
+    shared: tuple
+    scenes: tuple
+    accuracy_cost: dict = field(default_factory=dict)
+    effect_scenes: tuple = ()
+
+    @property
+    def plain(self):
+        """The scenes without effects."""
+        return tuple(scene for scene in self.scenes if not scene.effects)
+
+    @property
+    def main(self):
+        """The first scene without effects, or None."""
+        return next(iter(self.plain), None)
+
+    def scene(self, name):
+        """Return the scene called ``name``, or raise ``InputError``."""
+        for scene in self.scenes:
+            if scene.name == name:
+                return scene
+        names = ", ".join(scene.name for scene in self.scenes)
+        raise InputError(f"name must be one of {names}, not {name!r}")

@@ -1,0 +1,113 @@
+"""The explorer: one HTML file in which the discs move and are counted, beside exact mean times.
+
+It brings its own theory and dynamics, in JavaScript, the points of the scenes without effects, and
+the library that draws the plots; it asks for nothing else.
+"""
+
+import json
+import math
+from pathlib import Path
+
+from twodiscs.arguments import Parser, run
+from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume
+from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.model.events import DECLARED
+
+#: The scripts of the page in their order; the first one is the library.
+SCRIPTS = ("uPlot.iife.min.js", "theory.js", "dynamics.js", "page.js")
+
+#: The events that the page counts.
+COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
+
+
+def by_dynamics(rows):
+    """Return {event: [[radius, mean time, standard error or None], …]} of rows of mean_times.csv.
+
+    A time is a length over the speed √(v1² + v2²).
+    """
+    return {
+        event: [
+            [row["radius"], row["estimate"], row["stderr"]]
+            for row in rows
+            if row["event"] == event and row["estimate"] is not None
+        ]
+        for event in COUNTED
+    }
+
+
+def by_monte_carlo(volumes, areas):
+    """Return the same of rows of volume.csv and areas.csv: volume over area.
+
+    What the thickness of a shell adds to an area is known exactly, and taken off. Samples in a
+    shell are free samples, too: as if they were independent, the error is a little too large.
+    """
+    volume = {row["radius"]: row for row in volumes if row["stderr"] is not None}
+    times = {event: [] for event in COUNTED}
+    for row in areas:
+        event, radius = row["quantity"].removesuffix("_area"), row["radius"]
+        if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
+            whole, area = volume[radius], row["estimate"] - row["bias"]
+            time = 1.5 * math.pi / DECLARED[event].sides * whole["estimate"] / area
+            error = math.hypot(whole["stderr"] / whole["estimate"], row["stderr"] / area)
+            times[event].append([radius, time, time * error])
+    return times
+
+
+def points(tables):
+    """Return {event: {"dynamics": …, "monte_carlo": …}} of the tables of a scene, {name: path}.
+
+    Values are as in ``by_dynamics``; a scene need not have every table.
+    """
+    volumes, areas, times = (
+        table.read(tables[table.name()]) if table.name() in tables else []
+        for table in (Volume, Areas, MeanTimes)
+    )
+    dynamics, sampled = by_dynamics(times), by_monte_carlo(volumes, areas)
+    return {
+        event: {"dynamics": dynamics[event], "monte_carlo": sampled[event]} for event in COUNTED
+    }
+
+
+def explorer(parts, data, left_out=()):
+    """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``.
+
+    It names the scenes that are ``left_out``.
+    """
+    from jinja2 import Environment, StrictUndefined
+
+    shown = {
+        "data": json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
+        "left_out": left_out,
+        "scenes": data["scenes"],
+        "library_style": parts["uPlot.min.css"],
+        "licence": parts["LICENSE"],
+        "scripts": [parts[name] for name in SCRIPTS],
+    }
+    environment = Environment(undefined=StrictUndefined, trim_blocks=True)
+    return environment.from_string(parts["explorer.html"]).render(shown)
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
+    parser.add_argument("tables", nargs="*", type=Path, metavar="TABLE", help="<scene>/<name>.csv")
+    parser.add_argument("--parts", nargs="+", type=Path, required=True, help="files of the page")
+    parser.add_argument("--scenes", required=True, help="the scenes, JSON")
+    parser.add_argument("--seed", type=int, required=True, help="of the random numbers in the page")
+    parser.add_argument("--output", type=Path, required=True, metavar="HTML")
+    options = parser.parse_args()
+    given = json.loads(options.scenes)
+    scenes = [
+        {key: scene[key] for key in ("name", "width", "height")}
+        | {"points": points({t.stem: t for t in options.tables if t.parent.name == scene["name"]})}
+        for scene in given
+        if not scene["effects"]
+    ]
+    left_out = [scene["name"] for scene in given if scene["effects"]]
+    data = {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": options.seed}
+    parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
+    options.output.write_text(explorer(parts, data, left_out), encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,130 @@
+"""Typeset the manuscript from the results, and write the table of the numbers that it prints."""
+
+import json
+import os
+from pathlib import Path
+
+from twodiscs.arguments import Parser, named, run
+from twodiscs.dynamics.intervals import RETURNS
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model.checks import InputError
+from twodiscs.sampling.montecarlo import COST_RATIO
+from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.pipeline.documents.captions import said
+from twodiscs_paper.pipeline.documents.numbers.rounding import whole
+from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, numbers, read, table_rows
+from twodiscs_paper.pipeline.results.provenance import commit, versions
+
+
+def captions(results, scene):
+    """Return {figure: (its own caption, what others explain alike or "", which of the ``NOTES``)}.
+
+    ``scene`` is the one that the manuscript is about; see ``captions.said``.
+    """
+    return {
+        name: (*said(entry, results, scene), entry.note)
+        for name, entry in (FIGURES | STUDY_FIGURES).items()
+    }
+
+
+def printed(contents):
+    """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
+    scenes = contents["scenes"]
+    values = numbers(read(contents["results"], scenes, contents["long_run"]), scenes)
+    constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
+    return values | {name: whole(value) for name, value in constants.items()}
+
+
+def typeset(template, output, contents, values):
+    """Compile the Typst file ``template`` to the PDF file ``output``.
+
+    ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
+    "seed"; ``values`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
+    as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
+    template, the ``versions``, and ``results``, their folder, as a path from the root that results
+    and the project have in common. The same inputs at the same commit give the same bytes on every
+    machine: fonts are those that come with Typst.
+    Raises ``InputError`` if the template does not compile.
+    """
+    import typst
+
+    results = os.path.abspath(contents["results"])
+    folder = os.path.dirname(os.path.abspath(template))
+    root = os.path.commonpath([results, os.path.dirname(folder)])  # CITATION.cff is there
+    contents = contents | {
+        "captions": captions(results, contents["scenes"][0]),
+        "commit": commit(folder),
+        "numbers": {name: number.text for name, number in values.items()},
+        "results": "/" + os.path.relpath(results, root).replace(os.sep, "/"),
+        "versions": versions(),
+    }
+    try:
+        typst.compile(
+            template,
+            output=output,
+            root=root,
+            ignore_system_fonts=True,
+            sys_inputs={"contents": json.dumps(contents)},
+        )
+    except typst.TypstError as error:
+        raise InputError(f"{template} does not compile: {error.message}; {error.trace}") from None
+
+
+def contents_of(files, boxes, output):
+    """Return what is there for the manuscript ``output``, a path in the folder of all results.
+
+    ``files`` are the paths of figures and tables; ``boxes`` is {scene: (width, height)}, of which
+    the first is what the manuscript is about. {"results": folder, "figures": those of no scene,
+    "scenes": [{"name", "width", "height", "figures", "tables"}]}.
+    """
+    figures, tables = {None: []}, {None: []}
+    for path in map(Path, files):
+        table = path.suffix == ".csv"
+        folder = path.parent if table else path.parent.parent
+        own = folder.name if folder.name in boxes else None
+        (tables if table else figures).setdefault(own, []).append(path.stem)
+    scenes = [
+        {"name": name, "width": width, "height": height}
+        | {"figures": figures.get(name, []), "tables": tables.get(name, [])}
+        for name, (width, height) in boxes.items()
+    ]
+    return {"results": str(Path(output).parent), "figures": figures[None], "scenes": scenes}
+
+
+def sides(text):
+    """Return (width, height) of a box that is given as 1.5x1.0."""
+    try:
+        width, height = map(float, text.split("x"))
+    except ValueError:
+        raise InputError(f"the box of a scene must be as 1.5x1.0, not {text!r}") from None
+    return width, height
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__)
+    parser.add_argument("files", nargs="+", metavar="FILE", help="figures and tables, PDF and CSV")
+    parser.add_argument("--template", required=True, help="the Typst file")
+    parser.add_argument(
+        "--boxes",
+        nargs="+",
+        required=True,
+        metavar="SCENE=WIDTHxHEIGHT",
+        help="scenes without effects; the first one is what the manuscript is about",
+    )
+    parser.add_argument("--seed", required=True, type=int, help="the seed of the configuration")
+    parser.add_argument("--configuration", required=True, help="its hash")
+    parser.add_argument("--long-run", metavar="CSV", help="mean_times.csv of the long run")
+    parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of numbers")
+    parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
+    options = parser.parse_args()
+    boxes = {scene: sides(box) for scene, box in named(options.boxes, "boxes").items()}
+    contents = contents_of(options.files, boxes, options.output)
+    contents |= {"configuration": options.configuration, "seed": options.seed}
+    contents |= {"long_run": options.long_run}
+    values = printed(contents)
+    PaperNumbers.write(options.numbers, table_rows(values))
+    typeset(options.template, options.output, contents, values)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,260 @@
+"""The report that is opened first: verdict, agreement, a section a scene; Snakemake's is behind it.
+
+It is one HTML file with its pictures in it; tables, figures as PDF and Snakemake's report are links
+to the files beside it. Standard input is the graph of rules that ``snakemake --rulegraph`` prints.
+"""
+
+import json
+import re
+import sys
+from base64 import b64encode
+from datetime import date
+from graphlib import CycleError, TopologicalSorter
+from io import BytesIO
+from pathlib import Path, PurePosixPath
+
+from markupsafe import Markup, escape
+from PIL import Image
+
+from twodiscs.arguments import Parser, run
+from twodiscs.comparison.tables.check import Check
+from twodiscs.comparison.tables.cost import Cost
+from twodiscs.comparison.tables.exact import Grid
+from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
+from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.pipeline.documents.captions import caption
+from twodiscs_paper.pipeline.results.provenance import commit, versions
+
+#: The figures that sections open on, of a scene and of all, and how many those of a scene are;
+#: others stand in for those of a scene that are not there. The rest are thumbnails.
+KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
+KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
+
+#: Pixels: the width of a thumbnail.
+THUMBNAIL = 320
+
+ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
+
+#: Pixels of a figure for one on the screen.
+DENSITY = 2
+
+#: What is a symbol with a subscript in a caption: r_c.
+SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
+
+#: The first sentence of a caption, which says what is drawn: its end is no decimal point.
+SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
+
+#: Pixels of the graph: from column to column, from row to row, width and height of a rule.
+ACROSS, DOWN, WIDE, HIGH = 136, 62, 126, 24
+
+
+def agreement(folder, scene):
+    """Return how the estimates of a scene compare with the exact theory, None if none does."""
+    own = Path(folder, scene["name"])
+    if not (own / "check.csv").exists():
+        return None
+    rows = [row for row in Check.read(own / "check.csv") if row["passed"] is not None]
+    cost = [row for row in Cost.read(own / "cost.csv") if row["stage"] == "dynamics"]
+    return {
+        "box": scene["box"],
+        "comparisons": len(rows),
+        "events": sum(row["events"] for row in cost),
+        "tests": sum(row["independent"] for row in rows),
+        "failed": sum(not row["passed"] for row in rows),
+        "largest": max((abs(row["z"]) for row in rows), default=0.0),
+        "name": scene["name"],
+        "radii": len(Grid.read(own / "grid.csv")),
+    }
+
+
+def figure(folder, path, scenes):
+    """Return title, caption and picture of the figure at ``path``, relative to ``folder``.
+
+    A figure of no scene is about the first of those without effects.
+    """
+    entry = ENTRIES[path.stem]
+    scene = scenes.get(path.parts[0])
+    main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
+    about = scene or main
+    text = caption(entry, folder, about) if about else entry.full_caption()
+    if scene:
+        text += f" Scene {scene['name']}, {scene['box']}."
+    data = Path(folder, path).read_bytes()
+    return {
+        "alt": f"{entry.title}. {SENTENCE.match(text)[0]}",
+        "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
+        "file": path.with_suffix(".gif" if entry == ANIMATION else ".pdf"),
+        "name": path.stem,
+        "title": entry.title,
+        "uri": _uri(data),
+        "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
+    }
+
+
+def _uri(data):
+    return f"data:image/png;base64,{b64encode(data).decode()}"
+
+
+def thumbnail(folder, path, scenes):
+    """Return the ``figure`` at ``path`` with a small picture of it."""
+    with Image.open(Path(folder, path)) as image:
+        image = image.convert("RGB")
+        image.thumbnail((THUMBNAIL, 2 * THUMBNAIL))
+        small = BytesIO()
+        image.quantize(32).save(small, "PNG", optimize=True)
+    return figure(folder, path, scenes) | {"uri": _uri(small.getvalue())}
+
+
+def movie(folder, path, scenes):
+    """Return the animation at ``path`` with the picture that stands still longest, the hop."""
+    with Image.open(Path(folder, path)) as image:
+        longest = 0
+        for k in range(image.n_frames):
+            image.seek(k)  # forwards only: a frame that is gone back to may be black
+            if image.info["duration"] > longest:
+                longest, picture = image.info["duration"], image.convert("RGB")
+        still = BytesIO()
+        picture.quantize(64).save(still, "PNG", optimize=True)
+    return figure(folder, path, scenes) | {"still": _uri(still.getvalue())}
+
+
+def key_figures(paths, of_scene=True):
+    """Return the paths of the key figures among ``paths``, those of one scene or of all scenes."""
+    here = {path.stem: path for path in paths}
+    if not of_scene:
+        return [here[name] for name in KEY_OF_ALL if name in here]
+    wanted = [*KEY, *(n for n, e in ENTRIES.items() if e.category != GEOMETRY and e != ANIMATION)]
+    return [here[name] for name in dict.fromkeys(wanted) if name in here][:SOME]
+
+
+def section(folder, paths, scenes, scene=None):
+    """Return what the report shows of the figures and tables at ``paths``, of a scene or of all."""
+    drawn = [path for path in paths if path.suffix == ".png"]
+    movies = [path for path in drawn if path.stem == "animation"]
+    key = key_figures(drawn, scene is not None)
+    others = [path for path in drawn if path not in key and path not in movies]
+    effects = [
+        f"{value} discs" if name == "discs" else f"{name.replace('_', ' ')} {value}"
+        for name, value in ((scene or {}).get("effects") or {}).items()
+    ]
+    return {
+        "animation": movie(folder, movies[0], scenes) if movies else None,
+        "box": scene and scene["box"],
+        "effects": effects,
+        "figures": [figure(folder, path, scenes) for path in key],
+        "name": scene and scene["name"],
+        "tables": [path for path in paths if path.suffix == ".csv"],
+        "thumbnails": [thumbnail(folder, path, scenes) for path in others],
+    }
+
+
+def direct(feeds):
+    """Return ``feeds`` without the arrows that a chain of others makes up for."""
+
+    def reached(rule):
+        return {below for next_rule in feeds[rule] for below in ({next_rule} | reached(next_rule))}
+
+    return {
+        rule: [later for later in below if not any(later in reached(o) for o in below)]
+        for rule, below in feeds.items()
+    }
+
+
+def rules(dot):
+    """Return the graph of rules that ``snakemake --rulegraph`` says, a text, placed in rows.
+
+    {"rules": {name: (x, y)}, "arrows": [((x, y), (x, y))], "width": …, "height": …, "size": …} in
+    pixels; None where a rule feeds itself by way of others, so that there are no rows.
+    """
+    names = dict(re.findall(r'(\d+)\[label = "(\w+)"', dot))
+    feeds = {name: [] for name in sorted(names.values())}
+    for source, target in sorted(re.findall(r"(\d+) -> (\d+)", dot)):
+        feeds[names[target]].append(names[source])
+    try:
+        order = tuple(TopologicalSorter(feeds).static_order())
+    except CycleError:
+        return None
+    row = {}
+    for name in order:
+        row[name] = max((row[source] + 1 for source in feeds[name]), default=0)
+    lines = [[n for n in feeds if row[n] == i] for i in range(max(row.values()) + 1)]
+    width = ACROSS * max(map(len, lines))
+    places = {}
+    for i, line in enumerate(lines):
+        # Each rule as near as may be to what it reads.
+        line.sort(key=lambda name: sum(places[s][0] for s in feeds[name]) / (len(feeds[name]) or 1))
+        for j, name in enumerate(line):
+            places[name] = (round((j + 0.5) * width / len(line)), DOWN * i + HIGH)
+    return {
+        "arrows": [(places[s], places[t]) for t, some in direct(feeds).items() for s in some],
+        "height": DOWN * (len(lines) - 1) + 2 * HIGH,
+        "rules": places,
+        "width": width,
+        "size": (WIDE, HIGH),
+    }
+
+
+def contents(folder, files, scenes, dot, workflow):
+    """Return what the template shows of the ``files`` in ``folder``; all paths are relative to it.
+
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}], ``dot`` is the graph of
+    rules as Snakemake says it, ``workflow`` its own report.
+    """
+    by_name = {scene["name"]: scene for scene in scenes}
+    paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
+    of_all = [path for path in paths if path.parts[0] not in by_name]
+    sections = [
+        section(folder, [path for path in paths if path.parts[0] == name], by_name, scene)
+        for name, scene in by_name.items()
+    ]
+    sections += [section(folder, of_all, by_name)] if of_all else []
+    return {
+        "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
+        "commit": commit(Path(__file__).parent),
+        "date": date.today(),
+        "paper": "paper.pdf" in files,
+        "graph": rules(dot),
+        "sections": sections,
+        "versions": versions(),
+        "workflow": workflow,
+    }
+
+
+def short(number):
+    """Return a number, to two digits if it is large, as HTML: 4.4 × 10¹⁰."""
+    if number < 1000:
+        return str(number)
+    digits, exponent = f"{number:.1e}".split("e")
+    return Markup(f"{digits} × 10<sup>{int(exponent)}</sup>")
+
+
+def page(template, shown):
+    """Return the report: the Jinja ``template``, a text, filled with ``shown``."""
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["short"] = short
+    environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
+    return environment.from_string(template).render(shown)
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="all results")
+    parser.add_argument("--template", required=True, type=Path, help="the page, for Jinja")
+    parser.add_argument("--scenes", required=True, help="the scenes, JSON")
+    parser.add_argument("--workflow", required=True, help="Snakemake's report, beside this one")
+    parser.add_argument("--output", required=True, type=Path, metavar="HTML")
+    options = parser.parse_args()
+    folder = options.output.parent
+    files = [path.relative_to(folder).as_posix() for path in options.files]
+    scenes = json.loads(options.scenes)
+    shown = contents(folder, files, scenes, sys.stdin.read(), options.workflow)
+    text = page(options.template.read_text(encoding="utf-8"), shown)
+    options.output.write_text(text, encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,153 @@
+"""``twodiscs run`` and ``new``: Snakemake's own command line, and what a build ends with.
+
+Quick to import: the Snakefile reads this.
+"""
+
+import shlex
+import signal
+import sys
+from datetime import datetime
+from difflib import get_close_matches
+from importlib import metadata
+from pathlib import Path
+
+import twodiscs
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.model.checks import InputError, whole
+from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.pipeline.configuration.files import Files
+from twodiscs_paper.pipeline.configuration.load import check_results, load
+from twodiscs_paper.pipeline.configuration.reading import ConfigError, read
+
+#: Targets by name, beside the figures and the studies.
+TARGETS = (
+    "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
+    "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
+)  # fmt: skip
+
+#: Where a wheel puts the workflow, below the folder that is installed to.
+SHARED = "share/twodiscs/Snakefile"
+
+#: What ``twodiscs new`` writes: keys that have a default as comments.
+NEW = """\
+# What to compute. Every key, its unit and its default: config/README.md of the repository.
+# Lengths are in any one unit; masses are one and the total energy is 1/2, so times are lengths
+# over a speed of one.
+
+results: results # the folder that everything is built in
+# Another seed repeats every simulation independently.
+# seed: 1908
+# What is built beside the scenes; [paper, report] for the manuscript and all studies.
+# shared: [report]
+
+scenes:
+  - name: mine # that of its folder in results
+    box: {width: 1.5, height: 1.0}
+    # The relative error of mean times: draft is 1e-2, paper 3e-4, reference 1e-4; or a number.
+    accuracy: draft
+    monte_carlo: {samples: 1e7}
+    # Without radii there is a grid of them, up to the largest that fits.
+    # radii: [0.1, 0.2, 0.3]
+    # Also mass_ratio, periodic: [x], field, moment_of_inertia; a depth in the box makes balls.
+    # effects: {radius_ratio: 0.5}
+    # Without watch everything is computed that has a place in the scene.
+    # watch: {mean_times: true, trajectory: 0.24}
+"""
+
+
+def new(path):
+    """Write a commented configuration to ``path``; raise ``InputError`` if there is a file."""
+    try:
+        with open(path, "x", encoding="utf-8", newline="\n") as file:
+            file.write(NEW)
+    except FileExistsError:
+        raise InputError(f"{path} is there already, and is not written over") from None
+    print(f"{path} is written. To build it: twodiscs run {shlex.quote(str(path))}")
+
+
+def snakefile():
+    """Return the Snakefile of this package: in its checkout, or where its wheel has put it."""
+    checkout = Path(twodiscs.__file__).parents[2] / "Snakefile"
+    if checkout.is_file():
+        return checkout
+    try:
+        files = metadata.files("twodiscs") or ()
+    except metadata.PackageNotFoundError:
+        files = ()
+    for file in files:
+        if file.as_posix().endswith(SHARED):
+            return Path(file.locate()).resolve()
+    raise InputError("the workflow is not installed: twodiscs comes without its Snakefile here")
+
+
+def command(path, targets, snakefile, cores=None, dry_run=False):
+    """Return the words that build ``targets`` of the configuration at ``path``, as one types them.
+
+    They ask for so many ``cores``, or all; with ``dry_run`` they say what would be done, and do
+    nothing. Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores``
+    that are no integer ≥ 1.
+    """
+    cores = "all" if cores is None else whole("cores", cores, 1)
+    for target in targets:
+        if target not in TARGETS and "/" not in target:
+            near = get_close_matches(target, TARGETS, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise InputError(
+                f"a target must be one of {', '.join(TARGETS)}, or the path of a file of results, "
+                f"not {target!r}{hint}"
+            )
+    here = Path("Snakefile")
+    found = [] if here.exists() and here.samefile(snakefile) else ["--snakefile", str(snakefile)]
+    words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
+    words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
+    return [*words, "--", *targets] if targets else words
+
+
+def check_targets(path, targets, configuration):
+    """Raise ``InputError`` for a target that has nothing to show of a ``Configuration``."""
+    files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
+    for target in targets:
+        about_plain = target == "paper" or (target in STUDIES and STUDIES[target].about_plain)
+        if about_plain and configuration.main is None:
+            raise InputError(f"{target} is about a scene without effects, and {path} has none")
+        if target in FIGURES and not any(target in files.figures(name) for name in files.scenes):
+            raise InputError(f"{target} shows what no scene of {path} watches, or has a place for")
+
+
+def build(path, targets, cores=None, dry_run=False):
+    """Run ``command`` of these arguments, with Snakemake; return its exit status."""
+    from snakemake.cli import main as snakemake
+
+    try:
+        configuration = load(read(path))
+    except ConfigError as error:
+        # What cannot be read names its file already.
+        told = str(error).split("\n")
+        raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in told)) from None
+    check_results(configuration.results, ".")
+    check_targets(path, targets, configuration)
+    # The Snakefile says how it ended only where there was something to do; here it is always said.
+    words = command(path, targets, snakefile(), cores, dry_run)
+    print(shlex.join(words), flush=True)
+    # In this very process: what ends one of them ends both. Its profile looks at sys.argv.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.argv = words
+    try:
+        snakemake()
+    except SystemExit as end:
+        status = end.code
+    if status == 0 and not dry_run:
+        print(closing(configuration.results), end="")
+    return status
+
+
+def closing(results):
+    """Return the verdict of the check in a folder of ``results``, and where the report is."""
+    said, passed, report = [], Path(results, "check.passed"), Path(results, "report.html")
+    if passed.exists():
+        when = datetime.fromtimestamp(passed.stat().st_mtime)
+        said += [f"{passed}, of {when:%Y-%m-%d %H:%M}:"]
+        said += [f"  {line}" for line in passed.read_text(encoding="utf-8").splitlines()]
+    if report.exists():
+        said += [f"The report is {report.resolve()}"]
+    return "".join(f"{line}\n" for line in said)

@@ -1,0 +1,116 @@
+"""What is counted at one radius: by Monte Carlo, by dynamics, or of intervals between hops.
+
+    python -m twodiscs_paper.pipeline.jobs.point dynamics --width 1.5 --height 1 --radius 0.2 \\
+        --target vertical_hop=1e-3 disc_collision=1e-3 --budget 1e9 --seed 1 --output 0.2.json
+
+A point is a JSON object of counts and sums, with a digest of them. Where it is more work than one
+job should do, it is the sum of shards: jobs of their own, with ``--part`` and ``--blocks``.
+"""
+
+import inspect
+from pathlib import Path
+
+from twodiscs.arguments import (
+    Parser,
+    add_scene,
+    assignment,
+    number,
+    run,
+    scene_of,
+    whole_number,
+)
+from twodiscs.comparison.digests import read_json, write_json
+from twodiscs.comparison.measured.watching import watched
+from twodiscs.model.checks import InputError
+
+
+def monte_carlo(scene, quantities, samples, shell, seed):
+    """Return the ``SamplingRun`` of volume and areas."""
+    from twodiscs.sampling.montecarlo import SamplingRun
+
+    return SamplingRun(scene, quantities, samples, shell, seed)
+
+
+def dynamics(scene, target, budget, seed):
+    """Return the ``CountingRun`` of mean times."""
+    from twodiscs.dynamics.counting import CountingRun
+
+    return CountingRun(scene, dict(target), budget, seed)
+
+
+def intervals(scene, event, intervals, budget, seed):
+    """Return the ``IntervalRun`` of a hop."""
+    from twodiscs.dynamics.intervals import IntervalRun
+
+    return IntervalRun(scene, event, intervals, seed, budget)
+
+
+STAGES = {"monte_carlo": monte_carlo, "dynamics": dynamics, "intervals": intervals}
+
+
+def work_of(stage, scene, options):
+    """Return the run of a ``stage``, given the ``options`` of the command line."""
+    _, *names = inspect.signature(STAGES[stage]).parameters
+    given = {name: getattr(options, name) for name in names}
+    if missing := [name for name, value in given.items() if value is None]:
+        raise InputError(f"{stage} needs --{missing[0]}")
+    return STAGES[stage](scene, **given)
+
+
+def shard(work, part, first, stop):
+    """Return what a shard holds: the sums of the blocks ``first`` … ``stop`` − 1 of a ``part``."""
+    if part not in work.parts:
+        raise InputError(f"part must be one of {', '.join(work.parts)}, not {part!r}")
+    sums = [array.tolist() for array in work.parts[part].work(first, stop)]
+    return {"part": part, "first": first, "stop": stop, "sums": sums}
+
+
+def joined(work, paths):
+    """Return the point that is the sum of the shards at ``paths``, in any order."""
+    from twodiscs.sampling.blocks.rounds import joined
+
+    parts = {name: [] for name in work.parts}
+    for path in paths:
+        content = read_json(path)
+        if content.get("part") not in parts:
+            raise InputError(f"{path} must be a shard of one of {', '.join(parts)}")
+        parts[content["part"]].append(content)
+    return work.point({name: joined(run, parts[name]) for name, run in work.parts.items()})
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
+    parser.add_argument("stage", choices=STAGES)
+    add_scene(parser)
+    parser.add_argument("--quantities", nargs="+", help="monte_carlo: volume, <event>_area")
+    parser.add_argument("--samples", type=whole_number, help="monte_carlo: how many at least")
+    parser.add_argument("--shell", type=number, help="monte_carlo: thickness, a fraction")
+    parser.add_argument(
+        "--target",
+        nargs="+",
+        type=assignment,
+        metavar="EVENT=ERROR",
+        help="dynamics: relative standard errors",
+    )
+    parser.add_argument("--event", help="intervals: the hop")
+    parser.add_argument("--intervals", type=whole_number, help="intervals: how many at least")
+    parser.add_argument("--budget", type=whole_number, help="wall and disc events at most")
+    parser.add_argument("--seed", type=whole_number, required=True, help="of the random streams")
+    parser.add_argument("--part", help="of a shard: all, or a rare hop")
+    parser.add_argument("--blocks", nargs=2, type=int, metavar=("FIRST", "STOP"))
+    parser.add_argument("--shards", nargs="*", default=[], metavar="JSON", help="what to add up")
+    parser.add_argument("--output", required=True, type=Path, metavar="JSON")
+    options = parser.parse_args()
+    work = work_of(options.stage, scene_of(options), options)
+    if options.blocks:
+        content = shard(work, options.part, *options.blocks)
+    elif options.shards:
+        content = joined(work, options.shards)
+    else:
+        with watched(None, options.stage) as watch:
+            content = work.alone(watch)
+    write_json(options.output, content)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,61 @@
+"""The table of a study, of its parameters and of other tables.
+
+    python -m twodiscs_paper.pipeline.jobs.study tails --parameters '{"box": …, "seed": 1, …}' \\
+        --output results/tails.csv
+
+Parameters are one JSON object; their entry ``box`` becomes a ``Box``.
+"""
+
+import inspect
+from pathlib import Path
+
+from twodiscs.arguments import Parser, fail, named, parameters, run
+from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
+from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
+
+
+class Tables(dict):
+    """The tables of a job, {name: rows}; one that was not given ends it with a sentence."""
+
+    def __missing__(self, name):
+        fail(f"the table {name} must be given, as --tables {name}=CSV")
+
+
+def read_tables(texts):
+    """Return {name: rows} of arguments NAME=CSV; the stem of a file says which table it is."""
+    tables = Tables()
+    for name, path in named(texts, "--tables").items():
+        if (table := Path(path).stem) not in TABLES:
+            raise InputError(f"{path} must be one of the tables {', '.join(TABLES)}")
+        tables[name] = TABLES[table].read(path)
+    return tables
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
+    parser.add_argument("table", choices=STUDY_TABLES)
+    parser.add_argument("--parameters", default="{}", metavar="JSON")
+    parser.add_argument("--tables", nargs="*", default=[], metavar="NAME=CSV")
+    parser.add_argument("--output", required=True, metavar="CSV")
+    options = parser.parse_args()
+    table, given = STUDY_TABLES[options.table], parameters(options.parameters)
+    if "box" in given:
+        given["box"] = Box(**given["box"])
+    signature, tables = inspect.signature(table.rows), read_tables(options.tables)
+    if "tables" in signature.parameters:
+        given["tables"] = tables
+    try:
+        bound = signature.bind(**given)
+    except TypeError as error:
+        raise InputError(f"parameters of {options.table}: {error}") from None
+    try:
+        rows = table.rows(*bound.args, **bound.kwargs)
+    except InputError as error:
+        # The configuration was accepted, so the mistake is the study's: the traceback says where.
+        raise RuntimeError(f"the study of {options.table} asks for what is not allowed") from error
+    table.write(options.output, rows)
+
+
+if __name__ == "__main__":
+    run(main)

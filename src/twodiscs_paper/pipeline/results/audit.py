@@ -1,0 +1,106 @@
+"""Which results are not what their jobs wrote.
+
+    python -m twodiscs_paper.pipeline.results.audit --results results --configuration '{…}'
+
+Files are held against ``manifest.sha256``, points and shards against the digests that they carry,
+and the tables of a scene are made again from its points: so an edited table is named even where a
+later build has taken it for good. Files with run times in them are in no manifest.
+"""
+
+from pathlib import Path
+
+from twodiscs.arguments import Parser, parameters, run
+from twodiscs.comparison.digests import digest, read_json
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.checks import InputError
+from twodiscs_paper.pipeline.configuration.files import GATHERED
+from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.pipeline.jobs.table import read_points, rows_of
+
+EDITED, MISSING = "is not what its job wrote", "is missing"
+
+
+def of_manifest(path):
+    """Yield (file, what is wrong with it or None) of the files in the manifest at ``path``.
+
+    Raises ``InputError`` for a file that is no manifest.
+    """
+    for line in path.read_text(encoding="utf-8").splitlines():
+        written, _, name = line.partition("  ")
+        if len(written) != 64 or not name:
+            raise InputError(f"{path} must have lines of a SHA-256 and a name, not {line[:80]!r}")
+        file = path.parent / name
+        same = file.is_file() and digest(file) == written
+        yield file, None if same else EDITED if file.is_file() else MISSING
+
+
+def of_points(folder):
+    """Yield (file, what is wrong with it or None) of all points and shards below ``folder``."""
+    for kind in ("points", "shards"):
+        for file in sorted(folder.glob(f"**/{kind}/**/*.json")):
+            try:
+                read_json(file)
+            except (InputError, OSError):
+                yield file, EDITED
+            else:
+                yield file, None
+
+
+def of_tables(folder, scenes):
+    """Yield (file, what is wrong with it or None) of the tables that are made of points.
+
+    ``scenes`` are ``SceneRequest``s. Points that are missing while a table of theirs is there are
+    yielded too: tables cannot be made again without them.
+    """
+    for scene in scenes:
+        own = folder / scene.name
+        tables = [own / f"{name}.csv" for name in GATHERED if name != "cost"]
+        if not (tables := [file for file in tables if file.is_file()]):
+            continue
+        files = {
+            stage: [own / "points" / stage / f"{key}.json" for key in keys]
+            for stage, keys in scene.keys.items()
+        }
+        gone = [file for some in files.values() for file in some if not file.exists()]
+        yield from ((file, MISSING) for file in gone)
+        try:
+            points = {stage: read_points(stage, some) for stage, some in files.items()}
+        except (OSError, InputError):
+            continue
+        exact = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
+        given = {"box": scene.box, "areas": scene.watch.areas, "theory": exact, "points": points}
+        for file in tables:
+            table = SCENE_TABLES[file.stem]
+            try:
+                same = table.read(file) == [*rows_of(table, **given)]
+            except InputError:
+                same = False
+            yield file, None if same else EDITED
+
+
+def audit(folder, configuration):
+    """Return (sentences on what is wrong below ``folder``, how many files were read)."""
+    differences = [*of_manifest(folder / "manifest.sha256"), *of_points(folder)]
+    differences += of_tables(folder, configuration.scenes)
+    wrong = dict.fromkeys(f"{file} {what}" for file, what in differences if what)
+    return [*wrong], len({file for file, _ in differences})
+
+
+def main():
+    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
+    parser.add_argument("--results", required=True, type=Path, metavar="FOLDER")
+    parser.add_argument("--configuration", required=True, metavar="JSON")
+    options = parser.parse_args()
+    if not (options.results / "manifest.sha256").exists():
+        raise InputError(f"{options.results} has no manifest.sha256: results are built by make")
+    wrong, files = audit(options.results.resolve(), load(parameters(options.configuration)))
+    said = f"all {files} files are what their jobs wrote"
+    if wrong:
+        said = f"{len(wrong)} of {files} files are not what their jobs wrote; "
+        said += "delete them, and they are made again"
+    print(*wrong, said, sep="\n")
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,315 @@
+"""Which hops are passages near the radius where they become blocked, and what diffuses by them.
+
+Distances below that radius are halved again and again. Two quantities have two estimators each that
+share nothing but the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.passages``), and
+the coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
+"""
+
+import math
+from itertools import pairwise
+
+from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
+from twodiscs.comparison.measured.transmission import (
+    TIMES,
+    are_rare,
+    box_time,
+    by_clusters,
+    by_time,
+    of_clusters,
+    of_order,
+    plateau,
+    quiet_time,
+    seed_of,
+)
+from twodiscs.comparison.scores import student_deviate
+from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
+from twodiscs.model.box import Box
+from twodiscs.model.checks import whole
+from twodiscs.model.events import HOPS
+from twodiscs.model.many import Gas
+from twodiscs.theory import exact, tails
+from twodiscs_paper.studies.passages import exclusion, file
+
+#: Distances below the radius where the hop becomes blocked: halved from the first to the last.
+SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
+
+#: Moments of inertia of rough discs: all of them in the first box, one everywhere.
+INERTIAS, ONE_INERTIA = (0.1, 0.25, 0.5, 1.0), 0.5
+
+#: No more hops are followed for one estimate, and no fewer.
+MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
+
+#: Replicas that record κ(t), over those for κ, which may take so many times the events of others:
+#: most of them are in pauses, where events cost least.
+RECORDED, IN_PAUSES = 4, 4
+
+#: Wall and disc events of a hop, about: in a neck of the relative length √distance smooth discs
+#: meet 2/√distance times, rough ones, which diffuse there, 24/distance.
+MET = {False: (2, 0.5), True: (24, 1.0)}
+
+#: The density at 0 is taken from two times, the first of which sees so many hops per hop.
+FIRST = 0.01
+
+#: A ring: correlations of hops are summed up for so many times that a disc takes around it, and
+#: displacements for twice that time, or two mean times between hops, in so many replicas or more.
+AROUND, FEWEST = 16, 2**11
+
+#: Discs in a file on a ring; times, in mean times between the hops of a disc either way, that they
+#: are followed for; no more replicas and no fewer; samples of the rate of their hops.
+FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**20
+
+#: Probabilities of swaps on the lattice; rings of it where it takes long, and where it does not.
+SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
+
+
+def thresholds(box):
+    """Return {hop: radius} at which hops of a plain ``Box`` become blocked before it is full."""
+    limits = {hop: box.threshold(hop) for hop in HOPS}
+    return {hop: radius for hop, radius in limits.items() if radius in box.thresholds}
+
+
+def radius_at(limit, halvings):
+    """Return the radius 2^−``halvings`` below a ``limit``, relative to it."""
+    return limit * (1 - 2.0**-halvings)
+
+
+def blocks_for(scene, distance, time, events):
+    """Return how many blocks of hops, followed for a ``time``, take about so many ``events``."""
+    factor, power = MET[scene.moment_of_inertia is not None]
+    price = time * exact.event_rate(scene) + factor / distance**power
+    return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
+
+
+class _Hop:
+    """One kind of hops at one radius: what is measured, and the rows that say so."""
+
+    def __init__(self, name, scene, hop, halvings, seed):
+        self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
+        self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
+        self.row = {
+            "scene": name,
+            "width": scene.width,
+            "height": scene.height,
+            "periodic": scene.periodic or None,
+            "event": hop,
+            "discs": 2,
+            "radius": scene.radius,
+            "distance": 2.0**-halvings,
+            "exact_mean": self.mean,
+            "moment_of_inertia": scene.moment_of_inertia,
+        }
+
+    def _seed(self, what):
+        inertia = self.scene.moment_of_inertia
+        kind = f"{self.scene.periodic} {inertia}" if self.scene.has_effects else ""
+        return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
+
+    def said(self, quantity, method, estimate, time=None, reference=None, events=None):
+        """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method.
+
+        The error of what comes from ``states`` is that of as many independent blocks.
+        """
+        row = self.row | {"quantity": quantity, "method": method, "time": time, "events": events}
+        row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
+        if reference is None:
+            return row
+        if not isinstance(reference, Estimate):
+            reference = Estimate(reference, 0.0, 1)
+        z = (estimate.value - reference.value) / math.hypot(estimate.stderr, reference.stderr)
+        return row | {
+            "reference": reference.value,
+            "reference_stderr": reference.stderr or None,
+            "z": student_deviate(z, estimate.n - 1) if method == "states" else z,
+            "test": "normal",
+        }
+
+    def clusters(self, blocks):
+        """Return (κ or None, the rows of it)."""
+        gap = quiet_time(self.scene, self.hop)
+        if not are_rare(self.scene, self.hop):
+            return None, []
+        sizes, events = cluster_sizes(self.scene, self.hop, gap, blocks, self._seed("clusters"))
+        kappa = plateau(by_clusters(sizes), gap, self.mean, of_clusters)
+        if kappa is None:
+            return None, []
+        time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
+        return kappa, [
+            self.said("coefficient", "clusters", kappa, gap, events=events),
+            self.said("passage_time", "clusters", time, gap),
+        ]
+
+    def curve(self, blocks, kappa):
+        """Yield the rows of κ(t), and of its plateau against ``kappa`` if that is known."""
+        gap = quiet_time(self.scene, self.hop)
+        box, own = box_time(self.scene, self.hop), []
+        times = sorted({*([gap] if kappa else []), *(box * time for time in TIMES)})
+        sums, events = hop_sums(self.scene, self.hop, times, blocks, self._seed("times"))
+        for time, estimate in zip(times, by_time(sums), strict=True):
+            if time == gap:
+                own.append(estimate)
+            else:
+                yield self.said("correlation", "hops", estimate, time)
+        flat = plateau(own[0], gap, self.mean, of_order) if kappa else None
+        if flat:
+            yield self.said("plateau", "hops", flat, gap, kappa, events)
+
+    def slope(self, blocks):
+        """Yield the row of −dκ/dt at 0⁺ against its exact value 2 p(0⁺), for plain scenes.
+
+        κ is 1 − 2 p t + a t² in all that counts at short times t and 2t, of independent replicas.
+        """
+        density = tails.density_at_zero(self.scene, self.hop)
+        time = FIRST / (2 * density)
+        if time > math.sqrt(self.scene.contact_distance * self.scene.room(self.hop)):
+            return  # discs that turn round so late do not find the neck again
+        parts = []
+        for n in (1, 2):
+            sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
+            parts.append(by_time(sums)[0])
+        half, whole = parts
+        value = (4 * (1 - half.value) - (1 - whole.value)) / (2 * time)
+        error = math.hypot(4 * half.stderr, whole.stderr) / (2 * time)
+        curvature = Estimate(value, error, half.n + whole.n)
+        yield self.said("slope", "hops", curvature, time, 2 * density)
+
+    def diffusion(self, events):
+        """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
+        around = AROUND * box_time(self.scene, self.hop)
+        rate = exact.event_rate(self.scene)
+        blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
+        sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
+        (correlated,) = by_time(sums)
+        yield self.said("diffusion", "hops", correlated, around, events=simulated)
+        time = max(around, self.mean)
+        blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // REPLICAS
+        sums, simulated = hop_sums(
+            self.scene, self.hop, [time, 2 * time], blocks, self._seed("states"), on_surface=False
+        )
+        per_time = sums / (REPLICAS * time)
+        counted = mean_of(per_time[:, 2, 1] / 2)
+        yield self.said("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
+        # What is displaced in the second half of the time has forgotten the start.
+        moved = mean_of((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
+        yield self.said("diffusion", "states", moved, 2 * time, correlated)
+
+
+def near_threshold(name, box, hop, halvings, inertia, events, seed):
+    """Yield the rows of one hop of a plain ``Box`` at distances that are halved.
+
+    ``inertia`` is that of rough discs, None for smooth ones; ``events`` are about how many wall and
+    disc events an estimate of κ may take.
+    """
+    limit, measured = thresholds(box)[hop], []
+    effects = {} if inertia is None else {"moment_of_inertia": inertia}
+    for n in halvings:
+        scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
+        near, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
+        blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
+        kappa, rows = near.clusters(blocks)
+        yield from rows
+        yield from near.curve(max(blocks // RECORDED, FEWEST_HOPS // REPLICAS), kappa)
+        if inertia is None:
+            yield from near.slope(MOST_HOPS // REPLICAS)
+        if kappa:
+            measured.append((near, kappa))
+    yield from _exponents(measured)
+
+
+def _exponents(measured):
+    """Yield the rows of exponents: of κ or 1 − κ between distances, of the time between passages.
+
+    ``measured`` are pairs (``_Hop``, κ), the distance halved from one to the next.
+    """
+    for (_, before), (near, kappa) in pairwise(measured):
+        rough = near.scene.moment_of_inertia is not None
+        values = [(k.value if rough else 1 - k.value) for k in (before, kappa)]
+        if min(values) <= 0:
+            continue
+        errors = [k.stderr / v for k, v in zip((before, kappa), values, strict=True)]
+        slope = Estimate(math.log2(values[0] / values[1]), math.hypot(*errors) / math.log(2), 2)
+        yield near.said("exponent", "fit", slope)
+    if len(measured) > 2:
+        x = [-near.halvings * math.log(2) for near, _ in measured]
+        y = [math.log(near.mean / kappa.value) for near, kappa in measured]
+        errors = [kappa.stderr / kappa.value for _, kappa in measured]
+        yield measured[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
+
+
+def on_ring(name, box, inertia, events, seed):
+    """Yield the rows of diffusion along x, where a ``Box`` is closed to a ring."""
+    effects = {"periodic": "x"} | ({} if inertia is None else {"moment_of_inertia": inertia})
+    limit = box.height / 4
+    for n in RING:
+        scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
+        yield from _Hop(name, scene, "horizontal_hop", n, seed).diffusion(events)
+
+
+def in_file(name, box, discs, events, seed):
+    """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
+    for n in RING:
+        scene = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
+        gas = Gas(discs, box.width * discs / 2, box.height, scene.radius, "x")
+        row = {
+            "scene": name, "width": gas.width, "height": gas.height, "periodic": "x",
+            "event": "horizontal_hop", "discs": discs, "radius": gas.radius,
+            "distance": 2.0**-n, "method": "states",
+        }  # fmt: skip
+        streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
+        sampled = file.sampled_rate(gas, FILE_SAMPLES, streams[0])
+        # A power of two: a time of its own would be rounded by the last digits of the rate.
+        time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
+        price = 2 * time * exact.event_rate(scene) * (discs / 2) ** 0.5
+        replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
+        moved, hops = file.diffusion(gas, time, replicas, streams[1])
+        z = (hops.value - sampled.value) / math.hypot(hops.stderr, sampled.stderr)
+        counted = {"estimate": hops.value, "stderr": hops.stderr, "z": z, "test": "normal"}
+        reference = {"reference": sampled.value, "reference_stderr": sampled.stderr}
+        row |= {"time": 2 * time, "replicas": moved.n}
+        yield row | counted | reference | {"quantity": "rate"}
+        yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
+
+
+def on_lattice(seed):
+    """Yield the rows of the single file on a lattice."""
+    start = {"event": "swap", "method": "lattice"}
+
+    def said(quantity, swap, estimate, reference=None, **more):
+        row = start | {"quantity": quantity, "swap": swap} | more
+        row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
+        if reference is not None:
+            z = student_deviate((estimate.value - reference) / estimate.stderr, estimate.n - 1)
+            row |= {"reference": reference, "z": z, "test": "normal"}
+        return row
+
+    file = exclusion.single_file(MORE_RINGS, seed)
+    yield said("single_file", 0.0, file, time=exclusion.WITHOUT)
+    for number, swap in enumerate(SWAPS, 1):
+        time = exclusion.run_time(swap)
+        rings = RINGS if time > LONG else MORE_RINGS
+        diffusion = exclusion.diffusion(swap, rings, seed + number)
+        free = exclusion.DENSITY if swap == 1 else None
+        rate = {"exact_mean": 1 / (2 * exclusion.DENSITY * swap), "time": time}
+        yield said("diffusion", swap, diffusion, free, **rate)
+
+
+def rows(scenes, events, seed):
+    """Yield the rows of passages.csv, without their empty cells.
+
+    ``scenes`` is {name: parameters of a plain box}; rough discs with all moments of inertia and the
+    ring are in the first of them. ``events`` are about how many wall and disc events an estimate
+    may take. Every estimate has random streams of its own, derived from the ``seed``.
+    """
+    whole("seed", seed, 0), whole("events", events)
+    for index, (name, parameters) in enumerate(scenes.items()):
+        box = Box(**parameters)
+        limits = thresholds(box)
+        for hop in limits:
+            yield from near_threshold(name, box, hop, SMOOTH, None, events, seed)
+            for inertia in INERTIAS if index == 0 and hop == [*limits][-1] else (ONE_INERTIA,):
+                yield from near_threshold(name, box, hop, ROUGH, inertia, events, seed)
+        if index == 0 and box.fits(box.height / 4):
+            for inertia in (None, ONE_INERTIA):
+                yield from on_ring(name, box, inertia, events, seed)
+            for discs in FILES:
+                yield from in_file(name, box, discs, 2 * events, seed)
+    yield from on_lattice(seed)

@@ -1,0 +1,75 @@
+"""The table of hops that are passages, and of diffusion by them."""
+
+from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+
+AS_ESTIMATE = Column(float, "as estimate")
+
+
+class Passages(Table):
+    """
+    One row per quantity of the hops of one kind at one radius: which of them are passages, how fast
+    they make discs diffuse along a ring, and the same for a single file on a lattice.
+    """
+
+    scene: TEXT
+    """the scene; empty for the lattice"""
+    width: LENGTH
+    height: LENGTH
+    periodic: TEXT
+    """axes without walls; empty for none"""
+    event: TEXT
+    """the hop; swap on the lattice"""
+    discs: COUNT
+    """number of discs; empty for the lattice"""
+    radius: LENGTH
+    distance: NUMBER
+    """
+    (r_c − r)/r_c, the relative distance below the radius r_c at which the hop becomes blocked
+    """
+    moment_of_inertia: Column(float, "m r²")
+    """that of rough discs; empty for smooth ones"""
+    swap: NUMBER
+    """probability that neighbours on the lattice swap"""
+    exact_mean: TIME
+    """exact mean time τ between hops, in both directions together"""
+    quantity: TEXT
+    """
+    correlation: C(t) = 1 + 2⟨Σ s_0 s_k⟩ of the directions of hops, between walls the transmission
+    coefficient κ(t); slope: −dκ/dt at 0⁺; coefficient: the fraction κ of hops that are passages, by
+    clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
+    1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
+    the one before; passage_exponent: of the time between passages, over all distances; rate:
+    of hops of two discs, or of each of more; diffusion: D/(ν ℓ²) with ν hops of a disc per time in
+    either direction, each by ℓ; single_file: F of the mean square displacement F √t
+    """
+    method: TEXT
+    """
+    clusters: odd clusters over hops; hops: initial states on the surface of the hop; states: of the
+    invariant measure; fit: to the rows before; lattice: of exclusion
+    """
+    time: TIME
+    """t; for clusters the time without a hop that ends one"""
+    estimate: Column(float, "time, 1/time or none")
+    """estimate"""
+    stderr: AS_ESTIMATE
+    """its standard error"""
+    reference: AS_ESTIMATE
+    """
+    what it should come to: exact, or by the other method; of more than two discs by Monte Carlo
+    """
+    reference_stderr: AS_ESTIMATE
+    """standard error of the reference; empty where that is exact"""
+    z: NUMBER
+    test: TEXT
+    """how z was found: normal"""
+    replicas: COUNT
+    """independent replicas; of a fit, points"""
+    events: COUNT
+    """wall hits and disc collisions that were simulated for it"""
+
+    @staticmethod
+    def rows(scenes, events, seed):
+        """Yield the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
+        from twodiscs_paper.studies.passages import measure
+
+        yield from (Passages.empty(**row) for row in measure.rows(scenes, events, seed))

@@ -1,0 +1,44 @@
+"""The table of the tails of the times between events."""
+
+from twodiscs.comparison.tables.base import LENGTH, TEXT, TIME, Column, Table
+
+AS_ESTIMATE = Column(float, "as estimate")
+
+
+class Tails(Table):
+    """
+    One row per time t: how probable an interval T longer than t is, in the box of the first scene.
+    """
+
+    event: TEXT
+    """what begins and ends the interval: a hop or disc_collision"""
+    radius: LENGTH
+    exact_mean: TIME
+    """exact mean interval"""
+    quantity: TEXT
+    """survival: P(T > t); rate: of the decay of P(T > t)"""
+    method: TEXT
+    """
+    counted: intervals that begin within a window; weighted: those met by starts that are drawn near
+    the motions that last, with exact weights
+    """
+    time: TIME
+    """t; for a rate, where the fit begins"""
+    until: TIME
+    """where the fit ends; empty for survival"""
+    estimate: Column(float, "1/time for a rate")
+    """estimate"""
+    stderr: AS_ESTIMATE
+    """its standard error, from independent blocks"""
+    law: AS_ESTIMATE
+    """
+    C/t³ with the exact C, empty where it is 0; for a rate 1/mean, which it would be if intervals
+    were exponential
+    """
+
+    @staticmethod
+    def rows(box, samples, replicas, seed):
+        """Return the rows for a ``Box`` (see ``measure.rows``)."""
+        from twodiscs_paper.studies.tails import measure
+
+        return list(measure.rows(box, samples, replicas, seed))

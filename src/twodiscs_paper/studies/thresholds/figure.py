@@ -1,0 +1,90 @@
+"""Power laws of mean times below the radii at which their events die out."""
+
+import numpy as np
+
+from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.style import BLACK, GREY, new_figure
+from twodiscs.model.events import HOPS, SHELLS
+from twodiscs.theory.exact import mean_times
+from twodiscs.theory.laws import leading_law
+from twodiscs_paper.studies.thresholds.measure import near, passages, start
+
+#: Inches: the panel of the hops, that of the ratios to the laws, the gap, the room above.
+HOP_TIMES, RATIOS, GAP, TOP = 2.0, 1.6, 0.4, 0.22
+
+#: The least distance below the limit, relative to it, and points on a curve.
+NEAREST, POINTS = 2e-5, 80
+
+
+def draw(box, tables):
+    """Draw mean_times.csv, if given, and the first passages of distributions.csv."""
+    figure = new_figure(panels.BOTTOM + RATIOS + GAP + HOP_TIMES + TOP)
+    hops = panels.add_panel(figure, panels.BOTTOM + RATIOS + GAP, HOP_TIMES)
+    ratios = panels.add_panel(figure, panels.BOTTOM, RATIOS)
+    for event, (colour, marker) in LOOKS.items():
+        law = leading_law(box, event) if event in SHELLS else None
+        if law is None:
+            continue
+        rows = [row for row in _mean_times(tables) if row["event"] == event]
+        rows = near(box, law, rows)
+        end = 1 - start(box, law) / law.limit
+        distances = np.geomspace(NEAREST, 0.999 * end, POINTS)
+        radii = law.limit * (1 - distances)
+        exact = np.array([mean_times(box.scene(r))[event] for r in radii])
+        style = panels.open_symbol(colour, marker)
+        name = name_of(event)
+        _points(ratios, law, rows, name, style, law)
+        ratios.plot(distances, exact / law(radii), color=colour, zorder=2)
+        if event in HOPS and law.power < 0:
+            _points(hops, law, rows, name, style)
+            hops.plot(distances, exact, color=colour, zorder=2)
+            hops.plot(distances, law(radii), color=colour, lw=0.7, ls=(0, (4, 2)))
+            first = next((row["scene"] for row in tables["distributions"]), None)
+            rows_near = near(box, law, passages(tables["distributions"], first, event))
+            _points(hops, law, rows_near, None, {"color": colour, "marker": "x", "markersize": 3})
+    hops.plot([], [], "x", color=BLACK, markersize=3, label="first passages")
+    _slopes(hops)
+    ratios.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
+    for axes in (hops, ratios):
+        axes.set(xscale="log", yscale="log", xlim=(NEAREST, 0.25))
+    ratios.set(ylim=(0.7, 5))
+    ratios.set_yticks([1, 2, 5], ["1", "2", "5"])
+    ratios.yaxis.set_minor_formatter("")
+    hops.set_ylabel("time between hops")
+    ratios.set(
+        xlabel=r"distance from the limit $\delta/r_{\rm c}$", ylabel=r"$\tau/(\tau_0\delta^\gamma)$"
+    )
+    hops.legend(loc="upper right")
+    ratios.legend(loc="upper left")
+    panels.letter(hops, "a")
+    panels.letter(ratios, "b")
+    panels.name_box(hops, box)
+    return figure
+
+
+def _mean_times(tables):
+    """Return the rows of the mean_times.csv that is given, if one is."""
+    measured = [rows for name, rows in tables.items() if name.endswith("mean_times")]
+    return measured[0] if measured else []
+
+
+def _points(axes, law, rows, name, style, unit=np.ones_like):
+    """Draw measured times over ``unit`` of the radius; those from a strip have full symbols."""
+    for shown, look in panels.by_start(rows, style):
+        columns = [[row[c] for row in shown] for c in ("radius", "estimate", "stderr")]
+        radius, value, error = np.array(columns, float)
+        scale = unit(radius)
+        axes.errorbar(
+            1 - radius / law.limit, value / scale, error / scale, ls="", elinewidth=0.6,
+            label=name if look is style else None, zorder=3, **look,
+        )  # fmt: skip
+
+
+def _slopes(axes):
+    """Draw the two powers that are told apart."""
+    x = np.array([4e-5, 1e-3])
+    for power, name in ((-2, r"$\delta^{-2}$"), (-1.5, r"$\delta^{-3/2}$")):
+        y = 100 * (x / x[0]) ** power
+        axes.plot(x, y, color=GREY, lw=0.8)
+        drawing.label(axes, name, (x[1], y[1]), (3, 0), ha="left", va="center", color=GREY)
