@@ -99,7 +99,7 @@ MUTANTS = [
     ("comparison/scores.py", "two tails", "alarm) / (2 * comparisons)", "alarm) / comparisons"),
     ("comparison/check.py", "half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
     ("comparison/measured/scan.py", "a budget is lost", "result.more(error, budget, None, cores, progress)", "result.more(error, None, None, cores, progress)"),
-    ("comparison/measured/watching.py", "what is done counts again", "bar.update(done - bar.n)", "bar.update(done)"),
+    ("comparison/measured/progress.py", "what is done counts again", "bar.update(done - bar.n)", "bar.update(done)"),
     ("studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
     ("studies/passages/file.py", "length of a ring for a disc", "per_disc = gas.width / gas.discs", "per_disc = gas.width / 2"),

@@ -37,7 +37,7 @@ CALLS = [
     (Box, {"width": 1.5, "height": 1.0, "effects": {"field": 0.1}}),
     (BOX.scene, {"radius": 0.2}),
     (BOX.threshold, {"event": "any_wall"}),
-    (checks.length, {"name": "side", "value": 1.0}),
+    (checks.check_length, {"name": "side", "value": 1.0}),
     (radii.radii, {"width": 1.5, "height": 1.0, "smallest": 0.01, "count": 8}),
     (radii.even_radii, {"smallest": 0.1, "largest": 0.2, "count": 8}),
     (radii.stream_seed, {"seed": 1, "scene": "paper", "method": "dynamics", "key": "0.2"}),

@@ -289,7 +289,7 @@ def test_a_new_box_runs_the_jobs_and_makes_the_tables_that_the_page_says(scene, 
     said = Counter()
     text = page("docs/add-a-box.md")
     (rows,) = re.findall(rf"\| jobs in `{scene}` \|.*\n\|---.*\n((?:\|.*\n)+)", text)
-    watched = load.load(with_examples()).scene(scene).watch.quantities
+    watched = load.load(with_examples()).scene(scene).quantities.names
     called = sum(entry.is_called(watched) for entry in FIGURES.values())
     for row in rows.splitlines():
         names, number, _ = row.strip("|").split("|")
@@ -309,11 +309,11 @@ def checked(tmp_path_factory):
     """Do the work of the scene ``look``; return the path of its check.csv."""
     scene, path = load.load(with_examples()).scene("look"), tmp_path_factory.mktemp("look")
     points = {
-        stage: [cost.run_of(scene, stage, radius).alone() for radius in keys.values()]
+        stage: [cost.run_of(scene, stage, radius).run() for radius in keys.values()]
         for stage, keys in scene.keys.items()
     }
     theory = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
-    rows = SCENE_TABLES["check"].rows(scene.box, theory, points, scene.watch.areas)
+    rows = SCENE_TABLES["check"].rows(scene.box, theory, points, scene.quantities.areas)
     SCENE_TABLES["check"].write(path / "check.csv", rows)
     return path / "check.csv"
 

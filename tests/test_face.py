@@ -112,7 +112,7 @@ def test_defaults_are_those_of_a_configuration():
 
 def point(stage):
     """Return what the job of the configuration finds."""
-    return cost.run_of(load.load(CONFIGURATION).scenes[0], stage, 0.2).alone()
+    return cost.run_of(load.load(CONFIGURATION).scenes[0], stage, 0.2).run()
 
 
 def test_results_are_those_of_the_pipeline(simulated, sampled, intervals, trajectory):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison.measured import watching
+from twodiscs.comparison.measured import progress as progress_module
 from twodiscs.model.checks import PRESETS
 from twodiscs.model.effects import EFFECTS
 
@@ -166,7 +166,7 @@ def test_a_window_opens_at_a_plain_prompt_alone(monkeypatch):
 @pytest.mark.parametrize("progress", [None, True, False])
 def test_progress_is_shown_where_someone_looks(progress, monkeypatch, capsys):
     pytest.importorskip("tqdm", reason="tqdm shows progress")
-    monkeypatch.setattr(watching, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress_module, "PATIENCE", 0.0)
     td.simulate(SCENE, 0.02, progress=progress)
     td.starts(SCENE, 10, progress=progress)
     td.trajectory(SCENE, duration=1, progress=progress)
@@ -186,7 +186,7 @@ def test_a_bar_is_where_the_work_is(monkeypatch):
             bars.append(self)
 
     monkeypatch.setattr(auto, "tqdm", Bar)
-    with watching.watched(True, "work") as watch:
+    with progress_module.progress_bar(True, "work") as watch:
         for done in (2, 5, None, 9):
             watch(done, 10)
         assert [(bar.n, bar.total) for bar in bars] == [(9, 10)]

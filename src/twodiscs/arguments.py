@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, comma, written
+from twodiscs.model.checks import InputError, decimal_hint, format_number
 from twodiscs.model.effects import EFFECTS
 
 
@@ -72,7 +72,7 @@ def number(text):
     try:
         return float(text)
     except ValueError:
-        message = f"must be a number, not {text!r}{comma(text)}"
+        message = f"must be a number, not {text!r}{decimal_hint(text)}"
         raise argparse.ArgumentTypeError(message) from None
 
 
@@ -111,7 +111,7 @@ def add_box(parser, required=True):
 def _help(effect):
     """Return what an effect is, with its unit, its range and what is without it."""
     said = [effect.unit] if effect.unit else []
-    ends = (written(end, "g") for end in (effect.low, effect.high) if effect.is_number)
+    ends = (format_number(end, "g") for end in (effect.low, effect.high) if effect.is_number)
     said += [" to ".join(ends) or "x, y or z"]
     said += [f"{effect.default} without it"] if effect.default else []
     return f"{effect.meaning} ({'; '.join(said)})"

@@ -9,7 +9,7 @@ import argcomplete
 
 import twodiscs
 from twodiscs.arguments import Parser, add_scene, number, run, scene_of, whole_number
-from twodiscs.model.checks import PRESETS, InputError, comma
+from twodiscs.model.checks import PRESETS, InputError, decimal_hint
 from twodiscs.model.events import EVENTS
 from twodiscs.model.plugins import plugin
 
@@ -112,7 +112,7 @@ def error(text):
         return text if text in PRESETS else number(text)
     except argparse.ArgumentTypeError:
         allowed = ", ".join(PRESETS)
-        message = f"must be a number or one of {allowed}, not {text!r}{comma(text)}"
+        message = f"must be a number or one of {allowed}, not {text!r}{decimal_hint(text)}"
         raise argparse.ArgumentTypeError(message) from None
 
 

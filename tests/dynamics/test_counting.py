@@ -163,7 +163,7 @@ def test_accuracy_is_reached_or_the_budget_is_spent():
 def test_who_watches_sees_what_is_done_and_how_much_there_is():
     seen = []
     run = counting.CountingRun(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
-    point = run.alone(lambda *given: seen.append(given))
+    point = run.run(lambda *given: seen.append(given))
     done, everything = zip(*(pair for pair in seen if pair[0] is not None), strict=True)
     assert list(done) == sorted(done)
     assert done[-1] == pytest.approx(point["events"], rel=0.05)

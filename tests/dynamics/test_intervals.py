@@ -185,7 +185,7 @@ def test_intervals_of_many_do_not_depend_on_who_draws_them():
         for a, b in ((0, 1), (1, 3))
     ]
     joined = rounds.joined(part, json.loads(json.dumps(pieces)))
-    assert run.point({"all": joined}) == run.alone()
+    assert run.point({"all": joined}) == run.run()
 
 
 def test_what_is_not_known_of_many_is_refused():

@@ -34,7 +34,7 @@ def results(tmp_path, monkeypatch):
     points = []
     for key, radius in scene.keys["monte_carlo"].items():
         run = monte_carlo(BOX.scene(radius), **scene.arguments("monte_carlo", radius))
-        points.append(run.alone())
+        points.append(run.run())
         write_json(own / "points" / "monte_carlo" / f"{key}.json", points[-1])
     theory = SCENE_TABLES["theory"].rows(BOX, scene.radii)
     given = {"box": BOX, "theory": theory, "areas": [], "points": {"monte_carlo": points}}

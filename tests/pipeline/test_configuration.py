@@ -22,7 +22,7 @@ from twodiscs.model.scene import Scene
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration import load, schema
 from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.pipeline.configuration.request import STAGES, Watch
+from twodiscs_paper.pipeline.configuration.request import STAGES, Quantities
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -66,7 +66,7 @@ def test_the_draft_is_a_quick_look_at_the_same_scenes():
     assert draft.seed == full.seed
     for quick, slow in zip(draft.scenes, full.scenes, strict=True):
         assert (quick.name, quick.box) == (slow.name, slow.box)
-        assert quick.watch.quantities == slow.watch.quantities
+        assert quick.quantities.names == slow.quantities.names
         assert len(quick.radii) <= 10
         assert quick.dynamics["accuracy"] == dict.fromkeys(EVENTS, 1e-2)
 
@@ -98,7 +98,7 @@ def test_the_schema_is_one_and_agrees_with_the_code():
     assert definitions["length"]["maximum"] == checks.LONGEST
     properties = schema.schema()["properties"]["scenes"]["items"]["properties"]
     assert tuple(properties["accuracy"]["properties"]) == ("default", *EVENTS)
-    assert tuple(properties["watch"]["properties"]) == tuple(Watch.__dataclass_fields__)
+    assert tuple(properties["watch"]["properties"]) == tuple(Quantities.__dataclass_fields__)
     assert "|".join(load.PRESETS) in definitions["precision"]["pattern"]
 
 
@@ -138,18 +138,18 @@ def test_a_name_and_a_box_are_enough(width, height):
     request = one(box={"width": width, "height": height})
     assert len(request.radii) == 24
     parts = (f"{event}_{part}" for event in EVENTS for part in ("area", "time"))
-    assert request.watch.quantities == {"volume", "hop_histogram", "trajectory", *parts}
-    assert len(request.watch.hop_histogram) == 4
-    assert all(Scene(width, height, r).vertical_hops for r in request.watch.hop_histogram)
-    assert Scene(width, height, request.watch.trajectory).regime == "all-hops"
+    assert request.quantities.names == {"volume", "hop_histogram", "trajectory", *parts}
+    assert len(request.quantities.hop_histogram) == 4
+    assert all(Scene(width, height, r).vertical_hops for r in request.quantities.hop_histogram)
+    assert Scene(width, height, request.quantities.trajectory).regime == "all-hops"
     assert request.dynamics["accuracy"] == dict.fromkeys(EVENTS, 3e-4)
     assert request.event_budget == 2 * 10**9
 
 
 def test_a_watch_block_is_everything_that_is_watched():
     request = one(watch={"mean_times": ["top_wall", "right_wall"]})
-    assert request.watch == Watch(False, (), ("right_wall", "top_wall"), (), None)
-    assert request.watch.quantities == {"right_wall_time", "top_wall_time"}
+    assert request.quantities == Quantities(False, (), ("right_wall", "top_wall"), (), None)
+    assert request.quantities.names == {"right_wall_time", "top_wall_time"}
     assert request.keys["monte_carlo"] == request.keys["intervals"] == {}
     assert tuple(request.keys["dynamics"].values()) == request.radii
     assert request.exact_radii("theory") == request.exact_radii("grid") == [*request.radii]
@@ -160,7 +160,7 @@ def test_a_watch_block_is_everything_that_is_watched():
 def test_what_is_false_is_off():
     watch = {"volume": True, "areas": False, "hop_histogram": False, "trajectory": False}
     request = one(watch=watch)
-    assert request.watch.quantities == {"volume"}
+    assert request.quantities.names == {"volume"}
     assert request.keys["dynamics"] == {}
     assert request.arguments("monte_carlo", 0.01)["quantities"] == ["volume"]
     assert request.tables == ("grid", "theory", "volume", "check", "cost")
@@ -169,14 +169,19 @@ def test_what_is_false_is_off():
 
 
 def test_hop_histograms_have_three_forms():
-    assert one(watch={"hop_histogram": True}).watch.hop_histogram == (0.0375, 0.112, 0.188, 0.262)
+    assert one(watch={"hop_histogram": True}).quantities.hop_histogram == (
+        0.0375,
+        0.112,
+        0.188,
+        0.262,
+    )
     listed = one(watch={"hop_histogram": [0.2, 0.1]})
-    assert listed.watch.hop_histogram == (0.1, 0.2)
+    assert listed.quantities.hop_histogram == (0.1, 0.2)
     assert listed.histogram == {
         "event": "vertical_hop", "event_budget": 10**11, "intervals": 10**6
     }  # fmt: skip
     block = one(watch={"hop_histogram": {"event": "horizontal_hop", "intervals": "1e4"}})
-    assert block.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
+    assert block.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     asked = block.arguments("intervals", 0.025)
     assert (asked["event"], asked["intervals"]) == ("horizontal_hop", 10**4)
 
@@ -222,7 +227,10 @@ def test_included_radii_do_not_move_the_others():
 def jobs(request):
     """What every job of a scene depends on, beside the box, by job."""
     every = {(table,): request.exact_radii(table) for table in ("theory", "grid")}
-    every["trajectory",] = {"radius": request.watch.trajectory, "seed": request.trajectory_seed}
+    every["trajectory",] = {
+        "radius": request.quantities.trajectory,
+        "seed": request.trajectory_seed,
+    }
     return every | {
         (stage, key): request.arguments(stage, key)
         for stage in STAGES
@@ -230,7 +238,7 @@ def jobs(request):
     }
 
 
-BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(Watch.__dataclass_fields__, True)}
+BASE = {"radii": [0.1, 0.2], "watch": dict.fromkeys(Quantities.__dataclass_fields__, True)}
 
 
 def edited(**keys):
@@ -295,16 +303,16 @@ CALLS = [
 @pytest.mark.parametrize(("effects", "events", "histograms"), CALLS)
 def test_everything_is_what_has_a_place(effects, events, histograms):
     request = one(effects=effects)
-    assert request.watch.areas == request.watch.mean_times == events
-    assert request.watch.hop_histogram == histograms
+    assert request.quantities.areas == request.quantities.mean_times == events
+    assert request.quantities.hop_histogram == histograms
     assert request.histogram["event"] == next((e for e in events if e in HOPS), None)
-    assert (request.watch.trajectory is None) == (effects == {"periodic": ["y", "x"]})
+    assert (request.quantities.trajectory is None) == (effects == {"periodic": ["y", "x"]})
     named = {name: "".join(sorted(v)) if isinstance(v, list) else v for name, v in effects.items()}
-    for radius in request.radii + request.watch.hop_histogram:
+    for radius in request.radii + request.quantities.hop_histogram:
         assert request.box.scene(radius) == Scene(1.5, 1, radius, **named)
     assert request.box.scene(0.1).effects == request.effects
     asked = one(effects=effects, watch={"areas": True, "mean_times": True})
-    assert asked.watch.areas == asked.watch.mean_times == events
+    assert asked.quantities.areas == asked.quantities.mean_times == events
 
 
 def test_default_radii_keep_to_what_there_is():
@@ -317,8 +325,8 @@ def test_default_radii_keep_to_what_there_is():
     assert max(steps) == pytest.approx(min(steps), rel=0.1)
     # With g = 2 two discs one above the other have the energy up to r = 1/(4g).
     strong = one(effects={"field": 2}, watch={"hop_histogram": {"event": "horizontal_hop"}})
-    assert strong.watch.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
-    assert one(effects={"field": 2}).watch.trajectory == 0.0625
+    assert strong.quantities.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
+    assert one(effects={"field": 2}).quantities.trajectory == 0.0625
     # The larger disc has a hundredth of the side.
     assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
     assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
@@ -330,7 +338,7 @@ def test_balls_are_discs_with_a_depth():
     request = one(box={"width": 1.5, "height": 1, "depth": "1.2"}, effects={"periodic": ["z"]})
     assert request.effects == {"depth": 1.2, "periodic": "z"}
     assert request.box.scene(0.1) == Scene(1.5, 1, 0.1, depth=1.2, periodic="z")
-    assert request.watch.mean_times == EVENTS
+    assert request.quantities.mean_times == EVENTS
 
 
 @pytest.mark.parametrize(
@@ -663,7 +671,7 @@ def test_a_histogram_that_would_not_end_is_refused():
     with pytest.raises(load.ConfigError, match=r"at 0.24999999 each one takes 3.9e\+14 events"):
         one(watch=watch)
     watch["hop_histogram"]["radii"] = [0.249]
-    assert one(watch=watch).watch.hop_histogram == (0.249,)
+    assert one(watch=watch).quantities.hop_histogram == (0.249,)
 
 
 def test_the_fewest_intervals_are_a_block():
@@ -701,14 +709,14 @@ def test_more_discs_are_a_scene_of_their_own():
     request = one(discs=3, radii=[0.1, 0.2])
     assert request.box == Box(1.5, 1.0, discs=3)
     assert request.effects == {"discs": 3}
-    assert request.watch.mean_times == EVENTS
-    assert request.watch.hop_histogram == ()
-    assert request.watch.trajectory == 0.125  # half of h/4
+    assert request.quantities.mean_times == EVENTS
+    assert request.quantities.hop_histogram == ()
+    assert request.quantities.trajectory == 0.125  # half of h/4
     assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
     ring = one(discs=3, radii=[0.1], effects={"periodic": "x"})
-    assert ring.watch.trajectory == 0.143  # half of the largest radius
+    assert ring.quantities.trajectory == 0.143  # half of the largest radius
     histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
-    assert histogram.watch.hop_histogram == (0.025, 0.075, 0.125, 0.175)
+    assert histogram.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)
     configuration = load.load({"scenes": [PLAIN["scenes"][0] | {"discs": 3, "radii": [0.1]}]})
     assert configuration.plain == ()
 

@@ -194,7 +194,7 @@ def test_samples_in_pieces_are_those_of_one_process(box, radius):
     scene, quantities = box.scene(radius), ["volume", "right_wall_area"]
     run = montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5)
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
-    assert found[0] == found[1] == run.alone()
+    assert found[0] == found[1] == run.run()
     assert found[0] == montecarlo.better_point(scene, quantities, 3 * 2**20, 0.02, 5)
 
 
@@ -203,7 +203,7 @@ def test_intervals_in_pieces_are_those_of_one_process(box, radius):
     run = intervals.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
-    assert found[0] == found[1] == run.alone()
+    assert found[0] == found[1] == run.run()
     # A second method: the sums of the chains in floating point.
     totals, _ = intervals.recorded(run.scene, run.event, 4, intervals.CHAINS, intervals.RETURNS, 5)
     means = totals / intervals.RETURNS

@@ -166,7 +166,7 @@ def test_rows_have_the_exact_times_with_and_without_effects(rows):
         asked = request(name)
         own = [r for r in rows if r["scene"] == name and r["quantity"] != "never_met_share"]
         assert [row["radius"] for row in own] == [
-            r for r in asked.radii for _ in asked.watch.mean_times
+            r for r in asked.radii for _ in asked.quantities.mean_times
         ]
         for row in own:
             assert ast.literal_eval(row["effects"]) == asked.effects

@@ -136,7 +136,7 @@ def origin(w):
 def radius_of(w):
     """Return the argument that says the radius of a trajectory, for figures of one."""
     shown = "trajectory" in ENTRIES[w.figure].tables
-    return f"--radius {about(w).watch.trajectory}" if shown else ""
+    return f"--radius {about(w).quantities.trajectory}" if shown else ""
 
 
 def figure_code(w):
@@ -157,7 +157,7 @@ def figure_tables(w, input):
 def caption(w):
     """Return the caption of a figure in Snakemake's report."""
     scene = about(w)
-    shown = Shown(scene.box, scene.watch.quantities) if scene else Shown()
+    shown = Shown(scene.box, scene.quantities.names) if scene else Shown()
     return ENTRIES[w.figure].full_caption(shown)
 
 

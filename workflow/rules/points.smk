@@ -82,7 +82,7 @@ rule trajectory:
         f"{RESULTS}/benchmarks/{{scene}}/trajectory.tsv"
     params:
         box=box,
-        radius=lambda w: SCENES[w.scene].watch.trajectory,
+        radius=lambda w: SCENES[w.scene].quantities.trajectory,
         seed=lambda w: SCENES[w.scene].trajectory_seed,
         code=code(
             "twodiscs_paper.pipeline.jobs.table",

@@ -29,7 +29,7 @@ rule table:
     localrule: True
     params:
         box=box,
-        areas=lambda w: word(SCENES[w.scene].watch.areas),
+        areas=lambda w: word(SCENES[w.scene].quantities.areas),
         monte_carlo=lambda w, input: braced(input.monte_carlo),
         dynamics=lambda w, input: braced(input.dynamics),
         intervals=lambda w, input: braced(input.intervals),

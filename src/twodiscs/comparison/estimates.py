@@ -11,7 +11,7 @@ from itertools import chain, combinations
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, length, proportion, whole
+from twodiscs.model.checks import InputError, check_fraction, check_integer, check_length
 from twodiscs.model.events import DECLARED, EVENTS
 from twodiscs.theory import virial
 from twodiscs.theory.weighted import constant
@@ -29,7 +29,7 @@ KNOWN = 0.1
 CLUSTER = 4
 
 
-def real(name, value, low=0.0, high=math.inf, *, ends=False):
+def check_real(name, value, low=0.0, high=math.inf, *, ends=False):
     """Return ``value`` as a float inside (low, high), or inside [low, high] if ``ends``."""
     text = f"{name} must be a finite number {'from' if ends else 'between'} {low!r} "
     text += f"{'to' if ends else 'and'} {high!r}, not {value!r}"
@@ -44,8 +44,8 @@ def real(name, value, low=0.0, high=math.inf, *, ends=False):
 
 def moments_of(total, squares, replicas):
     """Check Σ N, Σ N² and the number of replicas against each other."""
-    total, squares = whole("total", total, 0), whole("squares", squares, 0)
-    replicas = whole("replicas", replicas, 1)
+    total, squares = check_integer("total", total, 0), check_integer("squares", squares, 0)
+    replicas = check_integer("replicas", replicas, 1)
     if squares < total or squares * replicas < total**2:
         raise InputError(
             f"squares must be at least total and total²/replicas, not {squares!r} for total "
@@ -66,9 +66,9 @@ class Estimate:
     n: int
 
     def __post_init__(self):
-        object.__setattr__(self, "value", real("value", self.value, low=-math.inf))
-        object.__setattr__(self, "stderr", real("stderr", self.stderr, ends=True))
-        object.__setattr__(self, "n", whole("n", self.n, 1))
+        object.__setattr__(self, "value", check_real("value", self.value, low=-math.inf))
+        object.__setattr__(self, "stderr", check_real("stderr", self.stderr, ends=True))
+        object.__setattr__(self, "n", check_integer("n", self.n, 1))
 
     @property
     def relative_stderr(self) -> float:
@@ -90,7 +90,7 @@ def normal_quantile(confidence):
     """Return the half-width, in standard errors, of a two-sided normal interval; 0 < level < 1."""
     from scipy.special import ndtri  # takes long, and few jobs need it
 
-    return float(-ndtri((1 - proportion("confidence", confidence)) / 2))
+    return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
 
 
 def mean_of(values):
@@ -142,13 +142,13 @@ def combination(weights, totals, products, n):
     are in it; it is exact for the given integers. Raises ``InputError`` for n < 2, for sums that
     are no integers, and for a sum that is missing.
     """
-    n = whole("n", n, 2)
+    n = check_integer("n", n, 2)
     names = list(weights)
-    w = {a: Fraction(real(f"weight of {a}", weights[a], low=-math.inf)) for a in names}
+    w = {a: Fraction(check_real(f"weight of {a}", weights[a], low=-math.inf)) for a in names}
     try:
-        total = {a: whole(f"total of {a}", totals[a], 0) for a in names}
+        total = {a: check_integer(f"total of {a}", totals[a], 0) for a in names}
         product = {
-            (a, b): whole(f"product {a}*{b}", products[f"{a}*{b}"], 0)
+            (a, b): check_integer(f"product {a}*{b}", products[f"{a}*{b}"], 0)
             for i, a in enumerate(names)
             for b in names[i:]
         }
@@ -168,7 +168,7 @@ def combination(weights, totals, products, n):
 
 
 def checked_hits(hits, samples):
-    hits, samples = whole("hits", hits, 0), whole("samples", samples, 1)
+    hits, samples = check_integer("hits", hits, 0), check_integer("samples", samples, 1)
     if hits > samples:
         raise InputError(f"hits must not exceed the {samples} samples, not {hits!r}")
     return hits, samples
@@ -180,7 +180,7 @@ def binomial_estimate(hits, samples, measure):
     ``measure`` > 0 is the value that every sample being a hit would give.
     """
     hits, samples = checked_hits(hits, samples)
-    measure = real("measure", measure)
+    measure = check_real("measure", measure)
     if not hits:
         return None
     fraction = hits / samples
@@ -195,8 +195,8 @@ def weighted_estimate(total, squares, unit, samples, measure):
     insertions have them. As many samples of equal weight, (Σ w)²/Σ w², would be as precise where
     few have any. None without any weight at all.
     """
-    total, squares = whole("total", total, 0), whole("squares", squares, 0)
-    samples, measure = whole("samples", samples, 2), real("measure", measure)
+    total, squares = check_integer("total", total, 0), check_integer("squares", squares, 0)
+    samples, measure = check_integer("samples", samples, 2), check_real("measure", measure)
     if not total:
         return None, 0.0
     mean, second = total / (unit * samples), squares / (unit * samples)
@@ -325,8 +325,8 @@ def mean_time(total, squares, replicas, duration, mean=None):
     given, is that count and its error as known better than from these sums. The error is to be
     shown only where they have one (``has_error_bar``).
     """
-    total, squares, replicas = moments_of(total, squares, whole("replicas", replicas, 2))
-    duration = real("duration", duration)
+    total, squares, replicas = moments_of(total, squares, check_integer("replicas", replicas, 2))
+    duration = check_real("duration", duration)
     if not total:
         return None
     if mean is not None:
@@ -345,8 +345,8 @@ def mean_time_bound(replicas, duration, confidence=0.95):
     τ = RT/(K ln 1/(1 − confidence)). K = 4, as for the tests; the familiar RT/3 at 95 % is K = 1
     and claims too much where events come in clusters.
     """
-    replicas, duration = whole("replicas", replicas, 1), real("duration", duration)
-    confidence = proportion("confidence", confidence)
+    replicas, duration = check_integer("replicas", replicas, 1), check_real("duration", duration)
+    confidence = check_fraction("confidence", confidence)
     return duration * replicas / (CLUSTER * -math.log1p(-confidence))
 
 
@@ -380,7 +380,7 @@ def sum_rule(scene, duration, replicas, counts, products):
     weights = virial.weights(scene)
     if weights is None:
         raise InputError(f"scene must have a sum rule, but has {', '.join(scene.calls_for)}")
-    duration = real("duration", duration)
+    duration = check_real("duration", duration)
     rates = {e: scene.share(e) / scene.multiplicity(e) / duration for e in weights}
     return combination({e: w * rates[e] for e, w in weights.items()}, counts, products, replicas)
 
@@ -394,10 +394,10 @@ def density_at_zero(counts, intervals, width):
     when they hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
     ``intervals``.
     """
-    n = np.array([whole("count", n, 0) for n in counts[:2]], float)
+    n = np.array([check_integer("count", n, 0) for n in counts[:2]], float)
     if n.size < 2:
         raise InputError(f"counts must be of at least 2 bins, not {n.size}")
-    intervals, width = whole("intervals", intervals), length("width", width)
+    intervals, width = check_integer("intervals", intervals), check_length("width", width)
     if n.sum() > intervals:
         raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
     weights = np.array([7, -1]) / 6

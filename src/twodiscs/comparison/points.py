@@ -2,7 +2,7 @@
 
 from itertools import groupby
 
-from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.checks import InputError, check_choice
 
 #: What the point of a stage has.
 FIELDS = {
@@ -35,7 +35,7 @@ def checked_point(stage, point, path):
     Raises ``InputError`` that begins with ``path`` for anything else, and for a strip that is not
     the sum of its strata; and one for an unknown stage.
     """
-    fields = FIELDS[one_of("stage", stage, FIELDS)]
+    fields = FIELDS[check_choice("stage", stage, FIELDS)]
     start = f"{path} is not a point of {stage}: "
     if not isinstance(point, dict):
         raise InputError(f"{start}it is not a JSON object")

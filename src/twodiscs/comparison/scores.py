@@ -12,12 +12,12 @@ from scipy.special import betainc, gammainc, gammaincc, log_ndtr, ndtr, ndtri, n
 from twodiscs.comparison.estimates import (
     CLUSTER,
     MIN_EVENTS,
+    check_real,
     checked_hits,
     effective_count,
     moments_of,
-    real,
 )
-from twodiscs.model.checks import InputError, proportion, whole
+from twodiscs.model.checks import InputError, check_fraction, check_integer
 
 #: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
 #: skewness 1/√n: five errors out, n = 1000 doubles one tail and n = 100 multiplies it by eight.
@@ -59,8 +59,8 @@ def student_deviate(t, degrees):
     Wallace, Ann. Math. Stat. 30, 1121 (1959): within 1e-3 for |t| ≤ 8 and degrees ≥ 99, and free of
     underflow. ``degrees`` ≥ 1.
     """
-    degrees = whole("degrees", degrees, 1)
-    t = real("t", t, low=-math.inf)
+    degrees = check_integer("degrees", degrees, 1)
+    t = check_real("t", t, low=-math.inf)
     size = math.sqrt(degrees * math.log1p(t * t / degrees))
     return math.copysign(size * (8 * degrees + 1) / (8 * degrees + 3), t)
 
@@ -76,7 +76,7 @@ def binomial_z(hits, samples, probability):
     of 0 or 1: z is 0 or infinite. ``probability`` in [0, 1].
     """
     hits, samples = checked_hits(hits, samples)
-    p = real("probability", probability, high=1.0, ends=True)
+    p = check_real("probability", probability, high=1.0, ends=True)
     if p in (0.0, 1.0):
         return _signed(0.0 if hits == p * samples else math.inf, 0.5 - p), "certain"
     misses, expected, expected_misses = samples - hits, samples * p, samples * (1 - p)
@@ -121,7 +121,7 @@ def union_z(parts, sign):
 
 def impossible_z(total):
     """Return (z, test) of the count ``total`` ≥ 0 of an impossible event: any at all gives −∞."""
-    return (-math.inf if whole("total", total, 0) else 0.0), "certain"
+    return (-math.inf if check_integer("total", total, 0) else 0.0), "certain"
 
 
 def mean_time_z(total, squares, replicas, duration, exact, mean=None):
@@ -142,10 +142,10 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     ``impossible_z`` instead.
     """
     total, squares, replicas = moments_of(total, squares, replicas)
-    duration = real("duration", duration)
+    duration = check_real("duration", duration)
     if exact is None:
         return None, None
-    expected = duration / real("exact", exact)
+    expected = duration / check_real("exact", exact)
     if replicas >= MIN_EVENTS and effective_count(total, squares, replicas) >= NORMAL:
         error = math.sqrt((replicas * squares - total**2) / (replicas - 1)) / replicas
         count, error = mean or (total / replicas, error)
@@ -163,12 +163,12 @@ def chi2_p(chi2, degrees):
 
 def bonferroni_bound(comparisons, alarm=FALSE_ALARM):
     """Return the |z| that one of ``comparisons`` passes by chance with probability ≤ ``alarm``."""
-    comparisons = whole("comparisons", comparisons, 1)
-    return float(-ndtri(proportion("alarm", alarm) / (2 * comparisons)))
+    comparisons = check_integer("comparisons", comparisons, 1)
+    return float(-ndtri(check_fraction("alarm", alarm) / (2 * comparisons)))
 
 
 def _scores(z):
-    scores = [real("z", value, low=-math.inf) for value in z]
+    scores = [check_real("z", value, low=-math.inf) for value in z]
     if not scores:
         raise InputError("z must not be empty")
     return scores

@@ -33,9 +33,9 @@ from twodiscs.dynamics.law import (
     crosses,
     law_of,
 )
-from twodiscs.model.checks import InputError, accuracy, one_of, whole
+from twodiscs.model.checks import InputError, check_choice, check_error, check_integer
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, require_room
@@ -103,9 +103,9 @@ SEEN = by_kind(
     },
 )
 
-#: What is not watched (None) is not compiled; this says which entry of ``watched`` is that of a
-#: kind: hops, walls, the hits of all walls, and what is always watched.
-WATCHED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
+#: What is not tracked (None) is not compiled; this says which entry of ``tracked`` is that of a
+#: kind: hops, walls, the hits of all walls, and what is always tracked.
+TRACKED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
 
 N = len(EVENTS)
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
@@ -120,23 +120,23 @@ if N > 2 * FIELDS:
 
 def _and(add, event, unit):
     """Return ``add`` extended by an ``event``: it adds a ``unit`` to the count if that is seen."""
-    seen, k = inlined(SEEN[event]), WATCHED[DECLARED[event].kind]
+    seen, k = inlined(SEEN[event]), TRACKED[DECLARED[event].kind]
 
-    @optional(lambda count, code, before, after, identical, gravity, watched: count)
-    def add_one(count, code, before, after, identical, gravity, watched):
+    @optional(lambda count, code, before, after, identical, gravity, tracked: count)
+    def add_one(count, code, before, after, identical, gravity, tracked):
         return count + (unit if seen(code, before, after, identical, gravity) else 0.0)
 
     @inlined
-    def add_all(count, code, before, after, identical, gravity, watched):
-        count = add(count, code, before, after, identical, gravity, watched)
-        return add_one(count, code, before, after, identical, gravity, watched[k])
+    def add_all(count, code, before, after, identical, gravity, tracked):
+        count = add(count, code, before, after, identical, gravity, tracked)
+        return add_one(count, code, before, after, identical, gravity, tracked[k])
 
     return add_all
 
 
 def _word(events):
     """Return a function that adds to a packed ``count`` what a flight shows of ``events``."""
-    add = inlined(lambda count, code, before, after, identical, gravity, watched: count)
+    add = inlined(lambda count, code, before, after, identical, gravity, tracked: count)
     for field, event in enumerate(events):
         add = _and(add, event, 256.0**field)
     return add
@@ -196,7 +196,7 @@ def count_blocks(
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     busy = np.zeros(lanes, np.bool_)
     block, used, running, looks = first, replicas, 0, 0
-    watched = hops, walls, rest, True
+    tracked = hops, walls, rest, True
 
     while True:
         for i in range(lanes):
@@ -237,11 +237,11 @@ def count_blocks(
                 after = after_event(before, times[i], code, law)
                 put_state(rows, i, after, law)
                 packed[i] = first_word(
-                    first_count, code, before, after, identical, law.gravity, watched
+                    first_count, code, before, after, identical, law.gravity, tracked
                 )
                 if N > FIELDS:
                     more[i] = second_word(
-                        second_count, code, before, after, identical, law.gravity, watched
+                        second_count, code, before, after, identical, law.gravity, tracked
                     )
         looks += 1
         if looks == LOOKS:
@@ -283,7 +283,7 @@ def replica_duration(scene):
     ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts remember them:
     then more and shorter replicas know the mean better for the same work.
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         from twodiscs.dynamics import many  # a kernel that others have no use for
 
         return many.duration_of(scene.gas)
@@ -327,7 +327,7 @@ def run_blocks(
 def count_events(scene, target, budget, seed):
     """Count the events of a ``Scene`` in independent replicas until each is known well enough.
 
-    ``target`` maps each watched event to the relative standard error asked for (0 < target ≤ 1);
+    ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
     blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
     events to simulate; a block of replicas is the least that is. Work goes in rounds: see
     ``sampling.blocks.rounds``.
@@ -337,12 +337,12 @@ def count_events(scene, target, budget, seed):
     counted, too.
 
     Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
-    events simulated, and for each watched event its count ΣN, its target and status (reached,
+    events simulated, and for each tracked event its count ΣN, its target and status (reached,
     budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.summary``
     returns for each rare hop, and octaves of rough discs by event what ``sort_into_octaves`` does.
     Raises ``InputError`` for an unknown event or a number out of range.
     """
-    return CountingRun(scene, target, budget, seed).alone()
+    return CountingRun(scene, target, budget, seed).run()
 
 
 @dataclass(frozen=True)
@@ -355,15 +355,15 @@ class CountingRun:
     seed: int
 
     def __post_init__(self):
-        a_scene(self.scene)
+        check_scene(self.scene)
         if not isinstance(self.target, dict) or not self.target:
             raise InputError(
                 f"target must name at least one event, with its error, not {self.target!r}"
             )
         for event, target in self.target.items():
-            accuracy(f"target of {one_of('event', event, EVENTS)}", target)
-        whole("budget", self.budget)
-        whole("seed", self.seed, 0)
+            check_error(f"target of {check_choice('event', event, EVENTS)}", target)
+        check_integer("budget", self.budget)
+        check_integer("seed", self.seed, 0)
         require_room(self.scene)
 
     @property
@@ -430,26 +430,26 @@ class CountingRun:
             cost_ratio(scene),
         )
 
-    def point(self, progress):
-        """Return the dict for a JSON file, given {name: ``Progress``} of all parts."""
-        (sums, products, *octaves), blocks, rounds, excess = progress["all"]
-        strips = {hop: strip.summary(self.scene, hop, progress[hop]) for hop in self._rare}
-        watched = [EVENTS.index(event) for event in self._events]
+    def point(self, outcomes):
+        """Return the dict for a JSON file, given {name: ``Outcome``} of all parts."""
+        (sums, products, *octaves), blocks, rounds, excess = outcomes["all"]
+        strips = {hop: strip.summary(self.scene, hop, outcomes[hop]) for hop in self._rare}
+        tracked = [EVENTS.index(event) for event in self._events]
         status = dict.fromkeys(self._events, "impossible")
         for event, value in zip(self._waited, excess, strict=True):
             status[event] = "reached" if value <= 1.0 else "budget"
-        by_octave = {EVENTS[e]: part[:, e].tolist() for part in octaves for e in watched}
+        by_octave = {EVENTS[e]: part[:, e].tolist() for part in octaves for e in tracked}
         return {
             "radius": self.scene.radius,
             "duration": replica_duration(self.scene),
             "replicas": blocks * REPLICAS,
             "rounds": rounds,
             "events": simulated_events(sums) + sum(strips[hop]["events"] for hop in strips),
-            "counts": {EVENTS[e]: int(sums[e]) for e in watched},
+            "counts": {EVENTS[e]: int(sums[e]) for e in tracked},
             "products": {
                 f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
-                for e in watched
-                for f in watched
+                for e in tracked
+                for f in tracked
                 if e <= f
             },
             "target": {event: self.target[event] for event in self._events},
@@ -457,9 +457,9 @@ class CountingRun:
             "strips": strips,
         } | ({"octaves": by_octave} if by_octave else {})
 
-    def alone(self, watch=None, cores=1, kept=None):
+    def run(self, progress=None, cores=1, kept=None):
         """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
-        return self.point(all_in_rounds(self.parts, watch, cores, kept))
+        return self.point(all_in_rounds(self.parts, progress, cores, kept))
 
 
 def work_per_event(scene):

@@ -26,9 +26,9 @@ from twodiscs.dynamics.ensemble import (
 )
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, one_of, whole
+from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
@@ -222,7 +222,7 @@ def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     ``InputError`` for a hop that is unknown or blocked, one of which nothing is known, or a number
     out of range.
     """
-    return IntervalRun(scene, event, intervals, seed, budget).alone()
+    return IntervalRun(scene, event, intervals, seed, budget).run()
 
 
 @dataclass(frozen=True)
@@ -236,15 +236,15 @@ class IntervalRun:
     budget: int = BUDGET
 
     def __post_init__(self):
-        scene = a_scene(self.scene)
-        one_of("event", self.event, HOPS)
+        scene = check_scene(self.scene)
+        check_choice("event", self.event, HOPS)
         if not scene.is_possible(self.event):
             raise InputError(
                 f"event {self.event!r} is blocked at radius {scene.radius!r}: it has no intervals"
             )
-        whole("seed", self.seed, 0)
-        whole("budget", self.budget)
-        whole("intervals", self.intervals)
+        check_integer("seed", self.seed, 0)
+        check_integer("budget", self.budget)
+        check_integer("intervals", self.intervals)
         require_room(scene)
         if not self._blocks:
             raise InputError(
@@ -298,9 +298,9 @@ class IntervalRun:
         ratio = 1.0 if self.scene.discs == 2 else cost_ratio(self.scene)
         return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events, ratio)}
 
-    def point(self, progress):
-        """Return the dict for a JSON file, given {"all": its ``Progress``}."""
-        (sums, (total, squares, *more)), blocks = progress["all"][:2]
+    def point(self, outcomes):
+        """Return the dict for a JSON file, given {"all": its ``Outcome``}."""
+        (sums, (total, squares, *more)), blocks = outcomes["all"][:2]
         n, total, squares = blocks * CHAINS, int(total), int(squares)
         if more:
             return self._of_windows(sums, n, total, squares, *map(int, more))
@@ -322,10 +322,10 @@ class IntervalRun:
         more = {"intervals": intervals, "intervals_squared": intervals_squared}
         return found | more | {"products": products[:BINS]}
 
-    def alone(self, watch=None, cores=1, kept=None):
+    def run(self, progress=None, cores=1, kept=None):
         """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
         try:
-            return self.point(all_in_rounds(self.parts, watch, cores, kept))
+            return self.point(all_in_rounds(self.parts, progress, cores, kept))
         except BaseException:
             self._going[0] = False
             raise

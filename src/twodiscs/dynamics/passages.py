@@ -44,9 +44,15 @@ from twodiscs.dynamics.law import (
     law_of,
 )
 from twodiscs.dynamics.strip import law_reverses
-from twodiscs.model.checks import InputError, ascending, length, one_of, whole
+from twodiscs.model.checks import (
+    InputError,
+    check_ascending,
+    check_choice,
+    check_integer,
+    check_length,
+)
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.scene import Scene, a_scene, two_discs
+from twodiscs.model.scene import Scene, check_scene, check_two_discs
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import COMPONENTS, fill_start, require_room
@@ -172,8 +178,8 @@ def lying(scene, hop):
 
     Without a field the axes may be exchanged: so one compiled kernel serves both hops.
     """
-    one_of("hop", hop, HOPS)
-    if hop == "horizontal_hop" or a_scene(scene).field:
+    check_choice("hop", hop, HOPS)
+    if hop == "horizontal_hop" or check_scene(scene).field:
         return scene, hop
     effects = dict(scene.effects)
     if scene.periodic:
@@ -186,8 +192,8 @@ def require_passing(scene, hop):
 
     The axis of the ``hop`` may be periodic, where hops are no events of the scene.
     """
-    one_of("hop", hop, HOPS)
-    require_room(two_discs(scene, "passages"))
+    check_choice("hop", hop, HOPS)
+    require_room(check_two_discs(scene, "passages"))
     periodic = AXIS[hop] in scene.periodic
     if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):
         raise InputError(
@@ -203,7 +209,11 @@ def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):
     ``require_passing`` does, and for numbers out of range.
     """
     require_passing(scene, hop)
-    blocks, seed, first = whole("blocks", blocks), whole("seed", seed, 0), whole("first", first, 0)
+    blocks, seed, first = (
+        check_integer("blocks", blocks),
+        check_integer("seed", seed, 0),
+        check_integer("first", first, 0),
+    )
     states = np.zeros((COMPONENTS, blocks * REPLICAS))
     prism = prism_of(scene, hop, 0.0) if on_surface else prism_of(scene)
     surface = "xy".index(AXIS[hop]) if on_surface else None
@@ -236,7 +246,7 @@ def hop_sums(scene, hop, times, blocks, seed, first=0, on_surface=True):
     the ``first`` one on of the streams of ``seed``. Raises ``InputError`` for a hop that is unknown
     or blocked, and numbers out of range.
     """
-    times, blocks = np.array(ascending("times", times)), whole("blocks", blocks)
+    times, blocks = np.array(check_ascending("times", times)), check_integer("blocks", blocks)
     sums = np.zeros((blocks, SUMS, times.size), np.int64)
     none = np.zeros(1, np.int64)
     return sums, _followed(scene, hop, blocks, seed, first, times, 0.0, sums, none, on_surface)
@@ -249,7 +259,7 @@ def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     random one; the last has all larger clusters. A cluster ends where no hop comes for a time
     ``gap``. Arguments and errors are otherwise as for ``hop_sums``.
     """
-    gap, blocks = length("gap", gap), whole("blocks", blocks)
+    gap, blocks = check_length("gap", gap), check_integer("blocks", blocks)
     sizes, none = np.zeros(LARGEST + 1, np.int64), np.zeros((blocks, SUMS, 1), np.int64)
     events = _followed(scene, hop, blocks, seed, first, np.array([gap]), gap, none, sizes)
     return sizes, events

@@ -307,24 +307,24 @@ def relative_error(fractions, sums):
     return error / mean if mean else math.inf
 
 
-def summary(scene, hop, progress):
+def summary(scene, hop, outcome):
     """Return what was found of a rare ``hop``, for a JSON file.
 
     That is the duration 2T and the share P of configuration space, numbers of replicas, rounds,
     wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
     ΣN and ΣN².
     """
-    strip, (sums, events) = strip_of(scene, hop), progress.sums
+    strip, (sums, events) = strip_of(scene, hop), outcome.sums
     initial_states, counts, squares = sums
     return {
         "duration": 2 * strip.time,
         "share": strip.fraction,
-        "replicas": progress.blocks * REPLICAS,
-        "rounds": progress.rounds,
+        "replicas": outcome.blocks * REPLICAS,
+        "rounds": outcome.rounds,
         "events": int(events),
         "count": int(counts.sum()),
         "squares": int(squares.sum()),
-        "status": "reached" if progress.excess[0] <= 1 else "budget",
+        "status": "reached" if outcome.excess[0] <= 1 else "budget",
         "strata": {
             "shares": fractions_of(scene, hop, strip).tolist(),
             "starts": initial_states.tolist(),

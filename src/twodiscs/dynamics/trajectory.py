@@ -24,9 +24,9 @@ from twodiscs.dynamics.law import (
     law_of,
     next_event,
 )
-from twodiscs.model.checks import InputError, length, shown, whole, written
+from twodiscs.model.checks import InputError, check_integer, check_length, format_number, quote
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import ENERGY, a_scene, two_discs
+from twodiscs.model.scene import ENERGY, check_scene, check_two_discs
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.starts import components, states
@@ -238,7 +238,7 @@ def events_of_many(scene, state, duration):
             yield time, f"wall_{'xy'[(code - 1) % 2]}", (code - 1) // 2 + 1, None, now
 
 
-def followed_many(scene, seed, start=None, duration=None, watch=None):
+def followed_many(scene, seed, start=None, duration=None, progress=None):
     """Return the rows of ``events_of_many`` as a list, as ``followed`` does of two discs.
 
     A ``start`` is one of ``starts.states``, and without a ``duration`` they last some
@@ -246,31 +246,31 @@ def followed_many(scene, seed, start=None, duration=None, watch=None):
     """
     from twodiscs.dynamics import many
 
-    seed = whole("seed", seed, 0)
+    seed = check_integer("seed", seed, 0)
     rate = many.expected_event_rate(scene)
     if duration is None:
         duration = nearest_power_of_two(LONGEST_OF_MANY / rate)
-    elif length("duration", duration) * rate > MOST_EVENTS:
+    elif check_length("duration", duration) * rate > MOST_EVENTS:
         raise InputError(_too_long(duration, rate))
     state = states(scene, 1, seed)[:, 0] if start is None else _state_of_many(scene, start)
-    return _listed(events_of_many(scene, state, float(duration)), float(duration), watch)
+    return _listed(events_of_many(scene, state, float(duration)), float(duration), progress)
 
 
-def _listed(events, duration, watch):
-    """Return all of ``events`` as a list; ``watch`` is called now and then (see ``followed``)."""
+def _listed(events, duration, progress):
+    """Return all ``events`` as a list; ``progress`` is called now and then (see ``followed``)."""
     rows = []
     for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
         rows += some
-        if watch is not None:
-            watch(rows[-1][0], duration)
+        if progress is not None:
+            progress(rows[-1][0], duration)
         if len(some) < ROWS:
             return rows
 
 
 def _too_long(duration, rate):
     return (
-        f"duration must be below {written(MOST_EVENTS / rate, '.3g')}, where "
-        f"{written(MOST_EVENTS, 'g')} events are due, not {duration!r}"
+        f"duration must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
+        f"{format_number(MOST_EVENTS, 'g')} events are due, not {duration!r}"
     )
 
 
@@ -281,7 +281,7 @@ def _no_state(names, start):
         hint = "; start[0] is one of these states"
     elif hasattr(start, "iloc"):
         hint = "; states_at(times)[0] is a state of a trajectory"
-    return InputError(f"start must be the numbers {', '.join(names)}, not {shown(start)}{hint}")
+    return InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
 
 
 def _state_of_many(scene, start):
@@ -325,7 +325,7 @@ def state_of(scene, start):
     of disc 2 serves. Raises ``InputError`` for anything else, for discs that overlap or lie
     outside, and for another energy than 1/2.
     """
-    names = components(a_scene(scene))
+    names = components(check_scene(scene))
     try:
         state = dict(zip(names, map(float, start), strict=True))
     except (TypeError, ValueError, OverflowError):
@@ -377,7 +377,7 @@ def trajectory(scene, seed, start=None, duration=None):
 
     Arguments and errors are those of ``followed``, or of ``followed_many`` for more than two discs.
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         n, rows = 2 * scene.discs, followed_many(scene, seed, start, duration)
         return [
             (time, *np.reshape(state[:n], (2, -1)).T.ravel().tolist(), event, first, second)
@@ -386,7 +386,7 @@ def trajectory(scene, seed, start=None, duration=None):
     return [_row(scene, *row) for row in followed(scene, seed, start, duration)]
 
 
-def followed(scene, seed, start=None, duration=None, watch=None):
+def followed(scene, seed, start=None, duration=None, progress=None):
     """Return one trajectory of a ``Scene``, as a list of (time, event, state), of ``events_of``.
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
@@ -394,20 +394,20 @@ def followed(scene, seed, start=None, duration=None, watch=None):
     hop that is open, but no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
     Raises ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer
     ≥ 0, for a start that is no state, and for a duration that is no length or takes
-    ``MOST_EVENTS``. ``watch``, if given, is called now and then with the time that it has reached,
-    and the ``duration``.
+    ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
+    reached, and the ``duration``.
     """
-    seed = whole("seed", seed, 0)
-    rate = exact.event_rate(two_discs(scene, "states of two"))
+    seed = check_integer("seed", seed, 0)
+    rate = exact.event_rate(check_two_discs(scene, "states of two"))
     rate *= exact.work_per_event(scene)
     if duration is None:
         hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
         duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / rate)
         duration = nearest_power_of_two(duration)
-    elif length("duration", duration) * rate > MOST_EVENTS:
+    elif check_length("duration", duration) * rate > MOST_EVENTS:
         raise InputError(_too_long(duration, rate))
     if start is None:
         start = map(float, states(scene, 1, seed)[: len(components(scene)), 0])
     else:
         start = state_of(scene, start)
-    return _listed(events_of(scene, tuple(start), float(duration)), float(duration), watch)
+    return _listed(events_of(scene, tuple(start), float(duration)), float(duration), progress)

@@ -12,7 +12,7 @@ from twodiscs.comparison.measured.transmission import Transmission
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.checks import InputError, check_choice
 
 #: What can be drawn.
 DRAWN = (
@@ -41,7 +41,7 @@ def _over_time(result, figure):
         if isinstance(result, kind):
             from twodiscs.figures.motion import over_time
 
-            one_of("figure", name if figure is None else figure, [name])
+            check_choice("figure", name if figure is None else figure, [name])
             return partial(getattr(over_time, name), result)
 
 
@@ -55,7 +55,7 @@ def _in_catalogue(result, figure):
                 f"the target report writes, not {result.attrs['table']!r} alone"
             )
         raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
-    name = one_of("figure", fitting[0] if figure is None else figure, fitting)
+    name = check_choice("figure", fitting[0] if figure is None else figure, fitting)
     entry = FIGURES[name]
     if not box.is_plain and not entry.needs:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())

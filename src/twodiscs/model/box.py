@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from twodiscs.model.checks import SHORTEST, InputError, length, one_of, shown
+from twodiscs.model.checks import SHORTEST, InputError, check_choice, check_length, quote
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, check_scene
 
 #: Larger radii than this share of the shortest side tell nothing of a box that smaller ones do not.
 TINY = 1e-6
@@ -34,14 +34,14 @@ class Box:
 
     def __post_init__(self):
         for name in ("width", "height"):
-            object.__setattr__(self, name, length(name, getattr(self, name)))
+            object.__setattr__(self, name, check_length(name, getattr(self, name)))
         effects = self.effects
         known = ", ".join(EFFECTS)
         if not isinstance(effects, dict):
-            raise InputError(f"effects must be a dict of some of {known}, not {shown(effects)}")
+            raise InputError(f"effects must be a dict of some of {known}, not {quote(effects)}")
         for name in effects:
             if name not in EFFECTS:
-                name = name if isinstance(name, str) else shown(name)
+                name = name if isinstance(name, str) else quote(name)
                 raise InputError(f"{name:.80} is no effect; effects must be some of {known}")
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
@@ -62,7 +62,7 @@ class Box:
     @classmethod
     def of(cls, scene: Scene) -> Box:
         """Return the box of a ``Scene``; raise ``InputError`` for anything else."""
-        a_scene(scene)
+        check_scene(scene)
         return cls(scene.width, scene.height, scene.effects, scene.discs)
 
     @classmethod
@@ -103,7 +103,7 @@ class Box:
 
     def fits(self, radius: float) -> bool:
         """Say whether there is a scene at this ``radius``, a length."""
-        radius = length("radius", radius)
+        radius = check_length("radius", radius)
         try:
             self.scene(radius)
         except InputError:
@@ -166,7 +166,7 @@ class Box:
         For hops of equal discs that is w/4 (vertical) or h/4 (horizontal), unless the discs jam
         before; for what stays possible to the end it is the last radius.
         """
-        if one_of("event", event, EVENTS) not in HOPS:
+        if check_choice("event", event, EVENTS) not in HOPS:
             # In a field it may take a large disc to touch the top.
             nearly = self.scene(self.last_radius * (1 - TINY))
             return self.last_radius if nearly.is_possible(event) else None

@@ -40,7 +40,7 @@ class InputError(ValueError):
         super().__init__("\n".join(short))
 
 
-def shown(value):
+def quote(value):
     """Return how a sentence shows a ``value``: shortened, whatever it is."""
     try:
         return " ".join(_SHORT.repr(value).split())
@@ -49,7 +49,7 @@ def shown(value):
 
 
 @contextmanager
-def writable(path):
+def writing_to(path):
     """Raise ``InputError`` where ``path`` turns out to be nothing that can be written to."""
     try:
         yield
@@ -58,66 +58,68 @@ def writable(path):
         raise InputError(f"path must be a file to write, not {str(path)!r}: {why}") from None
 
 
-def written(value, form=""):
+def format_number(value, form=""):
     """Return a number as the pages write it: 1e60 for what Python calls 1e+60."""
     return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
 
 
-def comma(value):
+def decimal_hint(value):
     """Return what a sentence adds that shows text with a decimal comma; "" for anything else."""
     if not isinstance(value, str) or not re.fullmatch(r"[-+]?\d+,\d+", value):
         return ""
     return f"; decimals follow a point, {value.replace(',', '.')}"
 
 
-def number(name, value, low, high, kind="number"):
+def check_number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
     ``low`` is positive: anything that is not a real number, finite and positive is refused.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}{comma(value)}")
+        raise InputError(
+            f"{name} must be a positive {kind}, not {quote(value)}{decimal_hint(value)}"
+        )
     try:
         number = float(value)
     except (ValueError, OverflowError):
-        raise InputError(f"{name} must be a positive {kind}, not {shown(value)}") from None
+        raise InputError(f"{name} must be a positive {kind}, not {quote(value)}") from None
     if not math.isfinite(number) or number <= 0:
         raise InputError(f"{name} must be a positive, finite {kind}, not {number!r}")
     if not low <= number <= high:
-        low, high, number = map(written, (low, high, number))
+        low, high, number = map(format_number, (low, high, number))
         raise InputError(f"{name} must lie between {low} and {high}, not {number}")
     return number
 
 
-def length(name, value):
+def check_length(name, value):
     """Return ``value`` as a float, or raise ``InputError`` naming ``name`` if it is no length.
 
     A length is a real number, finite and positive, between 1e-60 and 1e60.
     """
-    return number(name, value, SHORTEST, LONGEST)
+    return check_number(name, value, SHORTEST, LONGEST)
 
 
-def whole(name, value, least=1, most=LARGEST_INTEGER):
+def check_integer(name, value, least=1, most=LARGEST_INTEGER):
     """Return ``value`` as an int; raise ``InputError`` unless it is an integer in that range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise InputError(f"{name} must be an integer of at least {least}, not {shown(value)}")
+        raise InputError(f"{name} must be an integer of at least {least}, not {quote(value)}")
     if not least <= value <= most:
         end = "2^63 - 1" if most == LARGEST_INTEGER else most
-        raise InputError(f"{name} must be an integer from {least} to {end}, not {shown(value)}")
+        raise InputError(f"{name} must be an integer from {least} to {end}, not {quote(value)}")
     return int(value)
 
 
-def proportion(name, value):
+def check_fraction(name, value):
     """Return ``value`` as a float; raise ``InputError`` unless it is strictly between 0 and 1."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        wrong = f"{shown(value)}{comma(value)}"
+        wrong = f"{quote(value)}{decimal_hint(value)}"
         raise InputError(f"{name} must be a number between 0 and 1, not {wrong}")
     if not 0 < value < 1:
-        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {shown(value)}")
+        raise InputError(f"{name} must lie between 0 and 1, ends excluded, not {quote(value)}")
     return float(value)
 
 
-def accuracy(name, value):
+def check_error(name, value):
     """Return a relative error as a float: a number above 0 and at most 1, or one of ``PRESETS``.
 
     Raises ``InputError`` for anything else.
@@ -128,37 +130,37 @@ def accuracy(name, value):
     if not real or not 0 < value <= 1:
         raise InputError(
             f"{name} must be a number above 0 and at most 1, or one of {', '.join(PRESETS)}, not "
-            f"{shown(value)}{comma(value)}"
+            f"{quote(value)}{decimal_hint(value)}"
         )
     return float(value)
 
 
-def count(name, value, most=LARGEST_INTEGER):
+def check_count(name, value, most=LARGEST_INTEGER):
     """Return ``value`` ≥ 1 as an int, also from a float that is one, such as 1e6."""
     if isinstance(value, float) and value.is_integer():
         value = int(value)
-    return whole(name, value, 1, most)
+    return check_integer(name, value, 1, most)
 
 
-def listed(values):
+def as_list(values):
     """Return an iterable as a list, also one that is read once; an array or a text as it is."""
     if isinstance(values, str | bytes) or hasattr(values, "__array__"):
         return values
     return [*values] if isinstance(values, Iterable) else values
 
 
-def one_of(name, value, allowed):
+def check_choice(name, value, allowed):
     """Return ``value``; raise ``InputError`` unless it is one of ``allowed``."""
     if not isinstance(value, str) or value not in allowed:
-        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {shown(value)}")
+        raise InputError(f"{name} must be one of {', '.join(allowed)}, not {quote(value)}")
     return value
 
 
-def ascending(name, values):
+def check_ascending(name, values):
     """Return ``values`` as floats; raise ``InputError`` unless they are ascending lengths."""
     if isinstance(values, str | bytes) or not hasattr(values, "__len__"):
-        raise InputError(f"{name} must be a sequence of numbers, not {shown(values)}")
-    lengths = [length(name, value) for value in values]
+        raise InputError(f"{name} must be a sequence of numbers, not {quote(values)}")
+    lengths = [check_length(name, value) for value in values]
     if not lengths or sorted(set(lengths)) != lengths:
-        raise InputError(f"{name} must ascend, and there must be some, not {shown(lengths)}")
+        raise InputError(f"{name} must ascend, and there must be some, not {quote(lengths)}")
     return lengths

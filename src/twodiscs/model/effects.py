@@ -7,7 +7,7 @@ of the figures follow from these declarations.
 from dataclasses import dataclass
 from numbers import Real
 
-from twodiscs.model.checks import LONGEST, SHORTEST, InputError, number, shown
+from twodiscs.model.checks import LONGEST, SHORTEST, InputError, check_number, quote
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class Effect:
         """
         if not self.is_number:
             if not isinstance(value, str):
-                raise InputError(f"{self.name} must be some of the axes, not {shown(value)}")
+                raise InputError(f"{self.name} must be some of the axes, not {quote(value)}")
             return value
         real = isinstance(value, Real) and not isinstance(value, bool)
         if value is None or (real and value == self.default):
             return self.default
         kind = "ratio" if self.name.endswith("_ratio") else "number"
         kind += ", or 0" if self.default == 0.0 else ""
-        return number(self.name, value, self.low, self.high, kind)
+        return check_number(self.name, value, self.low, self.high, kind)
 
 
 EFFECTS = {

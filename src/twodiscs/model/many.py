@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
 
-from twodiscs.model.checks import MOST_DISCS, InputError, length, shown, whole
+from twodiscs.model.checks import MOST_DISCS, InputError, check_integer, check_length, quote
 
 #: Classes of events, in the order of all counts.
 CLASSES = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall")
@@ -39,13 +39,13 @@ class Gas:
     periodic: str = ""
 
     def __post_init__(self):
-        object.__setattr__(self, "discs", whole("discs", self.discs, 2, MOST_DISCS))
+        object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
         for name in ("width", "height", "radius"):
-            object.__setattr__(self, name, length(name, getattr(self, name)))
+            object.__setattr__(self, name, check_length(name, getattr(self, name)))
         if self.periodic not in ("", "x"):
             raise InputError(
                 f"periodic must be left out or x for more than two discs, not "
-                f"{shown(self.periodic)}"
+                f"{quote(self.periodic)}"
             )
         if self.radius >= self.largest_radius:
             raise InputError(

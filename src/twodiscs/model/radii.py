@@ -8,7 +8,7 @@ from hashlib import blake2b
 from itertools import pairwise
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, length, one_of, shown, whole
+from twodiscs.model.checks import InputError, check_choice, check_integer, check_length, quote
 
 #: The stochastic stages, each with random streams of its own.
 METHODS = (
@@ -25,7 +25,7 @@ NARROWEST = 1e-6
 
 def key(radius):
     """Return the text that names ``radius`` in file names and seeds: its shortest repr."""
-    return repr(length("radius", radius))
+    return repr(check_length("radius", radius))
 
 
 def radii(width, height, smallest, count):
@@ -41,7 +41,7 @@ def radii(width, height, smallest, count):
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
-    smallest, count = length("smallest", smallest), whole("count", count, 1, MOST)
+    smallest, count = check_length("smallest", smallest), check_integer("count", count, 1, MOST)
     if smallest >= largest * (1 - NARROWEST):
         raise InputError(
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
@@ -81,8 +81,8 @@ def even_radii(smallest, largest, count):
     Each is rounded to the fewest digits that leave it near its place, but for the first. Raises
     ``InputError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
     """
-    smallest, largest = length("smallest", smallest), length("largest", largest)
-    count = whole("count", count, 1, MOST)
+    smallest, largest = check_length("smallest", smallest), check_length("largest", largest)
+    count = check_integer("count", count, 1, MOST)
     if smallest >= largest:
         raise InputError(f"smallest must be below {largest!r}, not {smallest!r}")
     step = (largest - smallest) / max(count - 1, 1)
@@ -102,8 +102,8 @@ def stream_seed(seed, scene, method, key):
     It depends on the configured ``seed``, the scene's name, the method (one of ``METHODS``)
     and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
     """
-    seed = whole("seed", seed, 0)
+    seed = check_integer("seed", seed, 0)
     if not isinstance(scene, str):
-        raise InputError(f"scene must be the name of a scene, not {shown(scene)}")
-    text = "\n".join((str(seed), scene, one_of("method", method, METHODS), key))
+        raise InputError(f"scene must be the name of a scene, not {quote(scene)}")
+    text = "\n".join((str(seed), scene, check_choice("method", method, METHODS), key))
     return int.from_bytes(blake2b(text.encode(), digest_size=8).digest(), "big") >> 1

@@ -22,11 +22,11 @@ from twodiscs.model.checks import (
     MOST_DISCS,
     SHORTEST,
     InputError,
-    length,
-    number,
-    one_of,
-    shown,
-    whole,
+    check_choice,
+    check_integer,
+    check_length,
+    check_number,
+    quote,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import DECLARED, EVENTS
@@ -87,7 +87,7 @@ class Scene:
 
     def __post_init__(self):
         for name in ("width", "height", "radius"):
-            object.__setattr__(self, name, length(name, getattr(self, name)))
+            object.__setattr__(self, name, check_length(name, getattr(self, name)))
         if isinstance(self.periodic, list | tuple) and all(a in list("xyz") for a in self.periodic):
             object.__setattr__(self, "periodic", "".join(self.periodic))
         for name, effect in EFFECTS.items():
@@ -95,7 +95,7 @@ class Scene:
         if self.has_effects:
             self._check_effects()
         if self.discs != 2 or type(self.discs) is not int:
-            object.__setattr__(self, "discs", whole("discs", self.discs, 2, MOST_DISCS))
+            object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
         if self.discs > 2:
             self._check_many()
             return
@@ -114,13 +114,13 @@ class Scene:
         if self.depth is not None:
             # Six lengths are multiplied.
             for name in ("depth", "width", "height", "radius"):
-                settle(name, number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
+                settle(name, check_number(name, getattr(self, name), SHORTEST**0.75, LONGEST**0.75))
         repeated = len(set(self.periodic)) != len(self.periodic)
         if repeated or not set(self.periodic) <= {*self.axes}:
             allowed = "x and y (z needs a depth)" if self.depth is None else "x, y and z"
             raise InputError(
                 f"periodic must be some of the axes {allowed}, each once and no other letter, not "
-                f"{shown(self.periodic)}"
+                f"{quote(self.periodic)}"
             )
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:
@@ -518,7 +518,7 @@ class Scene:
 
     def is_possible(self, event: str) -> bool:
         """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
-        if one_of("event", event, EVENTS) not in self.events:
+        if check_choice("event", event, EVENTS) not in self.events:
             return False
         declared = DECLARED[event]
         if declared.kind == "hop":
@@ -540,19 +540,19 @@ def _largest_radius(width, height):
     return (width + height - math.sqrt(2 * width) * math.sqrt(height)) / 2
 
 
-def a_scene(value):
+def check_scene(value):
     """Return ``value``; raise ``InputError`` unless it is a ``Scene``."""
     if not isinstance(value, Scene):
-        raise InputError(f"scene must be a Scene, not {shown(value)}")
+        raise InputError(f"scene must be a Scene, not {quote(value)}")
     return value
 
 
-def two_discs(scene, what):
+def check_two_discs(scene, what):
     """Return ``scene``; raise ``InputError`` unless it is a ``Scene`` of two discs.
 
     ``what`` is what more discs are refused, in words that follow "for".
     """
-    if a_scene(scene).discs != 2:
+    if check_scene(scene).discs != 2:
         raise InputError(f"discs must be 2 for {what}, not {scene.discs}")
     return scene
 

@@ -28,9 +28,9 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, one_of, proportion, whole
+from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.scene import Scene, a_scene, two_discs
+from twodiscs.model.scene import Scene, check_scene, check_two_discs
 from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
@@ -197,9 +197,9 @@ def shell_thickness(scene, event, fraction):
     Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
-    two_discs(scene, "shells")
-    one_of("event", event, scene.events if scene.has_effects else SHELLS)
-    fraction = proportion("fraction", fraction)
+    check_two_discs(scene, "shells")
+    check_choice("event", event, scene.events if scene.has_effects else SHELLS)
+    fraction = check_fraction("fraction", fraction)
     if scene.has_effects:
         return fraction * _weighted_thickness(scene, event)
     hop = DECLARED[event].kind == "hop"
@@ -243,19 +243,19 @@ def sample_point(scene, quantities, samples, shell, seed):
     takes some forty times as long. Raises ``InputError`` for an unknown quantity or a number out of
     range.
     """
-    sampler = weighted if two_discs(scene, "shells").has_effects else in_prism
+    sampler = weighted if check_two_discs(scene, "shells").has_effects else in_prism
     return _drawn(sampler(scene, quantities, shell, seed), samples)
 
 
 def _drawn(sampler, samples):
-    blocks = -(-whole("samples", samples) // sampler.block)
+    blocks = -(-check_integer("samples", samples) // sampler.block)
     return sampler.point(blocks * sampler.block, sampler.count(0, blocks))
 
 
 def in_prism(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``sample_point`` for a plain scene."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    seed, sigma = whole("seed", seed, 0), scene.contact_distance
+    seed, sigma = check_integer("seed", seed, 0), scene.contact_distance
     ranges = {"x": scene.range_x, "y": scene.range_y}
 
     def first_grain(axis, side, thick):
@@ -283,12 +283,12 @@ def _with_shell(scene):
 
 def _shells(scene, quantities, shell):
     """Return (the set of "volume" and events to sample, ε for each event with a shell or 0)."""
-    allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
+    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     for quantity in quantities:
-        one_of("quantity", quantity, allowed)
+        check_choice("quantity", quantity, allowed)
     if not quantities:
         raise InputError("quantities must name at least one quantity, not none")
-    shell = proportion("shell", shell)
+    shell = check_fraction("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and not scene.has_effects:
         wanted |= {"right_wall", "top_wall"}
@@ -358,7 +358,7 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     better choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point``
     does.
     """
-    if not a_scene(scene).is_plain:
+    if not check_scene(scene).is_plain:
         raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")
     return _drawn(conditioned(scene, quantities, shell, seed), samples)
 
@@ -366,7 +366,11 @@ def conditioned_point(scene, quantities, samples, shell, seed):
 def conditioned(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``conditioned_point``."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    seed, draw, sigma = whole("seed", seed, 0), draw_constants(scene), scene.contact_distance
+    seed, draw, sigma = (
+        check_integer("seed", seed, 0),
+        draw_constants(scene),
+        scene.contact_distance,
+    )
     ranges = {"x": scene.range_x, "y": scene.range_y}
     ends = shell_ends(
         epsilon,
@@ -517,7 +521,7 @@ def weighted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``sample_point`` for a scene with effects."""
     wanted, epsilon = _shells(scene, quantities, shell)
     # Spins have no place in configuration space: one kernel less to compile.
-    seed, prism = whole("seed", seed, 0), prism_of(scene)._replace(inertia=None)
+    seed, prism = check_integer("seed", seed, 0), prism_of(scene)._replace(inertia=None)
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
     return Sampler(
@@ -539,7 +543,7 @@ def better_point(scene, quantities, samples, shell, seed):
     as take the same time. Arguments, result and errors are those of either. For more than two discs
     it is ``many.measures.inserted``, which has no shells.
     """
-    return SamplingRun(scene, quantities, samples, shell, seed).alone()
+    return SamplingRun(scene, quantities, samples, shell, seed).run()
 
 
 def plan(scene, samples):
@@ -548,12 +552,12 @@ def plan(scene, samples):
     It is one of ``in_prism``, ``conditioned`` and ``weighted``; ``samples`` are those of the prism.
     More than two discs are inserted one by one (``many.measures``), as many times as is asked for.
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         from twodiscs.sampling.many import measures  # which plain scenes have no use for
 
-        blocks = -(-whole("samples", samples) // measures.BLOCK)
+        blocks = -(-check_integer("samples", samples) // measures.BLOCK)
         return measures.inserted, blocks * measures.BLOCK
-    in_blocks = -(-whole("samples", samples) // BLOCK) * BLOCK
+    in_blocks = -(-check_integer("samples", samples) // BLOCK) * BLOCK
     if scene.has_effects:
         return weighted, in_blocks
     if exact.free_fraction(scene) >= 1 / COST_RATIO:
@@ -594,11 +598,11 @@ class SamplingRun:
 
         return {"all": fixed(work, blocks, sampler.block, sampler.cost_ratio)}
 
-    def point(self, progress):
-        """Return the dict for a JSON file, given {"all": its ``Progress``}."""
-        (counts,), blocks = progress["all"][:2]
+    def point(self, outcomes):
+        """Return the dict for a JSON file, given {"all": its ``Outcome``}."""
+        (counts,), blocks = outcomes["all"][:2]
         return self._sampler.point(blocks * self._sampler.block, counts)
 
-    def alone(self, watch=None, cores=1, kept=None):
+    def run(self, progress=None, cores=1, kept=None):
         """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
-        return self.point(all_in_rounds(self.parts, watch, cores, kept))
+        return self.point(all_in_rounds(self.parts, progress, cores, kept))

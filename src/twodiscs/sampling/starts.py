@@ -192,19 +192,19 @@ def start_on_surface(state, draw, surface, start, prism):
     fill_start(state, prism, surface, start, 0)
 
 
-def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
+def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
     They are the first ones of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
     ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
     ``draw_configuration``). Of N > 2 discs there are 4N rows, in the order of ``components``.
-    ``watch``, if given, is called now and then with how many are drawn, and ``number``.
+    ``progress``, if given, is called now and then with how many are drawn, and ``number``.
     """
     require_room(scene)
     if scene.discs > 2:
         from twodiscs.sampling.many import initial  # which others have no use for
 
-        return initial.labelled(scene.gas, number, seed, block, watch)
+        return initial.labelled(scene.gas, number, seed, block, progress)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     state = in_a_thread(open_stream, np.uint64(seed), block)
@@ -222,15 +222,15 @@ def states(scene, number, seed, block=0, sides=(0, 0), watch=None):
 
     step = CALL if prism is None else max(1, int(CALL * exact.free_fraction(scene)))
     calls = ((first, min(first + step, number)) for first in range(0, number, step))
-    for done in in_threads(fill, calls, waiting=lambda: watch and watch(None, number)):
-        if watch is not None:
-            watch(done, number)
+    for done in in_threads(fill, calls, waiting=lambda: progress and progress(None, number)):
+        if progress is not None:
+            progress(done, number)
     return filled
 
 
-def records(scene, number, seed, watch=None):
+def records(scene, number, seed, progress=None):
     """Return ``states`` as an array of ``number`` records, with a field for each component."""
-    return as_records(scene, states(scene, number, seed, watch=watch))
+    return as_records(scene, states(scene, number, seed, progress=progress))
 
 
 def as_records(scene, filled):

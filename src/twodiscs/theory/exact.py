@@ -13,9 +13,9 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
-from twodiscs.model.checks import InputError, length, one_of
+from twodiscs.model.checks import InputError, check_choice, check_length
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
-from twodiscs.model.scene import a_scene, two_discs
+from twodiscs.model.scene import check_scene, check_two_discs
 from twodiscs.theory import plain
 
 TYPE_CHECKING = False  # what reads types takes it for true; the module typing is not for free
@@ -73,7 +73,7 @@ def volume(scene: Scene) -> float:
 
         td.volume(scene)
     """
-    return measures(a_scene(scene))[0]
+    return measures(check_scene(scene))[0]
 
 
 def areas(scene: Scene) -> dict[str, float]:
@@ -89,7 +89,7 @@ def areas(scene: Scene) -> dict[str, float]:
 
         td.areas(scene)["disc_collision"]
     """
-    return dict(measures(a_scene(scene))[1])
+    return dict(measures(check_scene(scene))[1])
 
 
 def rate(scene: Scene, event: str) -> float:
@@ -104,12 +104,12 @@ def rate(scene: Scene, event: str) -> float:
 
         td.rate(scene, "any_wall")
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         from twodiscs.theory.many.exact import event_rates
 
-        return event_rates(scene)[one_of("event", event, EVENTS)]
-    volume, areas = measures(a_scene(scene))
-    sides = DECLARED[one_of("event", event, EVENTS)].sides
+        return event_rates(scene)[check_choice("event", event, EVENTS)]
+    volume, areas = measures(check_scene(scene))
+    sides = DECLARED[check_choice("event", event, EVENTS)].sides
     if scene.has_effects:
         from twodiscs.theory import weighted
 
@@ -125,10 +125,10 @@ def passing_rate(scene, hop):
     separation to the nearest image changes its sign at 0. Raises ``InputError`` for anything that
     is not a ``Scene`` or a hop.
     """
-    one_of("hop", hop, HOPS)
-    if DECLARED[hop].axis not in a_scene(scene).periodic:
+    check_choice("hop", hop, HOPS)
+    if DECLARED[hop].axis not in check_scene(scene).periodic:
         return rate(scene, hop)
-    two_discs(scene, "passages along a periodic axis")
+    check_two_discs(scene, "passages along a periodic axis")
     from twodiscs.theory import weighted
 
     area = weighted.passing_area(scene, hop)
@@ -151,9 +151,9 @@ def work_per_event(scene):
     ``PASSES_PER_EVENT`` times are in what an event costs anyhow, and the kernel of N discs looks
     again only after half a period.
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         return 1.0
-    passes = sum(scene.fastest / scene.side(axis) for axis in a_scene(scene).periodic)
+    passes = sum(scene.fastest / scene.side(axis) for axis in check_scene(scene).periodic)
     return max(1.0, passes / PASSES_PER_EVENT / event_rate(scene))
 
 
@@ -176,7 +176,7 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
 
         td.mean_times(scene)["vertical_hop"]
     """
-    if a_scene(scene).discs > 2:
+    if check_scene(scene).discs > 2:
         rates = {event: rate(scene, event) for event in EVENTS}
         return {event: 1 / value if value else None for event, value in rates.items()}
     return {
@@ -197,7 +197,7 @@ def exact(scene: Scene) -> Exact:
         td.exact(scene)["regime"]
     """
     return {
-        "regime": a_scene(scene).regime,
+        "regime": check_scene(scene).regime,
         "ergodic_components": scene.ergodic_components,
         "largest_radius": scene.largest_radius,
         "volume": volume(scene),
@@ -223,9 +223,9 @@ def fraction_near(scene, hop, distance):
     the axis of ``hop``, a length up to √2 times the smaller radius. Raises ``InputError`` for
     anything that is not a ``Scene`` or a hop, and for another distance.
     """
-    one_of("hop", hop, HOPS)
-    distance = length("distance", distance)
-    limit = math.sqrt(2) * min(two_discs(scene, "fractions near a surface").radii)
+    check_choice("hop", hop, HOPS)
+    distance = check_length("distance", distance)
+    limit = math.sqrt(2) * min(check_two_discs(scene, "fractions near a surface").radii)
     if distance > limit:
         raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
     if scene.has_effects:
@@ -252,9 +252,9 @@ def shell_expectation(scene, event, epsilon):
     an ``epsilon`` that is not a length up to the radius, for an event that has no place in the
     scene, and for ``any_wall``, which has no shell of its own in a plain scene.
     """
-    two_discs(scene, "shells")
-    one_of("event", event, scene.events if scene.has_effects else SHELLS)
-    epsilon = length("epsilon", epsilon)
+    check_two_discs(scene, "shells")
+    check_choice("event", event, scene.events if scene.has_effects else SHELLS)
+    epsilon = check_length("epsilon", epsilon)
     if epsilon > scene.radius:
         raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"

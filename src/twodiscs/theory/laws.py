@@ -3,16 +3,16 @@
 import math
 from typing import NamedTuple
 
-from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory.exact import volume
 from twodiscs.theory.plain import Arc
 
 
-def a_plain_scene(scene):
+def check_plain_scene(scene):
     """Return ``scene``; raise ``InputError`` unless it is a plain ``Scene``."""
-    if not a_scene(scene).is_plain:
+    if not check_scene(scene).is_plain:
         raise InputError(
             "scene must be plain for closed forms, limits and distributions, but it has "
             f"{', '.join(scene.calls_for)}"
@@ -28,7 +28,7 @@ def closed_form(scene):
     volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``InputError`` for
     anything that is not a plain ``Scene``.
     """
-    r = a_plain_scene(scene).radius
+    r = check_plain_scene(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
     # Of the quarter circle, the angle within [0, a] × [0, b].
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
@@ -74,11 +74,11 @@ def small_radius_time(box, event, radius=0.0):
     wall, and infinite for disc collisions, which go like 3wh/(8√2 r). Raises ``InputError`` for a
     ``Box`` with effects, a radius (other than 0) that does not fit, and an event not in ``EVENTS``.
     """
-    a_plain_scene(box.tiny)
+    check_plain_scene(box.tiny)
     w, h, r = box.width, box.height, 0.0
     if isinstance(radius, bool) or radius != 0:
         r = box.scene(radius).radius
-    declared = DECLARED[one_of("event", event, EVENTS)]
+    declared = DECLARED[check_choice("event", event, EVENTS)]
     # The side along the axis of the event, and the other one.
     along, across = (w, h) if declared.axis == "x" else (h, w)
     one_sided = 1.5 * math.pi
@@ -102,8 +102,8 @@ def threshold_time(scene, event):
     disc collisions and of the walls at the far ends stay finite. Raises ``InputError`` for anything
     that is not a plain ``Scene`` or one of ``EVENTS``.
     """
-    w, h, r = a_plain_scene(scene).width, scene.height, scene.radius
-    declared = DECLARED[one_of("event", event, EVENTS)]
+    w, h, r = check_plain_scene(scene).width, scene.height, scene.radius
+    declared = DECLARED[check_choice("event", event, EVENTS)]
     if not scene.is_possible(event):
         return None
     one_sided = 1.5 * math.pi
@@ -153,7 +153,7 @@ def leading_law(box, event):
 
     Raises ``InputError`` for a box with effects, and an event that is not one of ``EVENTS``.
     """
-    limit = box.threshold(one_of("event", event, EVENTS))
+    limit = box.threshold(check_choice("event", event, EVENTS))
     near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
     times = [threshold_time(scene, event) for scene in (near, far)]
     power = round(math.log2(times[1] / times[0]))

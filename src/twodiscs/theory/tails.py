@@ -2,10 +2,10 @@
 
 import math
 
-from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.theory.exact import areas, volume
-from twodiscs.theory.laws import a_plain_scene
+from twodiscs.theory.laws import check_plain_scene
 from twodiscs.theory.plain import Arc
 
 
@@ -27,8 +27,8 @@ def density_at_zero(scene, hop):
     which they hopped. Raises ``InputError`` for anything that is not a plain ``Scene`` or
     one of ``HOPS``.
     """
-    one_of("hop", hop, HOPS)
-    if not a_plain_scene(scene).is_possible(hop):
+    check_choice("hop", hop, HOPS)
+    if not check_plain_scene(scene).is_possible(hop):
         return None
     side = scene.range_y if hop == "vertical_hop" else scene.range_x
     return 3 * math.sqrt(2) / (16 * side)
@@ -43,8 +43,8 @@ def drift_probability(scene, time, axis="x"):
     two components of a unit vector in four dimensions is 1/π everywhere. Raises ``InputError`` for
     anything that is not a plain ``Scene``, an unknown axis and a shorter time.
     """
-    one_of("axis", axis, ("x", "y"))
-    arc = Arc.of(a_plain_scene(scene))
+    check_choice("axis", axis, ("x", "y"))
+    arc = Arc.of(check_plain_scene(scene))
     along, beyond = arc.range_x, arc.beyond_y
     if axis == "y":
         along, beyond = arc.range_y, arc.beyond_x
@@ -84,8 +84,8 @@ def tail_constant(scene, event):
     forgotten exponentially fast. Raises ``InputError`` for anything that is not a plain ``Scene``,
     and for a wall.
     """
-    one_of("event", event, (*HOPS, "disc_collision"))
-    arc, area = Arc.of(a_plain_scene(scene)), areas(scene)[event]
+    check_choice("event", event, (*HOPS, "disc_collision"))
+    arc, area = Arc.of(check_plain_scene(scene)), areas(scene)[event]
     if not scene.is_possible(event):
         return None
     along_x = arc.range_x**2 * arc.beyond_y**4

@@ -18,9 +18,9 @@ rates of one disc at one wall and of collisions of any pair, √8 is √2 N. No 
 
 import math
 
-from twodiscs.model.checks import InputError, one_of
+from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import DECLARED, WALLS
-from twodiscs.model.scene import a_scene
+from twodiscs.model.scene import check_scene
 from twodiscs.theory.weighted import constant
 
 
@@ -30,8 +30,8 @@ def momentum_per_hit(scene, event):
     For disc 1 at a wall and for the collisions of the discs. Raises ``InputError`` for anything
     that is not a ``Scene``, in a field, where it depends on the height, and for other events.
     """
-    one_of("event", event, (*WALLS, "disc_collision"))
-    if a_scene(scene).field:
+    check_choice("event", event, (*WALLS, "disc_collision"))
+    if check_scene(scene).field:
         raise InputError(f"field must be 0, not {scene.field!r}: momenta depend on the height")
     components = scene.velocity_components
     normal = 1 / (components * constant(components))
@@ -48,7 +48,7 @@ def pressure_factor(scene, event):
     one of ``WALLS``. Raises ``InputError`` for another one, for anything that is not a
     ``Scene``, and in a field.
     """
-    one_of("event", event, WALLS)
+    check_choice("event", event, WALLS)
     momentum = momentum_per_hit(scene, event)
     side = scene.side(DECLARED[event].axis)
     return side * scene.velocity_components * momentum
@@ -62,7 +62,7 @@ def weights(scene):
     weights are; no exact volume is needed. Raises ``InputError`` for anything that is not a
     ``Scene``.
     """
-    if a_scene(scene).effects.keys() - {"moment_of_inertia"}:
+    if check_scene(scene).effects.keys() - {"moment_of_inertia"}:
         return None
     per_rate = 1 / constant(scene.velocity_components)
     pairs = math.sqrt(8) if scene.discs == 2 else math.sqrt(2) * scene.discs

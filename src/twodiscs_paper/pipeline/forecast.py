@@ -18,7 +18,7 @@ from typing import NamedTuple
 from twodiscs.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.model.checks import whole
+from twodiscs.model.checks import check_integer
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline import cost
 from twodiscs_paper.pipeline.configuration.load import load
@@ -149,7 +149,7 @@ def scene_rows(scene, cores, started):
         jobs += own
         sums += [summed(scene.name, stage, cores, own)] if own else []
     figures = sum(
-        entry.is_called(scene.watch.quantities, scene.effects) for entry in FIGURES.values()
+        entry.is_called(scene.quantities.names, scene.effects) for entry in FIGURES.values()
     )
     for kind, number in (("tables", len(scene.tables)), ("figures", figures)):
         sums.append(row(scene.name, kind, cores, number, startup=number * started[kind]))
@@ -161,7 +161,7 @@ def rows(configuration, cores):
 
     Raises ``InputError`` for another number of them.
     """
-    cores, started = whole("cores", cores), starts()
+    cores, started = check_integer("cores", cores), starts()
     forecast, sums = [], []
     for scene in configuration.scenes:
         forecast += scene_rows(scene, cores, started)

@@ -15,17 +15,24 @@ from twodiscs.comparison.estimates import (
     density_of_chains_at_zero,
     normal_quantile,
 )
+from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result
-from twodiscs.comparison.measured.watching import watched
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, accuracy, count, one_of, proportion, shown
+from twodiscs.model.checks import (
+    InputError,
+    check_choice,
+    check_count,
+    check_error,
+    check_fraction,
+    quote,
+)
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import Scene, a_scene
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
@@ -144,7 +151,7 @@ class Measurements(Result, Mapping[str, Measurement]):
 
     def __getitem__(self, name: str) -> Measurement:
         if name not in self._measurements:
-            raise KeyError(f"{shown(name)} is none of {', '.join(self)}")
+            raise KeyError(f"{quote(name)} is none of {', '.join(self)}")
         return self._measurements[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -292,7 +299,7 @@ def seed_of(scene, method, seed, name):
 
     ``name`` is that of the scene in a configuration; None stands for one that names the box.
     """
-    box = Box.of(a_scene(scene)).parameters()
+    box = Box.of(check_scene(scene)).parameters()
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be that of a scene, not {name!r}")
     return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
@@ -305,13 +312,13 @@ def _named(key, what, names, allowed):
     if isinstance(names, str | bytes) or not isinstance(names, Iterable) or not (names := [*names]):
         raise InputError(f"{key} must be a list of some of {', '.join(allowed)}, not {names!r}")
     for name in names:
-        one_of(what, name, allowed)
+        check_choice(what, name, allowed)
     return [name for name in allowed if name in names]
 
 
 def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
-    possible = a_scene(scene).events
+    possible = check_scene(scene).events
     if isinstance(error, Mapping) and not error:
         raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
     if not isinstance(error, Mapping):
@@ -320,30 +327,30 @@ def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, k
         errors = events = error
     else:
         errors = error
-    watched_events = _named("events", "event", events, possible)
-    if missing := [event for event in watched_events if event not in errors]:
+    tracked = _named("events", "event", events, possible)
+    if missing := [event for event in tracked if event not in errors]:
         raise InputError(f"error must hold every event, but has none for {missing[0]}")
-    target = {event: accuracy("error", errors[event]) for event in watched_events}
-    budget, stream = count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    target = {event: check_error("error", errors[event]) for event in tracked}
+    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
     settings = {
-        "error": target if isinstance(error, Mapping) else accuracy("error", error),
-        "seed": int(seed), "budget": budget, "events": watched_events, "name": name,
+        "error": target if isinstance(error, Mapping) else check_error("error", error),
+        "seed": int(seed), "budget": budget, "events": tracked, "name": name,
     }  # fmt: skip
     from twodiscs.dynamics.counting import CountingRun
 
     kept, run = {} if kept is None else kept, CountingRun(scene, target, budget, stream)
-    with watched(progress, f"simulate r = {scene.radius:g}") as watch:
-        point = run.alone(watch, cores, kept)
+    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
     return Measurements("simulate", scene, rows, settings, kept)
 
 
 def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
     """Return the ``Measurements`` of volume and areas by Monte Carlo (see the face)."""
-    allowed = ("volume", *(f"{event}_area" for event in a_scene(scene).events))
+    allowed = ("volume", *(f"{event}_area" for event in check_scene(scene).events))
     quantities = _named("quantities", "quantity", quantities, allowed)
-    samples = count("samples", samples)
-    shell, stream = proportion("shell", shell), seed_of(scene, "monte_carlo", seed, name)
+    samples = check_count("samples", samples)
+    shell, stream = check_fraction("shell", shell), seed_of(scene, "monte_carlo", seed, name)
     settings = {
         "samples": samples, "seed": int(seed), "quantities": quantities, "shell": shell,
         "name": name,
@@ -353,8 +360,8 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
 
     require_free_fraction(scene)
     kept, run = {} if kept is None else kept, SamplingRun(scene, quantities, samples, shell, stream)
-    with watched(progress, f"sample r = {scene.radius:g}") as watch:
-        points = {"monte_carlo": [run.alone(watch, cores, kept)]}
+    with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
+        points = {"monte_carlo": [run.run(progress, cores, kept)]}
     theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
     # Insertions always have the volume.
@@ -364,30 +371,30 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
 
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Intervals`` between hops (see the face)."""
-    one_of("hop", hop, HOPS)
-    if a_scene(scene).moment_of_inertia is not None:
+    check_choice("hop", hop, HOPS)
+    if check_scene(scene).moment_of_inertia is not None:
         raise InputError(
             "scene must have smooth discs, for rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
-    number, stream = count("number", number), seed_of(scene, "intervals", seed, name)
+    number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
     settings = {"hop": hop, "number": number, "seed": int(seed), "name": name}
     from twodiscs.dynamics.intervals import IntervalRun
 
     kept, run = {} if kept is None else kept, IntervalRun(scene, hop, number, stream)
-    with watched(progress, f"intervals r = {scene.radius:g}") as watch:
-        point = run.alone(watch, cores, kept)
+    with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
     return Intervals(scene, point, settings, kept)
 
 
 def starts(scene, number, seed, name, progress=None):
     """Return states of the invariant measure, an array with named columns (see the face)."""
-    number = count("number", number, most=10**8)
+    number = check_count("number", number, most=10**8)
     seed = seed_of(scene, "trajectory", seed, name)
     from twodiscs.sampling.starts import records
 
-    with watched(progress, f"starts r = {scene.radius:g}") as watch:
-        return records(scene, number, seed, watch)
+    with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
+        return records(scene, number, seed, progress)
 
 
 def exact_table(width, height, radii, effects):
@@ -427,7 +434,7 @@ def box_with(width, height, effects):
 def scenes_of(box, radii):
     """Return the scenes of a ``Box`` at some ``radii``."""
     if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
-        raise InputError(f"radii must be a list of numbers, not {shown(radii)}")
+        raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
     scenes = [box.scene(radius) for radius in radii]
     if not scenes:
         raise InputError("radii must hold one radius at least, not none")

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.comparison.measured.measurements import seed_of
-from twodiscs.comparison.measured.watching import watched
+from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
-from twodiscs.model.checks import InputError, count, listed, shown, written
-from twodiscs.model.scene import a_scene
+from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
+from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
 
@@ -73,7 +73,7 @@ class Observed:
 
 
 def _times(times):
-    times = listed(times)
+    times = as_list(times)
     try:
         checked = np.atleast_1d(np.asarray(times, float))
         ascending = checked.ndim == 1 and checked.size and np.all(np.diff(checked) > 0)
@@ -81,7 +81,7 @@ def _times(times):
             return checked
     except (TypeError, ValueError):
         pass
-    raise InputError(f"times must be ascending numbers from 0 on, not {shown(times)}")
+    raise InputError(f"times must be ascending numbers from 0 on, not {quote(times)}")
 
 
 def _seen(function, start, now):
@@ -101,7 +101,7 @@ def _seen(function, start, now):
         if returned is None:
             found = "None: is its return missing?"
         elif seen is None or not seen.shape:
-            found = shown(returned)
+            found = quote(returned)
         elif seen.dtype.names:
             found = f"an array with the fields {', '.join(seen.dtype.names)}: choose one of them"
         elif seen.dtype.kind == "c":
@@ -117,15 +117,15 @@ def _seen(function, start, now):
 
 def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
     """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
-    stream, times = seed_of(a_scene(scene), "observe", seed, name), _times(times)
+    stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
-        raise InputError(f"function must be one of two arrays of states, not {shown(function)}")
-    blocks = -(-count("replicas", replicas, most=10**9) // BLOCK)
+        raise InputError(f"function must be one of two arrays of states, not {quote(function)}")
+    blocks = -(-check_count("replicas", replicas, most=10**9) // BLOCK)
     rate = expected_event_rate(scene)
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
-            f"times must be below {written(MOST_EVENTS / rate, '.3g')}, where "
-            f"{written(MOST_EVENTS, 'g')} events are due, not {written(times[-1], 'g')}"
+            f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
+            f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
         )
     if scene.discs == 2:
         advance, law, wrapped = advance_all, law_of(scene), 3
@@ -146,7 +146,7 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
             yield now
 
     total = mean = square = None
-    with watched(progress, f"observe r = {scene.radius:g}") as watch:
+    with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
         every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
         for done, (start, *later) in enumerate(every, 1):
             seen = np.stack([_seen(function, start, now) for now in later], axis=1)
@@ -158,8 +158,8 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
                 n, apart = total + BLOCK, own - mean
                 square = square + spread + apart**2 * (total * BLOCK / n)
                 mean, total = mean + apart * (BLOCK / n), n
-            if watch is not None:
-                watch(done, blocks)
+            if progress is not None:
+                progress(done, blocks)
     stderr = np.sqrt(square / (total - 1) / total)
     settings = {"replicas": total, "seed": int(seed), "name": name}
     return Observed(scene, times, mean, stderr, total, settings)

@@ -14,7 +14,7 @@ import numpy as np
 
 import twodiscs
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, shown, writable
+from twodiscs.model.checks import InputError, quote, writing_to
 
 if TYPE_CHECKING:
     from twodiscs.model.scene import Scene
@@ -83,7 +83,7 @@ class Result:
         Raises ``InputError`` for a path that cannot be written.
         """
         text = json.dumps(self.to_dict(), allow_nan=False) + "\n"
-        with writable(path):
+        with writing_to(path):
             Path(path).write_text(text, encoding="utf-8")
 
     def _html(self, header, lines):
@@ -119,7 +119,7 @@ def from_dict(content):
     if version != twodiscs.__version__:
         raise InputError(
             f"the result must be of version {twodiscs.__version__}, to have the same numbers, not "
-            f"{shown(version)}"
+            f"{quote(version)}"
         )
     if "results" in content:
         module = import_module(f"{__package__}.{MAKERS[content['kind']]}")
@@ -136,7 +136,7 @@ def from_dict(content):
 def load_result(path):
     """Return the result in a file that its ``save`` wrote (see the face)."""
     if not isinstance(path, str | PathLike):
-        raise InputError(f"path must be that of a file, not {shown(path)}")
+        raise InputError(f"path must be that of a file, not {quote(path)}")
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         if not isinstance(content, Mapping):

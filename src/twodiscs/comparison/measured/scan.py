@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, overload
 from twodiscs.comparison.measured.measurements import Measurements, box_with, scenes_of, simulate
 from twodiscs.comparison.measured.result import Result
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, shown
+from twodiscs.model.checks import InputError, quote
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -101,7 +101,7 @@ def scan(
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(
             "radii must differ, for the same one has the same random numbers, not "
-            f"{shown([scene.radius for scene in scenes])}; another seed repeats it"
+            f"{quote([scene.radius for scene in scenes])}; another seed repeats it"
         )
     return Scan(
         [simulate(scene, error, seed, budget, events, name, cores, progress) for scene in scenes]

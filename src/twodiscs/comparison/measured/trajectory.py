@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from twodiscs.comparison.measured.measurements import seed_of
-from twodiscs.comparison.measured.watching import watched
+from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.dynamics.trajectory import DISCS, followed, followed_many, unwrapped
-from twodiscs.model.checks import InputError, listed, shown
+from twodiscs.model.checks import InputError, as_list, quote
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:
@@ -54,14 +54,14 @@ class Trajectory(pd.DataFrame):
                 f"time, not {len(self)} rows without {', '.join(missing) or 'none'}"
             )
         require_consecutive(self)
-        known, times = self["time"].to_numpy(), listed(times)
+        known, times = self["time"].to_numpy(), as_list(times)
         try:
             at = np.atleast_1d(np.asarray(times, float))
         except (TypeError, ValueError):
-            raise InputError(f"times must be a list of numbers, not {shown(times)}") from None
+            raise InputError(f"times must be a list of numbers, not {quote(times)}") from None
         if at.ndim > 1 or not np.all((at >= known[0]) & (at <= known[-1])):
             raise InputError(
-                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {shown(times)}"
+                f"times must be numbers from {known[0]!s} to {known[-1]!s}, not {quote(times)}"
             )
         row = np.searchsorted(known, at, side="right") - 1
         since, field = at - known[row], self.scene.field
@@ -92,8 +92,8 @@ def trajectory(scene, seed, start, duration, name, progress=None):
     seed = seed_of(scene, "trajectory", seed, name)
     if scene.discs > 2:
         return _of_many(scene, seed, start, duration, progress)
-    with watched(progress, f"trajectory r = {scene.radius:g}") as watch:
-        rows = followed(scene, seed, start, duration, watch)
+    with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
+        rows = followed(scene, seed, start, duration, progress)
     times, events, states = zip(*rows, strict=True)
     names = components(scene)
     columns = dict(zip(names, np.array(states).T, strict=True))
@@ -117,8 +117,8 @@ def trajectory(scene, seed, start, duration, name, progress=None):
 
 def _of_many(scene, seed, start, duration, progress):
     """Return the ``Trajectory`` of more than two discs."""
-    with watched(progress, f"trajectory r = {scene.radius:g}") as watch:
-        rows = followed_many(scene, seed, start, duration, watch)
+    with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
+        rows = followed_many(scene, seed, start, duration, progress)
     times, events, first, second, states = zip(*rows, strict=True)
     known = dict(zip(components(scene), np.array(states).T, strict=True))
     discs = range(1, scene.discs + 1)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twodiscs.comparison.estimates import Estimate
+from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result
-from twodiscs.comparison.measured.watching import watched
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, count, shown
+from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
@@ -215,9 +215,9 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
             f"hop {hop!r} must be between walls for a transmission coefficient, but that axis is "
             "periodic"
         )
-    blocks = -(-count("hops", hops, most=10**9) // REPLICAS)
+    blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be that of a scene, not {shown(name)}")
+        raise InputError(f"name must be that of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
@@ -226,8 +226,8 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
         {} if kept is None else kept,
     )
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
-    with watched(progress, f"transmission r = {scene.radius:g}") as watch:
-        reached = all_in_rounds(parts, watch, cores, kept)
+    with progress_bar(progress, f"transmission r = {scene.radius:g}") as progress:
+        reached = all_in_rounds(parts, progress, cores, kept)
     (sums,), clusters, kappa = reached["times"].sums, {}, None
     if "clusters" in reached:
         (sizes,) = reached["clusters"].sums

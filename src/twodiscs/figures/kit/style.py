@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import findfont, fontManager
 
-from twodiscs.model.checks import InputError, writable
+from twodiscs.model.checks import InputError, writing_to
 
 #: Width of one column of a two-column journal, in inches.
 COLUMN = 3.4
@@ -124,5 +124,5 @@ def save(figure, path, origin=None):
     }
     if kind not in metadata:
         raise InputError(f"path must be a .pdf, .png or .svg file, not {str(path)!r}")
-    with writable(path):
+    with writing_to(path):
         figure.savefig(path, format=kind, metadata=metadata[kind])

@@ -18,7 +18,7 @@ from PIL import Image
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.figures.motion import many
-from twodiscs.model.checks import InputError, length, writable
+from twodiscs.model.checks import InputError, check_length, writing_to
 from twodiscs.model.events import HOPS
 
 #: Pixels per inch, and inches: width of the whole, tallest box, panel beneath and margins.
@@ -78,7 +78,7 @@ class Stage:
     """The panels and what moves in them, for one stretch of a trajectory."""
 
     def __init__(self, box, radius, rows):
-        self.scene = scene = box.scene(length("radius", radius))
+        self.scene = scene = box.scene(check_length("radius", radius))
         width, height = box.width, box.height
         step = (width + height) / CROSSING
         self.of = box
@@ -347,7 +347,7 @@ def animate(box, radius, rows, paths):
     shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
     shown[-1] = LAST
     for path in paths:
-        with writable(path):
+        with writing_to(path):
             first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
 
 

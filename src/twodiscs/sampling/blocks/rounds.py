@@ -59,7 +59,7 @@ class SequentialRun:
         return self.block_events * self.cost_ratio
 
 
-class Progress(NamedTuple):
+class Outcome(NamedTuple):
     """What a run has found: sums of so many blocks after so many rounds, and their errors."""
 
     sums: list
@@ -80,7 +80,7 @@ def _added(sums, part):
     return list(part) if sums is None else [a + b for a, b in zip(sums, part, strict=True)]
 
 
-def _sums(run, stop, kept, cores, watch):
+def _sums(run, stop, kept, cores, progress):
     """Return the sums of the blocks 0 … ``stop`` − 1, from those in ``kept`` that come nearest.
 
     ``kept`` is {blocks: their sums}; these are added to it. Threads do some blocks a call.
@@ -89,25 +89,25 @@ def _sums(run, stop, kept, cores, watch):
     sums = kept.get(first)
     step = max(1, int(CALL / run.block_work))
     calls = ((start, min(start + step, stop)) for start in range(first, stop, step))
-    for done, part in enumerate(in_threads(run.work, calls, cores, lambda: watch(None)), 1):
+    for done, part in enumerate(in_threads(run.work, calls, cores, lambda: progress(None)), 1):
         sums = _added(sums, part)
-        watch(min(first + done * step, stop))
+        progress(min(first + done * step, stop))
     kept[stop] = sums
     return sums
 
 
 def all_at_once(run):
-    """Return the ``Progress`` when the planned blocks of a run are done, in this process."""
+    """Return the ``Outcome`` when the planned blocks of a run are done, in this process."""
     sums = _sums(run, run.planned, {}, 1, lambda blocks: None)
-    return Progress(sums, run.planned, 1, run.excess_of(sums, run.planned))
+    return Outcome(sums, run.planned, 1, run.excess_of(sums, run.planned))
 
 
-def in_rounds(run, watch=None, cores=1, kept=None):
-    """Return the ``Progress`` when all is known well enough or the budget is spent.
+def in_rounds(run, progress=None, cores=1, kept=None):
+    """Return the ``Outcome`` when all is known well enough or the budget is spent.
 
     The first round is small, no more than the budget affords or one block, the next ones as long as
-    the errors seen so far predict; without anything to wait for it is the only one. ``watch``, if
-    given, is called now and then with the work that is done and about how much it will be, in
+    the errors seen so far predict; without anything to wait for it is the only one. ``progress``,
+    if given, is called now and then with the work that is done and about how much it will be, in
     events of the plain ensemble.
 
     ``kept``, {blocks: sums} of the rounds of an earlier run to another error, saves what it has:
@@ -118,8 +118,8 @@ def in_rounds(run, watch=None, cores=1, kept=None):
     last, done, rounds = max(blocks, min(run.planned, run.budget / run.block_events)), 0, 0
 
     def seen(number):
-        if watch is not None:
-            watch(number if number is None else number * run.block_work, last * run.block_work)
+        if progress is not None:
+            progress(number if number is None else number * run.block_work, last * run.block_work)
 
     while True:
         done, rounds = done + blocks, rounds + 1
@@ -136,7 +136,7 @@ def in_rounds(run, watch=None, cores=1, kept=None):
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
         blocks = min(blocks, math.floor(affordable * done))
-    return Progress(sums, done, rounds, excess)
+    return Outcome(sums, done, rounds, excess)
 
 
 class Sampler(NamedTuple):
@@ -153,19 +153,19 @@ class Sampler(NamedTuple):
     cost_ratio: float = 1.0
 
 
-def all_in_rounds(parts, watch=None, cores=1, kept=None):
-    """Return {name: ``Progress``} of the runs in ``parts``, {name: run}, one after the other.
+def all_in_rounds(parts, progress=None, cores=1, kept=None):
+    """Return {name: ``Outcome``} of the runs in ``parts``, {name: run}, one after the other.
 
-    ``watch`` sees the work of all of them; ``kept`` holds that of ``in_rounds`` by name.
+    ``progress`` sees the work of all of them; ``kept`` holds that of ``in_rounds`` by name.
     """
     kept = {} if kept is None else kept
     reached, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 
     def seen(done, expected):
         work[name] = expected
-        if watch is not None:
+        if progress is not None:
             before = sum(work[earlier] for earlier in reached)
-            watch(done if done is None else before + done, sum(work.values()))
+            progress(done if done is None else before + done, sum(work.values()))
 
     for name, run in parts.items():
         reached[name] = in_rounds(run, seen, cores, kept.setdefault(name, {}))
@@ -201,7 +201,7 @@ def _narrow(sums):
 
 
 def joined(run, parts):
-    """Return the ``Progress`` of the planned blocks of a run, from the sums of its pieces.
+    """Return the ``Outcome`` of the planned blocks of a run, from the sums of its pieces.
 
     ``parts`` is a list of {"first", "stop", "sums"} in any order, the sums as nested lists of
     integers. Raises ``InputError`` unless they cover all planned blocks without gap or overlap.
@@ -215,7 +215,7 @@ def joined(run, parts):
     else:
         if stop == run.planned:
             sums = [_narrow(entry) for entry in sums]
-            return Progress(sums, stop, 1, run.excess_of(sums, stop))
+            return Outcome(sums, stop, 1, run.excess_of(sums, stop))
     given = ", ".join(f"{part['first']} to {part['stop']}" for part in parts) or "none"
     raise InputError(
         f"pieces must cover blocks 0 to {run.planned} without gap or overlap, not {given}"

@@ -11,9 +11,9 @@ from itertools import islice
 from queue import SimpleQueue
 from threading import Thread
 
-from twodiscs.model.checks import whole
+from twodiscs.model.checks import check_integer
 
-#: Seconds between two looks of who waits: so often a watch is told that time goes by.
+#: Seconds between two looks of who waits: so often a progress is told that time goes by.
 LOOK = 0.2
 
 #: No more threads than that.
@@ -40,7 +40,7 @@ def in_threads(work, arguments, cores=1, waiting=None):
     """
     from concurrent.futures import Future, wait
 
-    cores = whole("cores", cores, 1, MOST_CORES)
+    cores = check_integer("cores", cores, 1, MOST_CORES)
     given, calls, begun = iter(arguments), SimpleQueue(), deque()
 
     def begin(number):

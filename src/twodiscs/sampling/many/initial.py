@@ -352,12 +352,12 @@ def exchange_labels(state, states):
                 states[row, k], states[other, k] = states[other, k], states[row, k]
 
 
-def labelled(gas, number, seed, block=0, watch=None):
+def labelled(gas, number, seed, block=0, progress=None):
     """Return ``states`` of which each disc is any of them with the same probability.
 
     A channel has its discs in order, and a chain may not get far from the order it starts with.
     That is of no concern to what all discs do together. Labels have a stream of their own, so that
-    the first states are the same however many there are. ``watch``, if given, is called now and
+    the first states are the same however many there are. ``progress``, if given, is called now and
     then with how many are drawn (None: as before), and ``number``.
     """
     filled, initial, exchanged = np.zeros((4 * gas.discs, number)), initial_of(gas), method(gas)
@@ -382,9 +382,9 @@ def labelled(gas, number, seed, block=0, watch=None):
             yield first, min(first + step, number)
             first, step = first + step, step if seconds > SHORT else min(2 * step, PIECE)
 
-    for done in in_threads(fill, calls(), waiting=lambda: watch and watch(None, number)):
-        if watch is not None:
-            watch(done, number)
+    for done in in_threads(fill, calls(), waiting=lambda: progress and progress(None, number)):
+        if progress is not None:
+            progress(done, number)
     return filled
 
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, one_of, proportion, whole
+from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
@@ -216,7 +216,7 @@ def box_of(gas):
 
 def run_blocks(gas, seed, first, stop):
     """Return (sums, products) of the samples of a ``Gas``, integers: two shards add up."""
-    seed, walls = np.uint64(whole("seed", seed, 0)), None if gas.periodic else True
+    seed, walls = np.uint64(check_integer("seed", seed, 0)), None if gas.periodic else True
     return sample_blocks(seed, first, stop, gas.discs, box_of(gas), walls)
 
 
@@ -258,7 +258,7 @@ def estimate(gas, sums, products, samples):
 
 def sample(gas, samples, seed):
     """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
-    blocks = -(-whole("samples", samples) // BLOCK)
+    blocks = -(-check_integer("samples", samples) // BLOCK)
     return estimate(gas, *in_a_thread(run_blocks, gas, seed, 0, blocks), blocks * BLOCK)
 
 
@@ -277,11 +277,11 @@ def inserted(scene, quantities, shell, seed):
     """
     allowed = ("volume", *(f"{event}_area" for event in scene.events))
     for quantity in quantities:
-        one_of("quantity", quantity, allowed)
+        check_choice("quantity", quantity, allowed)
     if not quantities:
         raise InputError("quantities must name at least one quantity, not none")
-    proportion("shell", shell)
-    whole("seed", seed, 0)
+    check_fraction("shell", shell)
+    check_integer("seed", seed, 0)
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
         wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}

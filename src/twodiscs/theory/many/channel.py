@@ -31,7 +31,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, number
+from twodiscs.model.checks import InputError, check_number
 from twodiscs.theory.many.rates import Measures
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 
@@ -346,7 +346,7 @@ def limit(height, radius, force):
     total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and
     √(2 kT/π) times ``per_height`` for walls. Raises ``InputError`` unless 2r < h ≤ (2 + √3) r.
     """
-    force = number("force", force, 1e-60, 1e60)
+    force = check_number("force", force, 1e-60, 1e60)
     if not 2 * radius < height <= (2 + math.sqrt(3)) * radius:
         raise InputError(
             "height must lie between 2 and 2 + √3 radii for an ordered channel, not be "

@@ -47,13 +47,13 @@ class Files:
         return {
             name: _drawn(f"{self.folder}/{scene}/figures/{name}")
             for name, entry in FIGURES.items()
-            if entry.is_called(request.watch.quantities, request.effects)
+            if entry.is_called(request.quantities.names, request.effects)
         }
 
     def animation(self, scene):
         """Return the files of the animation of a scene, none if the scene has no trajectory."""
         request = self.scenes[scene]
-        called = ANIMATION.is_called(request.watch.quantities, request.effects)
+        called = ANIMATION.is_called(request.quantities.names, request.effects)
         return _drawn(f"{self.folder}/{scene}/figures/animation", "gif") if called else ()
 
     def study(self, name):

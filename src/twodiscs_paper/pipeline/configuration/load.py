@@ -11,13 +11,13 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import PRESETS, InputError, comma, written
+from twodiscs.model.checks import PRESETS, InputError, decimal_hint, format_number
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
 from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.reading import ConfigError, shown
-from twodiscs_paper.pipeline.configuration.request import Configuration, SceneRequest, Watch
+from twodiscs_paper.pipeline.configuration.request import Configuration, Quantities, SceneRequest
 from twodiscs_paper.pipeline.configuration.schema import schema
 
 #: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
@@ -98,7 +98,8 @@ def _load(mapping):
     if "stability" in shared and not all(LOW <= side <= HIGH for side in main.box.sides):
         raise ConfigError(
             f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
-            f"lie between {written(LOW, 'g')} and {written(HIGH, 'g')}, for it goes far below them"
+            f"lie between {format_number(LOW, 'g')} and {format_number(HIGH, 'g')}, because it "
+            "goes far below them"
         )
     return configuration
 
@@ -159,7 +160,7 @@ def _sentence(error):
             free = [key for key in known if key not in value]
             hint = _nearest(unknown, free) or f"; its keys are {', '.join(known)}"
         return f"{path} has an unknown key {shown(unknown)}{hint}"
-    hint = _nearest(value, node.get("enum", ())) or comma(value)
+    hint = _nearest(value, node.get("enum", ())) or decimal_hint(value)
     return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
 
 
@@ -195,43 +196,43 @@ def _scene(block, path, common):
     scene = box.scene(radii[0])
     watched = block.get("watch")
     if watched is None:
-        watched = dict.fromkeys(Watch.__dataclass_fields__, True)
+        watched = dict.fromkeys(Quantities.__dataclass_fields__, True)
         watched["trajectory"] = bool(_hops(scene))
         watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and scene.discs == 2
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
-    watch = Watch(
+    quantities = Quantities(
         volume=watched["volume"],
         areas=_events(watched["areas"], scene, f"{path}.watch.areas"),
         mean_times=_events(watched["mean_times"], scene, f"{path}.watch.mean_times"),
         hop_histogram=histogram.pop("radii"),
         trajectory=_trajectory(watched["trajectory"], box, scene, f"{path}.watch.trajectory"),
     )
-    if not watch.quantities:
-        known = ", ".join(Watch.__dataclass_fields__)
+    if not quantities.names:
+        known = ", ".join(Quantities.__dataclass_fields__)
         raise ConfigError(f"{path}.watch must ask for at least one of {known}, not for nothing")
-    if watch.mean_times:
+    if quantities.mean_times:
         try:
             box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
-    for radius in watch.hop_histogram if scene.discs == 2 else ():
+    for radius in quantities.hop_histogram if scene.discs == 2 else ():
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(
                 f"{path}.watch.hop_histogram must keep to radii at which {LEAST_INTERVALS} "
                 f"intervals fit into its event_budget, "
-                f"{written(histogram['event_budget'], 'g')}; at {radius!r} each one takes "
+                f"{format_number(histogram['event_budget'], 'g')}; at {radius!r} each one takes "
                 f"{events:.2g} events"
             )
     accuracy = block["accuracy"]
     if not isinstance(accuracy, dict):
         accuracy = {"default": accuracy}
-    asked = {event: accuracy.get(event, accuracy["default"]) for event in watch.mean_times}
+    asked = {event: accuracy.get(event, accuracy["default"]) for event in quantities.mean_times}
     return SceneRequest(
         name=block["name"],
         box=box,
         radii=radii,
-        watch=watch,
+        quantities=quantities,
         monte_carlo=block["monte_carlo"],
         dynamics={
             "accuracy": {event: PRESETS.get(asked[event], asked[event]) for event in sorted(asked)},

@@ -60,7 +60,7 @@ def or_exit(function, *arguments):
 
 def shown(value):
     """Return a ``value`` as a sentence shows it: shortened."""
-    return "empty" if value is None else checks.shown(value)
+    return "empty" if value is None else checks.quote(value)
 
 
 def _mistake(problem, node):

@@ -23,7 +23,7 @@ MOST_EVENTS = 10**15
 
 
 @dataclass(frozen=True)
-class Watch:
+class Quantities:
     """What a scene computes and measures; an empty tuple, ``False`` or ``None`` means not at all.
 
     ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
@@ -37,7 +37,7 @@ class Watch:
     trajectory: float | None
 
     @property
-    def quantities(self):
+    def names(self):
         """Everything watched, as a set of names: those of theory.csv, and the two others.
 
         Such as {"volume", "right_wall_area", "right_wall_time", "hop_histogram", "trajectory"}.
@@ -59,7 +59,7 @@ class SceneRequest:
     name: str
     box: Box
     radii: tuple
-    watch: Watch
+    quantities: Quantities
     monte_carlo: dict
     dynamics: dict
     histogram: dict
@@ -82,42 +82,43 @@ class SceneRequest:
     @cached_property
     def keys(self):
         """{stage: {key: radius}} of the jobs that there are."""
-        watch = self.watch
+        quantities = self.quantities
         radii = {
-            "monte_carlo": self.radii if watch.volume or watch.areas else (),
-            "dynamics": self.radii if watch.mean_times else (),
-            "intervals": watch.hop_histogram,
+            "monte_carlo": self.radii if quantities.volume or quantities.areas else (),
+            "dynamics": self.radii if quantities.mean_times else (),
+            "intervals": quantities.hop_histogram,
         }
         return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
 
     def exact_radii(self, table):
         """Return the radii of a table of exact values: in theory those of histograms, too."""
-        return sorted({*self.radii, *(self.watch.hop_histogram if table == "theory" else ())})
+        return sorted({*self.radii, *(self.quantities.hop_histogram if table == "theory" else ())})
 
     @cached_property
     def tables(self):
         """The names of the tables that the scene calls for."""
         jobs = any(self.keys.values())
         measured = {
-            "volume": self.watch.volume,
-            "areas": self.watch.areas,
-            "mean_times": self.watch.mean_times,
-            "hop_histogram": self.watch.hop_histogram,
-            "trajectory": self.watch.trajectory,
+            "volume": self.quantities.volume,
+            "areas": self.quantities.areas,
+            "mean_times": self.quantities.mean_times,
+            "hop_histogram": self.quantities.hop_histogram,
+            "trajectory": self.quantities.trajectory,
             "check": jobs,
             "cost": jobs,
         }
         return ("grid", "theory", *(name for name, called in measured.items() if called))
 
     @property
-    def quantities(self):
+    def sampled(self):
         """What Monte Carlo samples: the volume, and areas of events."""
-        return ["volume"] * self.watch.volume + [f"{event}_area" for event in self.watch.areas]
+        areas = [f"{event}_area" for event in self.quantities.areas]
+        return ["volume"] * self.quantities.volume + areas
 
     @property
     def shell(self):
         """The thickness of the shells that Monte Carlo measures areas by."""
-        return self.monte_carlo["shell"] if self.watch.areas else NO_SHELL
+        return self.monte_carlo["shell"] if self.quantities.areas else NO_SHELL
 
     @property
     def target(self):
@@ -128,7 +129,7 @@ class SceneRequest:
         """Return what the job of a ``stage`` depends on, beside its scene, by name."""
         settings = {
             "monte_carlo": {
-                "quantities": self.quantities,
+                "quantities": self.sampled,
                 "samples": self.monte_carlo["samples"],
                 "shell": self.shell,
             },
@@ -153,7 +154,7 @@ class SceneRequest:
     @property
     def trajectory_seed(self):
         """The seed of the random streams of the trajectory."""
-        return self.seed_of("trajectory", self.watch.trajectory)
+        return self.seed_of("trajectory", self.quantities.trajectory)
 
     def seed_of(self, stage, radius):
         """Return the seed of the random streams of a job; ``radius`` is a key or a number."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from twodiscs.model.checks import written
+from twodiscs.model.checks import format_number
 from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.catalogue import STUDIES
@@ -57,7 +57,9 @@ def _effect(effect):
     if not effect.is_number:
         return node
     kind = "ratio" if effect.name.endswith("_ratio") else "length" if effect.of_box else "number"
-    allowed = f"a {kind} between {written(effect.low, 'g')} and {written(effect.high, 'g')}"
+    allowed = (
+        f"a {kind} between {format_number(effect.low, 'g')} and {format_number(effect.high, 'g')}"
+    )
     low = effect.low
     if effect.default is None:
         node["computed"] = "none"

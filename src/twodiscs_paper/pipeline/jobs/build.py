@@ -13,7 +13,7 @@ from pathlib import Path
 
 import twodiscs
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.model.checks import InputError, whole
+from twodiscs.model.checks import InputError, check_integer
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.files import Files
 from twodiscs_paper.pipeline.configuration.load import check_results, load
@@ -87,7 +87,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     nothing. Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores``
     that are no integer ≥ 1.
     """
-    cores = "all" if cores is None else whole("cores", cores, 1)
+    cores = "all" if cores is None else check_integer("cores", cores, 1)
     for target in targets:
         if target not in TARGETS and "/" not in target:
             near = get_close_matches(target, TARGETS, n=1)

@@ -20,7 +20,7 @@ from twodiscs.arguments import (
     whole_number,
 )
 from twodiscs.comparison.digests import read_json, write_json
-from twodiscs.comparison.measured.watching import watched
+from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.model.checks import InputError
 
 
@@ -107,8 +107,8 @@ def main():
     elif options.shards:
         content = joined(work, options.shards)
     else:
-        with watched(None, options.stage) as watch:
-            content = work.alone(watch)
+        with progress_bar(None, options.stage) as progress:
+            content = work.run(progress)
     write_json(options.output, content)
 
 

@@ -68,7 +68,12 @@ def of_tables(folder, scenes):
         except (OSError, InputError):
             continue
         exact = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
-        given = {"box": scene.box, "areas": scene.watch.areas, "theory": exact, "points": points}
+        given = {
+            "box": scene.box,
+            "areas": scene.quantities.areas,
+            "theory": exact,
+            "points": points,
+        }
         for file in tables:
             table = SCENE_TABLES[file.stem]
             try:

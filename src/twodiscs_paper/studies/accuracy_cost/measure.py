@@ -30,7 +30,7 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting, strip
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.model.box import Box
-from twodiscs.model.checks import length, whole
+from twodiscs.model.checks import check_integer, check_length
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import radii
 from twodiscs.model.scene import Scene
@@ -607,8 +607,8 @@ def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     Of the least work every method does its share, so a few seconds are spent whatever is asked.
     ``repetitions`` ≥ 2. Raises ``InputError`` for a number out of range.
     """
-    scale = length("seconds", seconds) / USUAL_SECONDS
-    repetitions = whole("repetitions", repetitions, 2)
+    scale = check_length("seconds", seconds) / USUAL_SECONDS
+    repetitions = check_integer("repetitions", repetitions, 2)
     all_series = series(scale)
     work_rows = work_precision(all_series, measure(all_series, repetitions))
     return [*work_rows, *by_radius(scale), *where_single_fails(scale)]

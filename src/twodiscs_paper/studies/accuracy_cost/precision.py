@@ -16,8 +16,8 @@ import numpy as np
 from twodiscs.dynamics import law as law_module
 from twodiscs.dynamics.counting import LOOKS
 from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, put_state, state_at
-from twodiscs.model.checks import length, one_of, whole
-from twodiscs.model.scene import a_scene
+from twodiscs.model.checks import check_choice, check_integer, check_length
+from twodiscs.model.scene import check_scene
 from twodiscs.sampling.jit import OPTIONS, numba
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import draw_starts
@@ -138,10 +138,12 @@ def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
     the energy at the end of a replica). Raises ``InputError`` for a scene, a seed or a duration
     that is none, a range without blocks, and a ``dtype`` other than numpy's float32 and float64.
     """
-    a_scene(scene)
-    seed, first = whole("seed", seed, 0), whole("first", first, 0)
-    stop, duration = whole("stop", stop, first + 1), length("duration", duration)
-    one_of("dtype", dtype.__name__ if isinstance(dtype, type) else dtype, ("float32", "float64"))
+    check_scene(scene)
+    seed, first = check_integer("seed", seed, 0), check_integer("first", first, 0)
+    stop, duration = check_integer("stop", stop, first + 1), check_length("duration", duration)
+    check_choice(
+        "dtype", dtype.__name__ if isinstance(dtype, type) else dtype, ("float32", "float64")
+    )
     sums, gained, squared = kernel(dtype)(
         np.uint64(seed), first, stop, REPLICAS, LANES, dtype(duration),
         law_module.Law(*map(dtype, law_module.law_of(scene)[:3])), draw_constants(scene),

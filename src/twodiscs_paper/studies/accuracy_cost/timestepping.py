@@ -12,8 +12,8 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, REPLICAS
 from twodiscs.dynamics.law import crosses
-from twodiscs.model.checks import length, whole
-from twodiscs.model.scene import a_scene
+from twodiscs.model.checks import check_integer, check_length
+from twodiscs.model.scene import check_scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import draw_starts
@@ -102,10 +102,10 @@ def run_blocks(scene, seed, first, stop, duration, step):
     The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of ``COUNTED``. Raises
     ``InputError`` for a scene, seed, duration or step that is none, or a range without blocks.
     """
-    a_scene(scene)
-    seed, first = whole("seed", seed, 0), whole("first", first, 0)
-    stop, step = whole("stop", stop, first + 1), length("step", step)
-    steps = max(1, round(length("duration", duration) / step))
+    check_scene(scene)
+    seed, first = check_integer("seed", seed, 0), check_integer("first", first, 0)
+    stop, step = check_integer("stop", stop, first + 1), check_length("step", step)
+    steps = max(1, round(check_length("duration", duration) / step))
     return step_blocks(
         np.uint64(seed), first, stop, REPLICAS, LANES, steps, step, scene.contact_distance,
         draw_constants(scene),

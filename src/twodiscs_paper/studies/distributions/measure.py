@@ -22,7 +22,7 @@ from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, one_of, whole
+from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.jit import compiled
@@ -178,7 +178,7 @@ def near_threshold(box, hop):
     They are ``DISTANCES`` below it, relative to it. Where the hop is too rare even for the fewest
     intervals, in very long boxes, they are left out.
     """
-    limit = box.threshold(one_of("hop", hop, HOPS))
+    limit = box.threshold(check_choice("hop", hop, HOPS))
     if limit not in box.thresholds:
         return []
     radii = [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
@@ -199,11 +199,11 @@ def measured(scene, hop, seed, events=EVENTS):
     ``InputError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
     range.
     """
-    one_of("hop", hop, HOPS)
+    check_choice("hop", hop, HOPS)
     constant = tails.tail_constant(scene, hop)
     if constant is None:
         raise InputError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
-    seed, events = whole("seed", seed, 0), whole("events", events)
+    seed, events = check_integer("seed", seed, 0), check_integer("events", events)
     mean = exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS

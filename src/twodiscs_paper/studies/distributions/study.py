@@ -13,7 +13,7 @@ def _parameters(configuration):
                 "box": scene.box.parameters(),
                 "event": scene.histogram["event"],
                 "name": scene.name,
-                "radii": list(scene.watch.hop_histogram),
+                "radii": list(scene.quantities.hop_histogram),
             }
             for scene in configuration.plain
         ],

@@ -13,9 +13,9 @@ from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.model.box import Box
-from twodiscs.model.checks import ascending, whole
+from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import a_scene
+from twodiscs.model.scene import check_scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
@@ -59,9 +59,9 @@ def survivors(scene, times, blocks, seed):
     ``InputError`` for anything that is not a ``Scene``, for ``times`` that do not ascend, and for a
     number out of range.
     """
-    law, (draw, prism) = law_of(a_scene(scene)), origins(scene)
-    values = ascending("times", times)
-    blocks, seed = whole("blocks", blocks), np.uint64(whole("seed", seed, 0))
+    law, (draw, prism) = law_of(check_scene(scene)), origins(scene)
+    values = check_ascending("times", times)
+    blocks, seed = check_integer("blocks", blocks), np.uint64(check_integer("seed", seed, 0))
     counts = follow_survivors(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
     return [int(n) for n in counts]
 

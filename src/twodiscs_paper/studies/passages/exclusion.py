@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from twodiscs.comparison.estimates import mean_of
-from twodiscs.model.checks import InputError, ascending, whole
+from twodiscs.model.checks import InputError, check_ascending, check_integer
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 
@@ -75,8 +75,8 @@ def displacements(swap, times, rings, seed):
     """
     if not 0 <= swap <= 1:
         raise InputError(f"swap must be a probability from 0 to 1, not {swap!r}")
-    times, rings = np.array(ascending("times", times)), whole("rings", rings, 2)
-    return exchange(np.uint64(whole("seed", seed, 0)), 0, rings, SITES, float(swap), times)
+    times, rings = np.array(check_ascending("times", times)), check_integer("rings", rings, 2)
+    return exchange(np.uint64(check_integer("seed", seed, 0)), 0, rings, SITES, float(swap), times)
 
 
 def run_time(swap):

@@ -12,7 +12,7 @@ import numpy as np
 from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.many import N, advance, find_events, law_of, nearest
-from twodiscs.model.checks import ascending, whole
+from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many.rates import rates
@@ -70,8 +70,8 @@ def diffusion(gas, time, replicas, seed):
     ``replicas`` independent initial states (rounded up to whole lanes). Raises ``InputError`` for
     numbers out of range.
     """
-    (time,) = ascending("time", [time])
-    replicas = -(-whole("replicas", replicas, 2) // LANES) * LANES
+    (time,) = check_ascending("time", [time])
+    replicas = -(-check_integer("replicas", replicas, 2) // LANES) * LANES
     states = initial.states(gas, replicas, seed)
     squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
     follow(states, LANES, np.array([time, 2 * time]), law_of(gas), squares, crossings)
@@ -89,4 +89,4 @@ def sampled_rate(gas, samples, seed):
         rates(gas, part)["horizontal_hop"] for part in measures.sample(gas, samples, seed)
     )
     share = 2 / gas.discs  # a hop is that of both
-    return Estimate(share * found, share * error, whole("samples", samples))
+    return Estimate(share * found, share * error, check_integer("samples", samples))

@@ -24,7 +24,7 @@ from twodiscs.comparison.measured.transmission import (
 from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
-from twodiscs.model.checks import whole
+from twodiscs.model.checks import check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.many import Gas
 from twodiscs.theory import exact, tails
@@ -299,7 +299,7 @@ def rows(scenes, events, seed):
     ring are in the first of them. ``events`` are about how many wall and disc events an estimate
     may take. Every estimate has random streams of its own, derived from the ``seed``.
     """
-    whole("seed", seed, 0), whole("events", events)
+    check_integer("seed", seed, 0), check_integer("events", events)
     for index, (name, parameters) in enumerate(scenes.items()):
         box = Box(**parameters)
         limits = thresholds(box)

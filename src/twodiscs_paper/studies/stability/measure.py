@@ -21,7 +21,7 @@ from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
 from twodiscs.dynamics.trajectory import advance
-from twodiscs.model.checks import LARGEST_INTEGER, whole
+from twodiscs.model.checks import LARGEST_INTEGER, check_integer
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
 from twodiscs.sampling import montecarlo
@@ -399,7 +399,7 @@ def run(scene, number, seed):
     Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, of |Δx| − σ, and excess, the
     largest of a centre beyond its range, both in ``box_units``; lanes_lost.
     """
-    per_lane = -(-whole("number", number) // LANES)
+    per_lane = -(-check_integer("number", number) // LANES)
     windows = -(-per_lane // WINDOW)
     window = -(-per_lane // windows)
     law = law_of(scene)
@@ -422,7 +422,11 @@ def run(scene, number, seed):
 
 def _checked(seed, ordinary, hard):
     """Return the three as integers; raise ``InputError`` for one that is out of range."""
-    return whole("seed", seed, 0), whole("ordinary", ordinary), whole("hard", hard)
+    return (
+        check_integer("seed", seed, 0),
+        check_integer("ordinary", ordinary),
+        check_integer("hard", hard),
+    )
 
 
 def dynamics_rows(box, seed, ordinary, hard):

@@ -23,7 +23,7 @@ from twodiscs.dynamics.ensemble import across, nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
 from twodiscs.dynamics.trajectory import advance, time_to_next
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, ascending, one_of, whole
+from twodiscs.model.checks import InputError, check_ascending, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_in_disc
@@ -125,12 +125,12 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
 
 def _prepared(scene, event, times):
     """Return (times as an array, the scene on its side for horizontal hops, is it a hop)."""
-    one_of("event", event, TAILED)
+    check_choice("event", event, TAILED)
     if tails.tail_constant(scene, event) is None:
         raise InputError(
             f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
         )
-    values = ascending("times", times)
+    values = check_ascending("times", times)
     if event == "horizontal_hop":
         scene = Box.of(scene).turned().scene(scene.radius)
     return np.array(values), scene, event in HOPS
@@ -146,8 +146,8 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     has no interval, and for a number out of range.
     """
     times, upright, hop = _prepared(scene, event, times)
-    samples, seed = whole("samples", samples), whole("seed", seed, 0)
-    blocks = whole("blocks", blocks, 2)
+    samples, seed = check_integer("samples", samples), check_integer("seed", seed, 0)
+    blocks = check_integer("blocks", blocks, 2)
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
@@ -162,7 +162,7 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
 def _counts(scene, event, times, replicas, seed):
     """Return what each replica has of P(T > t), (replicas, times): its count over the mean one."""
     times, upright, hop = _prepared(scene, event, times)
-    replicas, seed = whole("replicas", replicas, 2), whole("seed", seed, 0)
+    replicas, seed = check_integer("replicas", replicas, 2), check_integer("seed", seed, 0)
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
         np.uint64(seed), 0, 1, replicas, window, times, law_of(upright),
@@ -236,7 +236,7 @@ def rows(box, samples, replicas, seed):
 
     Every case and method has a stream of its own: ``seed`` and the numbers after it.
     """
-    seed = whole("seed", seed, 0)
+    seed = check_integer("seed", seed, 0)
     for i, (event, radius) in enumerate(cases(box)):
         scene = box.scene(radius)
         mean, constant = exact.mean_times(scene)[event], tails.tail_constant(scene, event)
