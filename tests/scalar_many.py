@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from twodiscs.model.families.many import arrangement
 from twodiscs.sampling.jit import compiled
 
 #: Vertical hops, horizontal hops, collisions, hits of the walls of x and of y.
@@ -105,17 +106,17 @@ def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length):
     return counts
 
 
-def rates(gas, events, seed, batches=50):
+def rates(scene, events, seed, batches=50):
     """Return (rates of all events of a kind, standard errors), of about so many ``events``."""
     rng = np.random.default_rng(seed)
-    x, y = np.array(gas.arrangement).T.copy()
-    u, v = rng.standard_normal((2, gas.discs))
-    if gas.periodic:
+    x, y = np.array(arrangement(scene)).T.copy()
+    u, v = rng.standard_normal((2, scene.discs))
+    if scene.periodic:
         u -= u.mean()
     scale = math.sqrt(np.sum(u * u + v * v))
     u, v = u / scale, v / scale
-    ring = gas.width if gas.periodic else 0.0
-    box = gas.range_x / 2, gas.range_y / 2, gas.contact_distance, ring
+    ring = scene.width if scene.periodic else 0.0
+    box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
     trial = run(x, y, u, v, *box, 1, 4.0)
     length = 4.0 * events / max(1, int(trial[0, 2:].sum())) / batches
     counts = run(x, y, u, v, *box, batches, length) / length

@@ -18,11 +18,11 @@ from statistics import median
 import numpy as np
 
 from twodiscs.arguments import Parser, run
-from twodiscs.dynamics import counting, many
+from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.intervals import hop_intervals
+from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import EVENTS, SHELLS, WALLS
-from twodiscs.model.many import Gas
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
@@ -71,9 +71,9 @@ def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
 
 def lockstep_of_many(discs, blocks=BLOCKS // 8):
     """Count all events of so many discs by the kernel of N discs, which takes two as well."""
-    gas = Gas(discs, SCENE.width, SCENE.height, SCENE.radius / 2)
-    duration = many.duration_of(gas)
-    counted, seconds = timed(lambda: many.run_blocks(gas, 1, 0, blocks, duration))
+    scene = Scene(SCENE.width, SCENE.height, SCENE.radius / 2, discs=discs)
+    duration = many.replica_duration(scene)
+    counted, seconds = timed(lambda: many.run_blocks(scene, 1, 0, blocks, duration))
     return many.simulated_events(counted[0]), seconds
 
 

@@ -14,13 +14,13 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.exact import Theory
-from twodiscs.dynamics import counting, intervals, many
+from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics.many import lockstep as many
 from twodiscs.figures.motion.many import colours
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
-from twodiscs.model.many import CLASSES
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo, starts
 from twodiscs.sampling.blocks import rounds
@@ -134,12 +134,12 @@ def test_another_program_has_the_same_rates(name):
     replicas = blocks * REPLICAS
     counted = sums / replicas / duration
     errors = counted * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
-    other, spread = scalar_many.rates(scene.gas, 500_000, 6)
+    other, spread = scalar_many.rates(scene, 500_000, 6)
     classes = {"x": "right_wall", "y": "top_wall"}
     bound = bonferroni_bound(len(SCENES) * len(SHELLS), FALSE_ALARM)
     assert bound < 5
     for event in SHELLS:
-        e, k = EVENTS.index(event), CLASSES.index(classes[AXIS[event]] if event in WALLS else event)
+        e, k = EVENTS.index(event), SHELLS.index(classes[AXIS[event]] if event in WALLS else event)
         error = math.hypot(errors[e], spread[k])
         assert abs(counted[e] - other[k]) <= 5 * error, (event, counted[e], other[k], error)
 
@@ -228,7 +228,8 @@ def test_a_trajectory_is_made_of_straight_lines_and_keeps_to_the_box(tmp_path):
 def test_a_trajectory_on_a_ring_goes_on_beyond_the_cell(tmp_path):
     scene = SCENES["four on a ring"]
     frame = td.trajectory(scene, seed=3, duration=300.0)
-    assert set(frame["event"]) == {"start", "vertical_hop", "disc_collision", "wall_y", "end"}
+    walls = {f"wall_y{disc}" for disc in range(1, 5)}
+    assert set(frame["event"]) == {"start", "vertical_hop", "disc_collision", "end"} | walls
     x, y, u = (frame[[f"{q}{d}" for d in range(1, 5)]].to_numpy() for q in "xyu")
     assert np.ptp(x) > 2 * scene.width
     # Places go on as velocities say, and the centre of mass stays where it is.
@@ -268,8 +269,8 @@ def test_a_trajectory_is_that_of_another_program(name):
     """From the same state, for some sixteen events, in which roundings of 1e-16 stay small."""
     scene = SCENES[name]
     n, ring = scene.discs, scene.width if scene.periodic else 0.0
-    box = scene.gas.range_x / 2, scene.gas.range_y / 2, scene.contact_distance, ring
-    duration = many.duration_of(scene.gas, 16)
+    box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
+    duration = many.replica_duration(scene, 16)
     for state in starts.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]

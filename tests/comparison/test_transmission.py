@@ -9,7 +9,7 @@ import twodiscs as td
 from twodiscs.comparison.estimates import Estimate
 from twodiscs.comparison.measured import transmission
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.passages import LARGEST, REPLICAS, SUMS
+from twodiscs.dynamics.two.passages import LARGEST, REPLICAS, SUMS
 
 
 def test_clusters_are_weighed_by_their_sizes():

@@ -9,8 +9,9 @@ from effect_scenes import SCENES
 
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.dynamics import intervals, many, trajectory
+from twodiscs.dynamics import intervals, trajectory
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
@@ -126,7 +127,7 @@ def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     found = intervals.hop_intervals(scene, event, 2_000_000, 4)
     mean, error = mean_times(scene)[event], 0.0
     if mean is None:
-        known, spread = (rates(scene.gas, part) for part in measures.sample(scene.gas, 10**6, 5))
+        known, spread = (rates(scene, part) for part in measures.sample(scene, 10**6, 5))
         mean, error = 1 / known[event], spread[event] / known[event] ** 2
     assert abs(found["mean"] - mean) <= 5 * math.hypot(found["stderr"], error)
     assert found["stderr"] < 1.5e-3 * mean
@@ -141,11 +142,11 @@ def test_intervals_of_many_are_those_of_trajectories(name):
     wide, sums = np.full(65, 65), np.zeros((3, 66), np.int64)
     going = np.ones(1, np.bool_)
     times, numbers = many.run_intervals(
-        scene.gas, event, 7, 3, 4, replicas, window, (width, wide), sums, going
+        scene, event, 7, 3, 4, replicas, window, (width, wide), sums, going
     )
     due = np.zeros((3, 66), np.int64)
-    for k, state in enumerate(initial.states(scene.gas, replicas, 7, 3).T):
-        rows = trajectory.events_of_many(scene, state, 4 * window)
+    for k, state in enumerate(initial.states(scene, replicas, 7, 3).T):
+        rows = trajectory.events_of(scene, state, 4 * window)
         at = np.array([time for time, name, *_ in rows if name == event])
         own = np.diff(at)[at[:-1] < window]
         assert (numbers[k], times[k]) == (own.size, pytest.approx(own.sum(), rel=1e-12))

@@ -9,85 +9,85 @@ import numpy as np
 import pytest
 import scalar_many
 
-from twodiscs.dynamics import counting, many
+from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
-from twodiscs.model.events import AXIS, EVENTS, WALLS
-from twodiscs.model.many import CLASSES, Gas
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
 
-def counted(gas, blocks, seed=1, events=None):
+def counted(scene, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
-    duration = many.duration_of(gas, events)
-    sums, products = many.run_blocks(gas, seed, 0, blocks, duration)
+    duration = many.replica_duration(scene, events)
+    sums, products = many.run_blocks(scene, seed, 0, blocks, duration)
     replicas = blocks * REPLICAS
     found = sums / replicas / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
-    named = dict(zip(CLASSES, found, strict=True))
-    return named, dict(zip(CLASSES, errors, strict=True)), covariance
+    named = dict(zip(SHELLS, found, strict=True))
+    return named, dict(zip(SHELLS, errors, strict=True)), covariance
 
 
-def check(gas, found, errors, expected, expected_errors=None):
+def check(scene, found, errors, expected, expected_errors=None):
     """Five sigma on every class."""
     for event, rate in expected.items():
         error = math.hypot(errors[event], (expected_errors or {}).get(event, 0.0))
-        assert abs(found[event] - rate) <= 5 * error, (gas, event, found[event], rate, error)
+        assert abs(found[event] - rate) <= 5 * error, (scene, event, found[event], rate, error)
 
 
 EXACT = {
-    "three": Gas(3, 1.5, 1.0, 0.15),
-    "three, dense": Gas(3, 1.5, 1.0, 0.26),
-    "three, upright": Gas(3, 1.0, 1.5, 0.24),
-    "three in a channel": Gas(3, 1.5, 0.6, 0.18),
-    "four in a channel": Gas(4, 1.5, 0.6, 0.18),
-    "eight in a channel": Gas(8, 3.5, 0.6, 0.18),
-    "eight, dense": Gas(8, 2.4, 0.6, 0.18),
-    "four, upright": Gas(4, 0.6, 1.6, 0.18),
+    "three": Scene(1.5, 1.0, 0.15, discs=3),
+    "three, dense": Scene(1.5, 1.0, 0.26, discs=3),
+    "three, upright": Scene(1.0, 1.5, 0.24, discs=3),
+    "three in a channel": Scene(1.5, 0.6, 0.18, discs=3),
+    "four in a channel": Scene(1.5, 0.6, 0.18, discs=4),
+    "eight in a channel": Scene(3.5, 0.6, 0.18, discs=8),
+    "eight, dense": Scene(2.4, 0.6, 0.18, discs=8),
+    "four, upright": Scene(0.6, 1.6, 0.18, discs=4),
 }
 
 
 @pytest.mark.parametrize("name", EXACT)
 def test_rates_are_exact(name):
-    gas = EXACT[name]
-    found, errors, covariance = counted(gas, 6)
-    check(gas, found, errors, rates(gas, exact.measures(gas)))
-    weights = np.array([virial_weights(gas).get(event, 0.0) for event in CLASSES])
+    scene = EXACT[name]
+    found, errors, covariance = counted(scene, 6)
+    check(scene, found, errors, rates(scene, exact.measures(scene)))
+    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
     error = math.sqrt(weights @ covariance @ weights)
-    assert abs(virial_sum(gas, found) - 1) < 5 * error
+    assert abs(virial_sum(scene, found) - 1) < 5 * error
     assert error < 0.05
 
 
 #: Without an exact value: Monte Carlo, and another program, say what dynamics is to say.
 OTHERS = {
-    "four": Gas(4, 1.5, 1.0, 0.12),
-    "five, dense": Gas(5, 1.5, 1.0, 0.19),
-    "eight": Gas(8, 2.0, 1.5, 0.15),
-    "four on a ring": Gas(4, 1.5, 1.0, 0.15, "x"),
-    "three on a narrow ring": Gas(3, 1.5, 0.6, 0.18, "x"),
-    "two on a ring": Gas(2, 1.5, 1.0, 0.2, "x"),
+    "four": Scene(1.5, 1.0, 0.12, discs=4),
+    "five, dense": Scene(1.5, 1.0, 0.19, discs=5),
+    "eight": Scene(2.0, 1.5, 0.15, discs=8),
+    "four on a ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
+    "three on a narrow ring": Scene(1.5, 0.6, 0.18, discs=3, periodic="x"),
+    "two on a ring": Scene(1.5, 1.0, 0.2, discs=2, periodic="x"),
 }
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_monte_carlo_and_dynamics_agree(name):
-    gas = OTHERS[name]
-    found, errors, _ = counted(gas, 4, seed=2)
-    known, spread = measures.sample(gas, 300_000, 3)
-    expected = rates(gas, known)
-    if gas.periodic:
+    scene = OTHERS[name]
+    found, errors, _ = counted(scene, 4, seed=2)
+    known, spread = measures.sample(scene, 300_000, 3)
+    expected = rates(scene, known)
+    if scene.periodic:
         del expected["horizontal_hop"]  # along the ring, where it is no event
-    error_of = rates(gas, spread)
-    check(gas, found, errors, expected, error_of)
+    error_of = rates(scene, spread)
+    check(scene, found, errors, expected, error_of)
 
 
 SCALAR = {
-    name: gas
-    for name, gas in (EXACT | OTHERS).items()
+    name: scene
+    for name, scene in (EXACT | OTHERS).items()
     if name
     in ("three, dense", "eight in a channel", "four", "five, dense", "eight", "four on a ring")
 }
@@ -96,33 +96,33 @@ SCALAR = {
 @pytest.mark.parametrize("name", SCALAR)
 def test_another_program_has_the_same_rates(name):
     """Time averages of one trajectory: batches of some ten thousand events are independent."""
-    gas = SCALAR[name]
-    found, errors, _ = counted(gas, 4, seed=5)
-    other, spread = scalar_many.rates(gas, 1_000_000, 6)
-    named = dict(zip(CLASSES, other, strict=True))
-    check(gas, found, errors, named, dict(zip(CLASSES, spread, strict=True)))
+    scene = SCALAR[name]
+    found, errors, _ = counted(scene, 4, seed=5)
+    other, spread = scalar_many.rates(scene, 1_000_000, 6)
+    named = dict(zip(SHELLS, other, strict=True))
+    check(scene, found, errors, named, dict(zip(SHELLS, spread, strict=True)))
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.2, 0.3])
 def test_two_discs_are_those_of_the_engine_of_two(radius):
     """From its states, for its time: the same law gives the same events, replica for replica."""
-    scene, gas = Scene(1.5, 1.0, radius), Gas(2, 1.5, 1.0, radius)
+    scene, scene = Scene(1.5, 1.0, radius), Scene(1.5, 1.0, radius, discs=2)
     duration = counting.replica_duration(scene)
-    found, errors, _ = counted(gas, 8, seed=3)
+    found, errors, _ = counted(scene, 8, seed=3)
     sums, products = counting.run_blocks(scene, EVENTS, 4, 0, 8, duration)
     replicas = 8 * REPLICAS
     scale = sums / replicas / duration
     spread = scale * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
-    at = {event: EVENTS.index(event) for event in CLASSES}
+    at = {event: EVENTS.index(event) for event in SHELLS}
     # Four pairs of a disc and a wall of an axis are counted by both.
-    expected = {event: scale[at[event]] for event in CLASSES}
-    check(gas, found, errors, expected, {event: spread[at[event]] for event in CLASSES})
+    expected = {event: scale[at[event]] for event in SHELLS}
+    check(scene, found, errors, expected, {event: spread[at[event]] for event in SHELLS})
 
 
 def test_counts_of_events_are_those_of_their_classes():
     """Replica by replica: hits of all walls are those of both classes of them."""
-    by_class = np.random.default_rng(1).integers(0, 50, (100, len(CLASSES)))
-    columns = dict(zip(CLASSES, by_class.T, strict=True))
+    by_class = np.random.default_rng(1).integers(0, 50, (100, len(SHELLS)))
+    columns = dict(zip(SHELLS, by_class.T, strict=True))
     columns["any_wall"] = columns["right_wall"] + columns["top_wall"]
     of_axis = {"x": columns["right_wall"], "y": columns["top_wall"]}
     columns |= {wall: of_axis[AXIS[wall]] for wall in WALLS}
@@ -133,42 +133,42 @@ def test_counts_of_events_are_those_of_their_classes():
 
 
 @pytest.mark.parametrize(
-    "gas",
+    "scene",
     [
         EXACT["three"],
         EXACT["four in a channel"],
         EXACT["four, upright"],
-        Gas(4, 3.0, 0.6, 0.14, "x"),
-        Gas(4, 3.0, 0.6, 0.2, "x"),
+        Scene(3.0, 0.6, 0.14, discs=4, periodic="x"),
+        Scene(3.0, 0.6, 0.2, discs=4, periodic="x"),
     ],
     ids=repr,
 )
-def test_orders_are_those_of_the_ergodic_components(gas):
+def test_orders_are_those_of_the_ergodic_components(scene):
     """From one of them, of labels along the longer side, all are reached that are in one part."""
-    n, start = gas.discs, 0 if gas.width > gas.height else gas.discs
-    states = initial.states(gas, 2000, 3)
+    n, start = scene.discs, 0 if scene.width > scene.height else scene.discs
+    states = initial.states(scene, 2000, 3)
     order = np.argsort(states[start : start + n], axis=0)
     for k in range(2):
         part = states[k * n : (k + 1) * n]
         part[:] = np.take_along_axis(part, order, axis=0)
-    many.advance_all(states, np.zeros((n, 2000)), 200.0, many.law_of(gas))
+    many.advance_states(states, np.zeros((n, 2000)), 200.0, many.law_of(scene))
     order = np.argsort(states[start : start + n], axis=0)
-    if gas.periodic:  # up to a cyclic shift
+    if scene.periodic:  # up to a cyclic shift
         order = np.take_along_axis(order, (np.argmin(order, axis=0) + np.arange(n)[:, None]) % n, 0)
-    orders = math.factorial(n) // (n if gas.periodic else 1)
-    assert np.unique(order, axis=1).shape[1] * gas.ergodic_components == orders
+    orders = math.factorial(n) // (n if scene.periodic else 1)
+    assert np.unique(order, axis=1).shape[1] * scene.ergodic_components == orders
 
 
 BITS = """
 import hashlib
-from twodiscs.dynamics import many
-from twodiscs.model.many import Gas
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
-gases = [Gas(3, 1.5, 1.0, 0.15), Gas(8, 2.3, 0.6, 0.18), Gas(6, 1.5, 1.0, 0.2)]
+scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8), Scene(1.5, 1.0, 0.2, discs=6)]
 found = hashlib.sha256()
-for gas in [*gases, Gas(4, 1.5, 1.0, 0.15, "x")]:
-    counts = many.run_blocks(gas, 5, 0, 1, 16.0, replicas=64)
-    for part in (*counts, *measures.run_blocks(gas, 5, 0, 1), initial.states(gas, 50, 3)):
+for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
+    counts = many.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
+    for part in (*counts, *measures.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
         found.update(part.tobytes())
 print(found.hexdigest())
 """
@@ -189,10 +189,10 @@ def test_the_bits_do_not_depend_on_the_processor(tmp_path):
 
 
 def test_lanes_and_shards_do_not_matter():
-    for gas in (EXACT["three"], EXACT["four in a channel"], OTHERS["five, dense"]):
-        whole = many.run_blocks(gas, 7, 0, 3, 8.0, replicas=100)
-        other = many.run_blocks(gas, 7, 0, 3, 8.0, replicas=100, lanes=5)
-        parts = [many.run_blocks(gas, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
+    for scene in (EXACT["three"], EXACT["four in a channel"], OTHERS["five, dense"]):
+        whole = many.run_blocks(scene, 7, 0, 3, 8.0, replicas=100)
+        other = many.run_blocks(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
+        parts = [many.run_blocks(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
         for one, same, *pieces in zip(whole, other, *parts, strict=True):
             assert np.array_equal(one, same)
             assert np.array_equal(one, sum(pieces))

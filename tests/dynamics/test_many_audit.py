@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from twodiscs.dynamics import many
 from twodiscs.dynamics.ensemble import LANES
-from twodiscs.model.many import Gas
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial
 
@@ -13,13 +13,13 @@ from twodiscs.sampling.many import initial
 ENERGY_BOUND, GAP_BOUND = 1e-11, 1e-14
 
 GASES = {
-    "three": Gas(3, 1.5, 1.0, 0.15),
-    "four": Gas(4, 1.5, 1.0, 0.12),
-    "hardly fit": Gas(3, 1.5, 1.0, 0.3005102),
-    "tiny": Gas(5, 1.5, 1.0, 1e-9),
-    "dense channel": Gas(8, 2.24, 0.6, 0.18),
-    "ring": Gas(4, 1.5, 1.0, 0.2, "x"),
-    "many": Gas(16, 3.0, 2.0, 0.15),
+    "three": Scene(1.5, 1.0, 0.15, discs=3),
+    "four": Scene(1.5, 1.0, 0.12, discs=4),
+    "hardly fit": Scene(1.5, 1.0, 0.3005102, discs=3),
+    "tiny": Scene(1.5, 1.0, 1e-9, discs=5),
+    "dense channel": Scene(2.24, 0.6, 0.18, discs=8),
+    "ring": Scene(1.5, 1.0, 0.2, discs=4, periodic="x"),
+    "many": Scene(3.0, 2.0, 0.15, discs=16),
 }
 
 
@@ -59,19 +59,19 @@ def audit(states, passes, law):
     return nearest, far_x, far_y, worst, np.min(total), drift
 
 
-def check(gas, events):
+def check(scene, events):
     """All bounds, for so many events."""
-    states = initial.states(gas, LANES, 1)
-    law = many.law_of(gas)
+    states = initial.states(scene, LANES, 1)
+    law = many.law_of(scene)
     nearest, far_x, far_y, worst, shortest, drift = audit(states, events // LANES, law)
-    box = max(gas.width, gas.height)
-    assert np.sqrt(nearest) - gas.contact_distance >= -GAP_BOUND * box
-    assert far_x <= (gas.range_x / 2 if not gas.periodic else gas.width / 2 * (1 + 1e-15))
-    assert far_y <= gas.range_y / 2
+    box = max(scene.width, scene.height)
+    assert np.sqrt(nearest) - scene.contact_distance >= -GAP_BOUND * box
+    assert far_x <= (scene.range_x / 2 if not scene.periodic else scene.width / 2 * (1 + 1e-15))
+    assert far_y <= scene.range_y / 2
     assert worst <= ENERGY_BOUND
     # No lane is stuck: as many events of an ideal gas of one direction would take longer.
     assert shortest > 0
-    if gas.periodic:
+    if scene.periodic:
         assert drift < 1e-10
     return shortest / (events / LANES)
 
@@ -89,7 +89,7 @@ def test_everything_is_conserved_over_a_billion_events(name):
 
 def test_a_disc_at_rest_and_discs_that_touch():
     """Contact is a matter of direction: touching discs that approach collide now, others do not."""
-    law = many.law_of(Gas(3, 10.0, 10.0, 0.5))
+    law = many.law_of(Scene(10.0, 10.0, 0.5, discs=3))
     x = np.array([[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]])
     y = np.zeros((3, 2))
     u = np.array([[0.6, -0.6], [0.0, 0.0], [0.0, 0.0]])

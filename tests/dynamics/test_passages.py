@@ -11,13 +11,13 @@ import pytest
 from scalar_passages import replicas
 
 from twodiscs.comparison.measured.transmission import by_clusters, by_time
-from twodiscs.dynamics import passages
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.two import passages
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory import exact
-from twodiscs.theory.weighted import constant
+from twodiscs.theory.flux import constant
 
 HOP = "horizontal_hop"
 TIMES = [0.2, 1.0, 5.0, 10.0]

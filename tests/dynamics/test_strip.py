@@ -7,8 +7,9 @@ import pytest
 from mpmath import mp
 
 from twodiscs.comparison import estimates, scores
-from twodiscs.dynamics import counting, strip
+from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.two import strip
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.blocks.strata import mean_of

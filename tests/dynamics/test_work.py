@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twodiscs.dynamics import counting, intervals, strip, trajectory
+from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.two import strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS

@@ -69,8 +69,8 @@ def test_sides():
     assert Box(1.5, 1.0, {"depth": 0.5}).sides == (1.5, 1.0, 0.5)
     assert Box(1.5, 1.0, {"depth": 0.5}).shortest == 0.5
     assert PAPER.turned() == Box(1.0, 1.5)
-    # Only a plain box can be turned.
-    with pytest.raises(ValueError, match="box must be plain to be turned, but it has field"):
+    assert Box(1.5, 1.0, {"periodic": "x"}).turned() == Box(1.0, 1.5, {"periodic": "y"})
+    with pytest.raises(ValueError, match=r"field must be 0 to exchange the axes, not 1\.0"):
         Box(1.5, 1.0, {"field": 1.0}).turned()
 
 

@@ -11,7 +11,8 @@ from scipy.sparse import csgraph
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS
-from twodiscs.model.many import Gas, largest_radius
+from twodiscs.model.families.many import arrangement, can_be_level, ergodic_components, is_ordered
+from twodiscs.model.families.many import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
 
 
@@ -41,49 +42,45 @@ def test_three_discs_fit_as_far_as_closed_forms_say(width):
 @pytest.mark.parametrize("periodic", ["", "x"])
 def test_arrangements_fit(discs, sides, periodic):
     largest = largest_radius(discs, *sides, periodic)
-    gas = Gas(discs, *sides, largest * (1 - 1e-9), periodic)
-    centres = gas.arrangement
+    scene = Scene(*sides, largest * (1 - 1e-9), discs=discs, periodic=periodic)
+    centres = arrangement(scene)
     assert len(centres) == discs
     for (x, y), (other_x, other_y) in itertools.combinations(centres, 2):
         dx = abs(x - other_x)
-        dx = min(dx, gas.width - dx) if periodic else dx
-        assert math.hypot(dx, y - other_y) >= gas.contact_distance
-    assert max(abs(x) for x, _ in centres) <= gas.range_x / 2 * (1 + 1e-15)
-    assert max(abs(y) for _, y in centres) <= gas.range_y / 2 * (1 + 1e-15)
+        dx = min(dx, scene.width - dx) if periodic else dx
+        assert math.hypot(dx, y - other_y) >= scene.contact_distance
+    assert max(abs(x) for x, _ in centres) <= scene.range_x / 2 * (1 + 1e-15)
+    assert max(abs(y) for _, y in centres) <= scene.range_y / 2 * (1 + 1e-15)
 
 
 def test_names():
-    gas = Gas(5, 1.5, 1.0, 0.1)
-    assert gas.velocity_components == 10
-    assert Gas(5, 1.5, 1.0, 0.1, "x").velocity_components == 9
-    assert gas.multiplicity("right_wall") == 10
-    assert gas.multiplicity("disc_collision") == 1
-    assert gas.turned() == Gas(5, 1.0, 1.5, 0.1)
-    assert not gas.is_ordered
-    assert Gas(5, 3.0, 0.6, 0.18).is_ordered
-    assert not Gas(5, 3.0, 0.6, 0.18, "x").is_ordered
+    scene = Scene(1.5, 1.0, 0.1, discs=5)
+    assert scene.velocity_components == 10
+    assert Scene(1.5, 1.0, 0.1, discs=5, periodic="x").velocity_components == 9
+    assert scene.multiplicity("right_wall") == 10
+    assert scene.multiplicity("disc_collision") == 1
+    assert scene.turned() == Scene(1.0, 1.5, 0.1, discs=5)
+    assert not is_ordered(scene)
+    assert is_ordered(Scene(3.0, 0.6, 0.18, discs=5))
+    assert not is_ordered(Scene(3.0, 0.6, 0.18, discs=5, periodic="x"))
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((1, 1.5, 1.0, 0.1), "discs must be an integer from 2 to 64, not 1"),
-        ((65, 1.5, 1.0, 0.1), "discs must be an integer from 2 to 64, not 65"),
-        ((3.0, 1.5, 1.0, 0.1), "discs must be an integer"),
-        ((3, 1.5, 1.0, 0.31), "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
-        ((3, 1.5, -1.0, 0.1), "height must be a positive"),
-        ((3, 1.5, 1.0, 0.1, "y"), "periodic must be left out or x for more than two discs"),
-        ((2, 1.5, 1.0, 0.376, "x"), "radius 0.376 does not fit"),
+        ({"radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
+        ({"periodic": "y"}, "periodic must be left out or x for more than two discs"),
+        ({"discs": 4, "radius": 0.376, "periodic": "x"}, "radius 0.376 does not fit"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments, message):
     with pytest.raises(InputError, match=message):
-        Gas(*arguments)
+        Scene(**({"width": 1.5, "height": 1.0, "radius": 0.1, "discs": 3} | arguments))
 
 
 def test_a_ring_is_not_turned():
-    with pytest.raises(InputError, match="cannot be turned"):
-        Gas(3, 1.5, 1.0, 0.1, "x").turned()
+    with pytest.raises(InputError, match="periodic must be left out or x"):
+        Scene(1.5, 1.0, 0.1, discs=3, periodic="x").turned()
 
 
 # As a scene --------------------------------------------------------------------------------------
@@ -101,10 +98,9 @@ def test_a_scene_of_two_discs_does_not_know_that_there_may_be_more():
     assert scene.calls_for == box.calls_for == {}
 
 
-def test_a_scene_of_more_discs_is_its_gas():
+def test_a_scene_of_more_discs():
     scene = Scene(1.5, 1.0, 0.15, discs=3)
-    box, gas = Box.of(scene), Gas(3, 1.5, 1.0, 0.15)
-    assert scene.gas == gas
+    box = Box.of(scene)
     assert Box(**box.parameters()) == box
     assert box.scene(0.15) == scene == eval(repr(scene), {"Scene": Scene})
     assert box.parameters()["discs"] == 3
@@ -114,7 +110,7 @@ def test_a_scene_of_more_discs_is_its_gas():
     assert scene.events == EVENTS
     assert scene.velocity_components == 6
     assert scene.multiplicity("top_wall") == 6
-    assert scene.largest_radius == box.largest_radius == gas.largest_radius
+    assert scene.largest_radius == box.largest_radius == scene.largest_radius
     assert (scene.unit("volume"), scene.unit("any_wall_area")) == ("length⁶", "length⁵")
     assert str(scene) == "3 discs of radius 0.15 in a box of 1.5 × 1.0"
     ring = Scene(1.5, 1.0, 0.15, periodic="x", discs=12)
@@ -123,12 +119,12 @@ def test_a_scene_of_more_discs_is_its_gas():
     assert ring.unit("volume") == "length²⁴"
 
 
-def level_and_apart(gas, axis, tries=200_000):
+def level_and_apart(scene, axis, tries=200_000):
     """Return the largest least distance found of three discs, two of them level along ``axis``."""
     rng = np.random.default_rng(1)
-    x, y = (rng.uniform(0, side, (3, tries)) for side in (gas.range_x, gas.range_y))
+    x, y = (rng.uniform(0, side, (3, tries)) for side in (scene.range_x, scene.range_y))
     # Places at walls are where the largest distances are.
-    for places, side in ((x, gas.range_x), (y, gas.range_y)):
+    for places, side in ((x, scene.range_x), (y, scene.range_y)):
         places[rng.random((3, tries)) < 0.4] = 0.0
         places[rng.random((3, tries)) < 0.3] = side
     level = y if axis == "y" else x
@@ -146,9 +142,9 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
     for factor, possible in ((0.97, True), (1.0001, False)):
         radius = factor * end
         if radius < box.largest_radius:
-            gas = Gas(3, width, 1.0, radius)
-            assert gas.can_be_level(axis) is possible
-            assert bool(level_and_apart(gas, axis) > gas.contact_distance) is possible
+            scene = Scene(width, 1.0, radius, discs=3)
+            assert can_be_level(scene, axis) is possible
+            assert bool(level_and_apart(scene, axis) > scene.contact_distance) is possible
 
 
 @pytest.mark.parametrize(
@@ -176,7 +172,7 @@ def test_what_does_not_go_with_more_discs_is_refused(values, message):
 def channel(discs, height, length):
     """Return a channel with the ranges A = ``length`` and B = ``height`` in units of σ."""
     radius = 0.1
-    return Gas(discs, 0.2 * (length + 1), 0.2 * (height + 1), radius)
+    return Scene(0.2 * (length + 1), 0.2 * (height + 1), radius, discs=discs)
 
 
 def total_of(heights, axis=0):
@@ -194,11 +190,11 @@ CHANNELS = [
 @pytest.mark.parametrize(("discs", "height", "length"), CHANNELS)
 def test_parts_of_a_channel_are_those_of_its_heights(discs, height, length):
     """All heights on a lattice with room for them, and which of them hang together."""
-    gas, lattice = channel(discs, height, length), np.linspace(0, height, 41)
-    assert gas.is_ordered
+    scene, lattice = channel(discs, height, length), np.linspace(0, height, 41)
+    assert is_ordered(scene)
     fitting = total_of(np.array(np.meshgrid(*[lattice] * discs, sparse=False))) < length
     parts = ndimage.label(fitting)[1]
-    assert gas.ergodic_components == math.factorial(discs) * parts
+    assert scene.ergodic_components == math.factorial(discs) * parts
     if length > discs - 1:
         assert parts == 1
 
@@ -221,46 +217,46 @@ def test_parts_of_a_long_channel_are_those_of_its_corners(discs, height):
             graph[index, index ^ (1 << (discs - 1 - disc))] = crosses
         inside = totals < length
         parts = csgraph.connected_components(graph[np.ix_(inside, inside)])[0]
-        gas = channel(discs, height, length)
-        assert gas.ergodic_components == math.factorial(discs) * parts, length
+        scene = channel(discs, height, length)
+        assert scene.ergodic_components == math.factorial(discs) * parts, length
         found.add(parts)
     assert {1, 2} < found
 
 
 def test_a_channel_on_its_side_has_the_same_parts():
     for discs, height, length in CHANNELS:
-        gas = channel(discs, height, length)
-        assert gas.turned().ergodic_components == gas.ergodic_components
+        scene = channel(discs, height, length)
+        assert scene.turned().ergodic_components == scene.ergodic_components
 
 
 @pytest.mark.parametrize(
-    ("gas", "parts"),
+    ("scene", "parts"),
     [
-        (Gas(3, 1.5, 1.0, 0.15), 1),
-        (Gas(8, 4.8, 0.6, 0.155), math.factorial(8)),  # next neighbours may touch here
-        (Gas(8, 4.8, 0.6, 0.14), 1),
-        (Gas(64, 40.0, 0.6, 0.2), math.factorial(64)),
-        (Gas(4, 0.6, 2.5, 0.2), 24),
-        (Gas(4, 3.0, 0.6, 0.2, "x"), 6),
-        (Gas(2, 1.5, 0.6, 0.2, "x"), 1),
-        (Gas(4, 3.0, 1.0, 0.2, "x"), 1),
-        (Gas(4, 1.0, 3.0, 0.2, "x"), 1),
-        (Gas(3, 1.5, 1.0, 0.28), 12),  # two zigzags of each order
-        (Gas(3, 1.5, 1.0, 0.26), None),
-        (Gas(8, 2.0, 1.5, 0.2), None),
-        (Gas(4, 1.5, 0.6, 0.195, "x"), None),
+        (Scene(1.5, 1.0, 0.15, discs=3), 1),
+        (Scene(4.8, 0.6, 0.155, discs=8), math.factorial(8)),  # next neighbours may touch here
+        (Scene(4.8, 0.6, 0.14, discs=8), 1),
+        (Scene(40.0, 0.6, 0.2, discs=64), math.factorial(64)),
+        (Scene(0.6, 2.5, 0.2, discs=4), 24),
+        (Scene(3.0, 0.6, 0.2, discs=4, periodic="x"), 6),
+        (Scene(1.5, 0.6, 0.2, discs=2, periodic="x"), 1),
+        (Scene(3.0, 1.0, 0.2, discs=4, periodic="x"), 1),
+        (Scene(1.0, 3.0, 0.2, discs=4, periodic="x"), 1),
+        (Scene(1.5, 1.0, 0.28, discs=3), 12),  # two zigzags of each order
+        (Scene(1.5, 1.0, 0.26, discs=3), None),
+        (Scene(2.0, 1.5, 0.2, discs=8), None),
+        (Scene(1.5, 0.6, 0.195, discs=4, periodic="x"), None),
     ],
     ids=repr,
 )
-def test_parts_that_are_known(gas, parts):
-    assert gas.ergodic_components == parts
+def test_parts_that_are_known(scene, parts):
+    assert scene.ergodic_components == parts
 
 
 @pytest.mark.parametrize("periodic", ["", "x"])
 @pytest.mark.parametrize("width", [0.7, 0.85, 1.1, 1.5, 3.0])
 @pytest.mark.parametrize("radius", [0.1, 0.15, 0.2, 0.24, 0.26, 0.3, 0.36])
-def test_two_discs_have_the_parts_of_a_scene(width, radius, periodic):
+def test_two_discs_have_the_components_of_many(width, radius, periodic):
     if radius >= largest_radius(2, width, 1.0, periodic):
         pytest.skip("no room")
-    gas = Gas(2, width, 1.0, radius, periodic)
-    assert gas.ergodic_components == Scene(width, 1.0, radius, periodic=periodic).ergodic_components
+    scene = Scene(width, 1.0, radius, periodic=periodic)
+    assert ergodic_components(scene) == scene.ergodic_components

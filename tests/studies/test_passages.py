@@ -14,11 +14,11 @@ from fabricated import written
 from twodiscs.comparison.estimates import mean_of
 from twodiscs.comparison.measured.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.passages import cluster_sizes, initial_states
 from twodiscs.dynamics.trajectory import time_to_next
+from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
-from twodiscs.model.many import Gas
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import exclusion, figure, file, measure
@@ -127,43 +127,45 @@ def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     rows = list(measure.on_ring("ring", BOX, None, 2**18, 1))
     due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
     assert due["radius"] == scene.radius
-    moved, hops = file.diffusion(Gas(2, 1.5, 1.0, scene.radius, "x"), 64.0, 4096, 2)
+    moved, hops = file.diffusion(
+        Scene(1.5, 1.0, scene.radius, discs=2, periodic="x"), 64.0, 4096, 2
+    )
     assert abs(hops.value - exact.passing_rate(scene, HOP)) < 5 * hops.stderr
     assert abs(moved.value - due["estimate"]) < 5 * math.hypot(moved.stderr, due["stderr"])
 
 
 def test_hops_in_a_file_are_those_of_monte_carlo():
-    gas = Gas(3, 2.25, 1.0, 0.2, "x")
-    _, hops = file.diffusion(gas, 16.0, 2048, 3)
-    sampled = file.sampled_rate(gas, 10**5, 4)
+    scene = Scene(2.25, 1.0, 0.2, discs=3, periodic="x")
+    _, hops = file.diffusion(scene, 16.0, 2048, 3)
+    sampled = file.sampled_rate(scene, 10**5, 4)
     assert sampled.stderr < 0.05 * sampled.value
     assert abs(hops.value - sampled.value) < 5 * math.hypot(hops.stderr, sampled.stderr)
 
 
 def test_hops_that_know_nothing_of_each_other_have_the_ratio_one(monkeypatch):
     """Then a disc is displaced by 2 ν t ℓ² in the square, at ν hops in either direction."""
-    gas, hops = Gas(3, 2.25, 1.0, 0.2, "x"), 12
+    scene, hops = Scene(2.25, 1.0, 0.2, discs=3, periodic="x"), 12
 
     def follow(states, lanes, times, law, squares, crossings):
-        crossings[:] = hops * gas.discs / 2  # two discs hop at each of them
-        squares[:, 1] = hops / 2 * (gas.width / gas.discs) ** 2
+        crossings[:] = hops * scene.discs / 2  # two discs hop at each of them
+        squares[:, 1] = hops / 2 * (scene.width / scene.discs) ** 2
 
     monkeypatch.setattr(file, "follow", follow)
-    moved, rate = file.diffusion(gas, 16.0, 2, 3)
+    moved, rate = file.diffusion(scene, 16.0, 2, 3)
     assert moved.value == pytest.approx(1, rel=1e-12)
     assert rate.value == pytest.approx(hops / 32, rel=1e-12)
 
 
 def test_discs_that_cannot_pass_stay_in_their_file():
-    gas, replicas = Gas(3, 2.25, 1.0, 0.26, "x"), 64
-    states = file.initial.states(gas, replicas, 5)
+    scene, replicas = Scene(2.25, 1.0, 0.26, discs=3, periodic="x"), 64
+    states = file.initial.states(scene, replicas, 5)
     squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
     times = np.array([0.01, 1000.0])
-    file.follow(states, replicas, times, file.law_of(gas), squares, crossings)
+    file.follow(states, replicas, times, file.law_of(scene), squares, crossings)
     assert not crossings.any()
     # At the centre of mass, which rests, a file is no longer than the ring.
-    assert squares[:, 1].max() < gas.width**2
-    velocities = states[2 * gas.discs : 3 * gas.discs]
+    assert squares[:, 1].max() < scene.width**2
+    velocities = states[2 * scene.discs : 3 * scene.discs]
     flown = (squares[:, 0] / times[0] ** 2) / np.mean(velocities**2, axis=0)
     # Few have met anything by then.
     assert np.median(flown) == pytest.approx(1, rel=1e-9)

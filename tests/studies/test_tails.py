@@ -13,6 +13,7 @@ from fabricated import written
 
 from twodiscs.dynamics import trajectory
 from twodiscs.dynamics.law import law_of
+from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
@@ -97,9 +98,7 @@ def test_a_wait_ends_where_the_trajectory_says(event):
     for start in state.T:
         rows = trajectory.follow(scene, start, 30.0)
         expected = next(row[0] for row in rows if row[5] == event)
-        found = trajectory.time_to_next(
-            tuple(start), law_of(scene), event == "vertical_hop", math.inf
-        )
+        found = time_to_next(tuple(start), law_of(scene), event == "vertical_hop", math.inf)
         assert found == pytest.approx(expected, rel=1e-12)
 
 

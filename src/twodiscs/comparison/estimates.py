@@ -14,7 +14,7 @@ import numpy as np
 from twodiscs.model.checks import InputError, check_fraction, check_integer, check_length
 from twodiscs.model.events import DECLARED, EVENTS
 from twodiscs.theory import virial
-from twodiscs.theory.weighted import constant
+from twodiscs.theory.flux import constant
 
 #: Fewer independent events, or fewer replicas, than this carry no error bar. At 100 the error is
 #: itself known to some 10 %, and ± 1.96 errors cover between 93 and 96 % for clustered counts too.

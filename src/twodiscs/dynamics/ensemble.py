@@ -24,6 +24,12 @@ PASSES = 8
 #: Replicas that share a random stream.
 REPLICAS = 1024
 
+#: Successive intervals between hops that a chain records.
+RETURNS = 256
+
+#: Counts of a replica are sorted by their octave, 0, 1, 2 to 3, 4 to 7 and so on.
+OCTAVES = 40
+
 
 def nearest_power_of_two(value):
     """Return the power of two next to ``value`` > 0 on a logarithmic scale.

@@ -13,30 +13,15 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.dynamics.counting import cost_ratio, expected_event_rate
-from twodiscs.dynamics.ensemble import (
-    LANES,
-    PASSES,
-    across,
-    find_events,
-    nearest_power_of_two,
-    new_rows,
-    put_state,
-    state_at,
-)
-from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
-from twodiscs.model.box import Box
+from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
+from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
-from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.starts import COMPONENTS, origins, require_room, start_on_surface
-from twodiscs.sampling.streams import open_stream
-from twodiscs.theory import exact
+from twodiscs.sampling.starts import require_room
 
-#: Successive intervals that a chain records, chains that share a stream, bins of a histogram.
-RETURNS = 256
+#: Chains that share a stream, bins of a histogram.
 CHAINS = 256
 BINS = 512
 
@@ -59,150 +44,26 @@ def wide_edges(bins=BINS):
     return edges
 
 
-@compiled
-def record_returns(
-    seed,
-    first,
-    stop,
-    chains,
-    lanes,
-    returns,
-    law,
-    draw,
-    prism,
-    horizontal,
-    width,
-    wide,
-    sums,
-    going,
-):
-    """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
-
-    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
-    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. With c intervals
-    of a chain in a bin, Σ c and Σ c² over the chains are added to ``sums`` (2, bins; int64). Bins
-    are of ``width`` from 0, one for what is longer, and the wide ones, of which ``wide`` has one
-    for each of the others. Returns the total time of each chain, (stop − first) × ``chains``
-    doubles in order.
-    """
-    rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
-    times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    endless = np.full(lanes, np.inf)
-    age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    chain, finished, lane_of = (
-        np.full(lanes, -1),
-        np.zeros(lanes + 1),
-        np.zeros(lanes + 1, np.int64),
-    )
-    totals, counts = np.zeros((stop - first) * chains), np.zeros((lanes, sums.shape[1]), np.int64)
-    per_width, last_bin, wanted = 1.0 / width, wide.size - 1, np.float64(returns)
-    surface = 1 if horizontal is None else 0
-    state = open_stream(seed, first)
-    started, running = 0, 0
-
-    while True:
-        for i in range(lanes):
-            if left[i] > 0.0:
-                continue
-            if chain[i] >= 0:
-                totals[chain[i]] = elapsed[i]
-                for k in range(sums.shape[1]):
-                    sums[0, k] += counts[i, k]
-                    sums[1, k] += counts[i, k] * counts[i, k]
-                    counts[i, k] = 0
-                chain[i] = -1
-                running -= 1
-            if started == totals.size:
-                continue
-            if started % chains == 0:
-                state = open_stream(seed, first + started // chains)
-            start_on_surface(state, draw, surface, start, prism)
-            put_state(rows, i, start[:, 0], law)
-            chain[i], elapsed[i], age[i] = started, 0.0, 0.0
-            # A start that falls through the surface is seen to cross it at time 0; that is not a
-            # return.
-            _, rising = across(state_at(rows, i, law), horizontal)
-            left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
-            started += 1
-            running += 1
-        if running == 0 or not going[0]:
-            return totals
-
-        for _ in range(PASSES):
-            find_events(rows, endless, times, codes, law)
-            for i in range(lanes):
-                before, time, waited = state_at(rows, i, law), times[i], age[i]
-                after = after_event(before, time, codes[i], law)
-                put_state(rows, i, after, law)
-                apart, rising = across(before, horizontal)
-                hop = crosses(apart, across(after, horizontal)[0])
-                until, to_come = crossing_time(apart, rising), left[i]
-                recorded = hop & (to_come > 0.0) & (to_come <= wanted)
-                interval = waited + until
-                intervals[i] = interval if recorded else -1.0
-                elapsed[i] += interval if recorded else 0.0
-                age[i] = time - until if hop else waited + time
-                left[i] = to_come - 1.0 if hop else to_come
-            n = 0
-            for i in range(lanes):
-                finished[n], lane_of[n] = intervals[i], i
-                n += 1 if intervals[i] >= 0.0 else 0
-            for k in range(n):
-                index = min(np.int64(finished[k] * per_width), last_bin)
-                counts[lane_of[k], index] += 1
-                counts[lane_of[k], wide[index]] += 1
-
-
 def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
-    """Return (times of the chains, sums) as ``record_returns`` finds them.
+    """Return (times of the chains, sums in bins) of a number of ``blocks``, from the ``first`` on.
 
-    There are so many ``blocks``, from the ``first`` one on; ``going`` is an array to stop it with.
+    Each block has ``chains`` chains of ``returns`` intervals, see the kernels of the families.
+    ``going`` is an array to stop it with.
     """
-    upright, horizontal = scene, None
-    if event == "horizontal_hop" and scene.has_effects:
-        horizontal = True
-    elif event == "horizontal_hop" and scene.discs == 2:
-        # That is a vertical hop of the box on its side.
-        upright = Box.of(scene).turned().scene(scene.radius)
     edges = wide_edges()
     # What is longer than all bins, or is in the last ones that fill no wide bin, has no wide bin.
     beyond = BINS + len(edges)
     wide = np.full(BINS + 1, beyond)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    sums = np.zeros((2 if scene.discs == 2 else 3, beyond + 1), np.int64)
-    going = np.ones(1, np.bool_) if going is None else going
-    if scene.discs > 2:
-        from twodiscs.dynamics import many  # a kernel that two discs have no use for
-
-        stop, window, bins = first + blocks, _window(scene, event), (_width(scene, event), wide)
-        totals = many.run_intervals(
-            scene.gas, event, seed, first, stop, chains, window, bins, sums, going
-        )
-        return totals, sums
-    totals = record_returns(
-        np.uint64(seed), first, first + blocks, chains, LANES, returns, law_of(upright),
-        *origins(upright), horizontal, _width(scene, event), wide, sums, going,
-    )  # fmt: skip
-    return totals, sums
+    sums = np.zeros((of_family(scene, "dynamics", "INTERVAL_SUMS"), beyond + 1), np.int64)
+    going, bins = np.ones(1, np.bool_) if going is None else going, (_width(scene, event), wide)
+    record = of_family(scene, "dynamics", "record_intervals")
+    stop = first + blocks
+    return record(scene, event, seed, first, stop, chains, returns, bins, sums, going), sums
 
 
 def _mean(scene, event):
-    """Return the mean interval, of more than two discs maybe within a few per cent only."""
-    if scene.discs == 2:
-        return exact.mean_times(scene)[event]
-    from twodiscs.dynamics import many
-
-    if not (rate := many.expected_rates(scene).get(event)):
-        raise InputError(
-            f"radius {scene.radius!r} leaves {scene.discs} discs so little room that nothing is "
-            f"known of the time between two events {event}"
-        )
-    return 1 / rate
-
-
-def _window(scene, event):
-    """Return a time in which ``RETURNS`` intervals of more than two discs begin, or up to twice."""
-    return 2.0 ** math.ceil(math.log2(RETURNS * _mean(scene, event)))
+    return of_family(scene, "dynamics", "mean_interval")(scene, event)
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -254,10 +115,7 @@ class IntervalRun:
 
     @property
     def _events(self):
-        if self.scene.discs == 2:
-            return exact.events_per_interval(self.scene, self.event)
-        # Of a chain as if it had no more than it is meant to have.
-        return _window(self.scene, self.event) * expected_event_rate(self.scene) / RETURNS
+        return of_family(self.scene, "dynamics", "events_per_interval")(self.scene, self.event)
 
     @property
     def _blocks(self):
@@ -295,7 +153,7 @@ class IntervalRun:
                 moments += [joint, sum(n), sum(each * each for each in n)]
             return sums, np.array(moments, object)
 
-        ratio = 1.0 if self.scene.discs == 2 else cost_ratio(self.scene)
+        ratio = of_family(self.scene, "dynamics", "interval_cost")(self.scene)
         return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events, ratio)}
 
     def point(self, outcomes):

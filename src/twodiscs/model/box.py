@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from twodiscs.model.checks import SHORTEST, InputError, check_choice, check_length, quote
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
-from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.scene import USUAL, Scene, check_scene
 
 #: Larger radii than this share of the shortest side tell nothing of a box that smaller ones do not.
 TINY = 1e-6
@@ -46,7 +46,7 @@ class Box:
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
-        if named or self.discs != 2:
+        if self.calls_for:
             object.__setattr__(self, "effects", dict(sorted(self.tiny.effects.items())))
             object.__setattr__(self, "discs", self.tiny.discs)
 
@@ -55,7 +55,7 @@ class Box:
 
     def __repr__(self):
         # What a configuration is known by: that of two discs does not know that there may be more.
-        more = "" if self.discs == 2 else f", discs={self.discs!r}"
+        more = f", discs={self.discs!r}" if "discs" in self.calls_for else ""
         sides = f"width={self.width!r}, height={self.height!r}"
         return f"Box({sides}, effects={self.effects!r}{more})"
 
@@ -85,12 +85,17 @@ class Box:
         """
         box = {"height": self.height, "width": self.width}
         box = {"effects": dict(self.effects)} | box if self.effects else box
-        return {"discs": self.discs} | box if self.discs != 2 else box
+        return {"discs": self.discs} | box if "discs" in self.calls_for else box
 
     @property
     def calls_for(self):
         """What it calls for beyond a plain box, as ``Scene.calls_for``."""
-        return self.effects | ({"discs": self.discs} if self.discs != 2 else {})
+        return self.effects | ({"discs": self.discs} if self.discs != USUAL["discs"] else {})
+
+    @property
+    def family(self):
+        """The family of its scenes, as ``Scene.family``."""
+        return self.tiny.family
 
     @property
     def is_plain(self):
@@ -127,12 +132,8 @@ class Box:
         return min(self.sides)
 
     def turned(self) -> Box:
-        """Return the box turned by a quarter; raise ``InputError`` if it has effects."""
-        if not self.is_plain:
-            raise InputError(
-                f"box must be plain to be turned, but it has {', '.join(self.calls_for)}"
-            )
-        return replace(self, width=self.height, height=self.width)
+        """Return the box with x and y exchanged; raise ``InputError`` in a field along y."""
+        return Box.of(self.tiny.turned())
 
     @cached_property
     def largest_radius(self) -> float:

@@ -29,21 +29,12 @@ from twodiscs.model.checks import (
     quote,
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
-from twodiscs.model.events import DECLARED, EVENTS
+from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
+from twodiscs.model.families.two import ENERGY
+from twodiscs.model.family import of_family
 
 #: What is open to the discs, named by the hops that remain.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
-
-#: How close to the largest radius dynamics in doubles holds, relatively: at a tenth of that mean
-#: times begin to be off by more than 1e-4.
-FOLLOWED = 1e-12
-
-#: Decimal digits before or after the point that the prism of all places of more than two discs may
-#: have: its volume is then a double that is neither 0 nor infinite.
-MOST_DIGITS = 150
-
-#: The total energy, kinetic and potential.
-ENERGY = 0.5
 
 
 @dataclass(frozen=True)
@@ -92,20 +83,9 @@ class Scene:
             object.__setattr__(self, "periodic", "".join(self.periodic))
         for name, effect in EFFECTS.items():
             object.__setattr__(self, name, effect.checked(getattr(self, name)))
-        if self.has_effects:
-            self._check_effects()
-        if self.discs != 2 or type(self.discs) is not int:
-            object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
-        if self.discs > 2:
-            self._check_many()
-            return
-        if not self._fits():
-            raise InputError(
-                f"radius {self.radius!r} does not fit: two {self._what} in a box of "
-                f"{self._box} need a radius below {self.largest_radius!r}"
-            )
-        if self.field:
-            self._check_energy()
+        self._check_effects()
+        object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
+        self._geometry("check")
 
     def _check_effects(self):
         def settle(name, value):
@@ -131,27 +111,6 @@ class Scene:
         if self.moment_of_inertia is not None:
             self._check_roughness()
 
-    def _check_many(self):
-        if other := [name for name in self.effects if name != "periodic"]:
-            raise InputError(
-                f"{other[0]} must be left out with {self.discs} discs, for more than two are equal "
-                f"and smooth discs of the plane, not {self.effects[other[0]]!r}"
-            )
-        size = self.discs * math.log10(self.gas.range_x * self.gas.range_y)
-        if abs(size) > MOST_DIGITS:
-            raise InputError(
-                f"width and height must be in a unit of length in which the prism of all places of "
-                f"{self.discs} discs lies between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
-                f"{self.width!r} and {self.height!r} at radius {self.radius!r}"
-            )
-
-    @cached_property
-    def gas(self):
-        """The same as a ``Gas`` of N discs; only of equal, smooth discs of the plane."""
-        from twodiscs.model.many import Gas  # more than two discs alone have a use for it
-
-        return Gas(self.discs, self.width, self.height, self.radius, self.periodic)
-
     def _check_roughness(self):
         if self.depth is not None:
             where = "in a box with a depth (rough discs are for the plane)"
@@ -162,20 +121,6 @@ class Scene:
         raise InputError(
             f"moment_of_inertia must be left out {where}, not {self.moment_of_inertia!r}"
         )
-
-    def _check_energy(self):
-        if self._lowest_potential(self._spread("y")) >= ENERGY:
-            raise InputError(
-                f"field {self.field!r} is too strong at radius {self.radius!r}: with a total "
-                "energy of 1/2 the discs cannot leave the bottom, where they do not fit side by "
-                "side"
-            )
-        if (self.radius_ratio, self.mass_ratio) != (1.0, 1.0) and not self.vertical_hops:
-            raise InputError(
-                "unequal discs in a field need room and energy to pass each other on y1 = y2, or "
-                f"the parts of configuration space are unequal, too; at radius {self.radius!r} "
-                "they lack it"
-            )
 
     def __getstate__(self):
         """Return the fields alone: a copy is the same whatever was asked of the scene before."""
@@ -189,16 +134,18 @@ class Scene:
         """Say what the scene is, in a line."""
         more = {name: value for name, value in self.effects.items() if name != "depth"}
         words = [f"{name.replace('_', ' ')} {value}" for name, value in more.items()]
-        number = "Two" if self.discs == 2 else self.discs
-        discs = f"{number} {self._what} of radius {self.radius!r} in a box of {self._box}"
+        number = {2: "Two"}.get(self.discs, self.discs)
+        discs = f"{number} {self.noun} of radius {self.radius!r} in a box of {self.sides}"
         return ", ".join([discs, *words])
 
     @property
-    def _what(self):
+    def noun(self):
+        """The word for two of them: discs or balls."""
         return "discs" if self.depth is None else "balls"
 
     @property
-    def _box(self):
+    def sides(self):
+        """The sides of the box as text, "1.5 × 1.0" say."""
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
 
     def unit(self, quantity: str) -> str:
@@ -213,6 +160,13 @@ class Scene:
     def with_radius(self, radius: float) -> Scene:
         """Return the same scene with another radius of disc 1."""
         return replace(self, radius=radius)
+
+    def turned(self) -> Scene:
+        """Return the same scene with x and y exchanged; raise ``InputError`` in a field along y."""
+        if self.field:
+            raise InputError(f"field must be 0 to exchange the axes, not {self.field!r}")
+        periodic = self.periodic.translate(str.maketrans("xy", "yx"))
+        return replace(self, width=self.height, height=self.width, periodic=periodic)
 
     @property
     def effects(self) -> dict[str, object]:
@@ -229,12 +183,22 @@ class Scene:
         return bool(self.effects)
 
     @property
+    def family(self) -> str:
+        """One of ``family.FAMILIES``: "plain", "effects" or "many"."""
+        if self.discs > 2:
+            return "many"
+        return "effects" if self.has_effects else "plain"
+
+    def _geometry(self, function, *arguments):
+        return of_family(self, "model", function)(self, *arguments)
+
+    @property
     def calls_for(self):
         """What it calls for beyond two equal, smooth discs between walls, {name: value}.
 
         These are its effects, and ``discs`` where they are more than two.
         """
-        return self.effects | ({"discs": self.discs} if self.discs > 2 else {})
+        return {n: getattr(self, n) for n, usual in USUAL.items() if getattr(self, n) != usual}
 
     @property
     def is_plain(self):
@@ -262,10 +226,8 @@ class Scene:
     @cached_property
     def velocity_components(self) -> int:
         """D: the components of velocities and spins, less the momenta that are conserved."""
-        if self.discs > 2:
-            return self.gas.velocity_components
-        spins = 0 if self.moment_of_inertia is None else 2
-        return 2 * len(self.axes) + spins - len(self.conserved)
+        spin = self.moment_of_inertia is not None
+        return self.discs * (len(self.axes) + spin) - len(self.conserved)
 
     @cached_property
     def radii(self) -> tuple[float, float]:
@@ -283,13 +245,16 @@ class Scene:
 
     @cached_property
     def range_x(self):
-        """A = w − σ: the largest separation x1 − x2 between walls, and an equal disc's range."""
-        return self.width - sum(self.radii)
+        """A: between walls w − σ, the range of an equal disc's centre; w on a periodic axis."""
+        return self._range("x")
 
     @cached_property
     def range_y(self):
-        """B = h − σ: the same along y; neither means anything on a periodic axis."""
-        return self.height - sum(self.radii)
+        """B: the same along y."""
+        return self._range("y")
+
+    def _range(self, axis):
+        return self.side(axis) - (0.0 if axis in self.periodic else self.contact_distance)
 
     @cached_property
     def contact_distance(self) -> float:
@@ -315,18 +280,9 @@ class Scene:
         side = Fraction(self.side(axis))
         return side / 2 if axis in self.periodic else side - self.exact_contact
 
-    def _spread(self, *without):
+    def spread(self, *without):
         """Return the sum of the squared reaches of all axes but some, an exact fraction."""
         return sum(self.reach(axis) ** 2 for axis in self.axes if axis not in without)
-
-    def _fits(self):
-        """Say, in exact arithmetic, whether both discs have room to move."""
-        widest = 2 * max(self.exact_radii)
-        if any(Fraction(self.side(axis)) <= widest for axis in self.axes):
-            return False
-        if any(self.reach(axis) <= 0 for axis in self.axes):
-            return False
-        return self._spread() > self.exact_contact**2
 
     @cached_property
     def largest_radius(self) -> float:
@@ -335,72 +291,19 @@ class Scene:
         Of more than three discs it is that of the densest arrangement that is known here;
         in a channel so narrow that only neighbours can touch there is no denser one.
         """
-        if self.discs > 2:
-            return self.gas.largest_radius
-        if not self.has_effects:
-            return _largest_radius(self.width, self.height)
-        # In σ: Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ².
-        walls = [self.side(axis) for axis in self.walled]
-        n, total = len(walls), math.fsum(walls)
-        squares = math.fsum(side * side for side in walls)
-        squares += math.fsum(self.side(axis) ** 2 / 4 for axis in self.periodic)
-        limits = [min(map(self.side, self.axes)) / max(1.0, self.radius_ratio) / 2]
-        limits += [side / (1 + self.radius_ratio) for side in walls]
-        if n == 0:
-            limits.append(math.sqrt(squares) / (1 + self.radius_ratio))
-        elif n == 1:
-            limits.append(squares / (2 * total) / (1 + self.radius_ratio))
-        elif total**2 >= (n - 1) * squares:
-            # The smaller root, without its cancellation.
-            root = math.sqrt(total**2 - (n - 1) * squares)
-            limits.append(squares / (total + root) / (1 + self.radius_ratio))
-        return min(limits)
+        return self._geometry("largest_radius")
 
     def require_followable(self):
-        """Raise ``InputError`` where dynamics in doubles is off: too close to the largest radius.
-
-        Where discs jam along a diagonal, the room left to them is lost in the roundings of places.
-        """
-        jams = not self.has_effects and self.largest_radius < min(self.width, self.height) / 2
-        if jams and self.radius > (closest := self.largest_radius * (1 - FOLLOWED)):
-            raise InputError(
-                f"radius {self.radius!r} must not exceed {closest!r} for molecular dynamics: "
-                f"beyond it, roundings count in the room that is left below {self.largest_radius!r}"
-            )
-
-    def _lowest_potential(self, spread):
-        """Return the least potential energy of discs whose separation but for y has this square.
-
-        ``spread`` is the largest such square. The lower disc lies on the bottom and the other one
-        on it, or beside it if there is room.
-        """
-        if not self.field:
-            return 0.0
-        square = self.exact_contact**2 - spread
-        apart = math.sqrt(square) if square > 0 else 0.0
-        (r1, r2), (m1, m2) = self.radii, self.masses
-        return self.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
+        """Raise ``InputError`` too close to the largest radius for dynamics in doubles."""
+        self._geometry("require_followable")
 
     @cached_property
-    def _passed(self):
-        """The axes along which the discs can exchange sides.
+    def passed(self) -> tuple[str, ...]:
+        """The axes with walls along which the discs can exchange sides.
 
-        Of more than three discs those along which geometry does not exclude it.
+        For more than three discs those along which geometry does not exclude it.
         """
-        if self.discs > 2:
-            return tuple(axis for axis in self.walled if self.gas.can_be_level(axis))
-        return tuple(axis for axis in self.walled if self._has_gap(axis))
-
-    def _has_gap(self, axis):
-        """Say whether there are room and energy to pass along an axis with walls."""
-        if self._spread(axis) <= self.exact_contact**2:
-            return False
-        if axis == "y":
-            (r1, r2), (m1, m2) = self.radii, self.masses
-            lowest = self.field * (m1 * (r2 - r1) if r2 > r1 else m2 * (r1 - r2))
-        else:
-            lowest = self._lowest_potential(self._spread(axis, "y"))
-        return lowest < ENERGY
+        return self._geometry("passed")
 
     def room(self, hop):
         """Return how far apart discs that are level along the axis of ``hop`` can be, less σ.
@@ -408,7 +311,7 @@ class Scene:
         For equal discs of the plane that is B − σ for the horizontal hop, A − σ for the vertical
         one; it is negative where the hop is blocked.
         """
-        spread, sigma = self._spread(DECLARED[hop].axis), self.exact_contact
+        spread, sigma = self.spread(DECLARED[hop].axis), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
 
     @cached_property
@@ -422,12 +325,12 @@ class Scene:
     @cached_property
     def vertical_hops(self):
         """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
-        return "y" in self._passed
+        return "y" in self.passed
 
     @cached_property
     def horizontal_hops(self):
         """Whether the discs can pass each other on x1 = x2; equal discs of the plane if h > 4r."""
-        return "x" in self._passed
+        return "x" in self.passed
 
     @cached_property
     def regime(self) -> str:
@@ -447,25 +350,7 @@ class Scene:
         channel where heights have parts of their own, 1 where all discs pass each other with room
         to spare, and None where it is not known.
         """
-        if self.discs > 2:
-            return self.gas.ergodic_components
-        return 2 ** (len(self.walled) - len(self._passed))
-
-    def _confined(self, axis):
-        """Say whether disc 1 reaches the far wall of ``axis`` only from its own side of disc 2.
-
-        It does so once the hop is blocked, unless it is the larger disc and there is room for
-        disc 2 in the corner behind it.
-        """
-        if axis in self._passed or axis not in self.walled:
-            return False
-        r1, r2 = self.exact_radii
-        if r1 <= r2:
-            return True
-        behind = (r1 - r2) ** 2
-        if self._spread(axis) + behind <= self.exact_contact**2:
-            return True
-        return self._lowest_potential(self._spread(axis, "y") + behind) >= ENERGY
+        return self._geometry("ergodic_components")
 
     @cached_property
     def confined(self):
@@ -473,9 +358,7 @@ class Scene:
 
         False for more than two discs: their times are averages over all initial conditions.
         """
-        if self.discs > 2:
-            return False, False
-        return self._confined("x"), self._confined("y")
+        return self._geometry("confined")
 
     @cached_property
     def identical(self):
@@ -498,13 +381,7 @@ class Scene:
         has no mirror image along y. It is 2N for walls of more than two discs, and 1 for everything
         but walls.
         """
-        declared = DECLARED[event]
-        if declared.kind != "wall":
-            return 1
-        if self.discs > 2:
-            return 2 * self.discs
-        mirrored = declared.axis == "x" or not self.field
-        return round((1 + mirrored) * (1 + self.identical) * self.share(event))
+        return self._geometry("multiplicity", DECLARED[event])
 
     @cached_property
     def events(self) -> tuple[str, ...]:
@@ -522,22 +399,10 @@ class Scene:
             return False
         declared = DECLARED[event]
         if declared.kind == "hop":
-            return declared.axis in self._passed
+            return declared.axis in self.passed
         if self.field and (declared.axis, declared.side) == ("y", +1):
             return self.field * (self.height - 2 * self.radius) < ENERGY
         return True
-
-
-def _largest_radius(width, height):
-    """Return the radius at which two equal discs just fit in a ``width`` × ``height`` box.
-
-    For max < 2 min the discs jam along a diagonal, (w + h − √(2wh))/2; otherwise each of them spans
-    the short side, min/2.
-    """
-    short, long = min(width, height), max(width, height)
-    if long >= 2 * short:
-        return short / 2
-    return (width + height - math.sqrt(2 * width) * math.sqrt(height)) / 2
 
 
 def check_scene(value):
@@ -547,17 +412,21 @@ def check_scene(value):
     return value
 
 
-def check_two_discs(scene, what):
-    """Return ``scene``; raise ``InputError`` unless it is a ``Scene`` of two discs.
+def hopping_along(scene, hop, axis):
+    """Return a ``Scene`` and its hop that are the same but for names, the hop along ``axis``.
 
-    ``what`` is what more discs are refused, in words that follow "for".
+    ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). In a field, where axes
+    cannot be exchanged, both are returned as they are. One compiled kernel then serves both hops.
     """
-    if check_scene(scene).discs != 2:
-        raise InputError(f"discs must be 2 for {what}, not {scene.discs}")
-    return scene
+    if AXIS[hop] == axis or scene.field:
+        return scene, hop
+    return scene.turned(), next(other for other in HOPS if other != hop)
 
 
-if {f.name: f.default for f in fields(Scene)[3:-1]} != ABSENT:
+#: The values of the fields that nobody has to give, {name: value}.
+USUAL = {field.name: field.default for field in fields(Scene)[3:]}
+
+if {name: value for name, value in USUAL.items() if name != "discs"} != ABSENT:
     raise TypeError(
         "the fields of Scene between radius and discs must be the effects of "
         f"model/effects.py with the values that mean their absence, {ABSENT}"

@@ -30,7 +30,8 @@ import numpy as np
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.scene import Scene, check_scene, check_two_discs
+from twodiscs.model.family import of_family
+from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
@@ -197,11 +198,13 @@ def shell_thickness(scene, event, fraction):
     Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
-    check_two_discs(scene, "shells")
-    check_choice("event", event, scene.events if scene.has_effects else SHELLS)
-    fraction = check_fraction("fraction", fraction)
-    if scene.has_effects:
-        return fraction * _weighted_thickness(scene, event)
+    thickness = of_family(check_scene(scene), "sampling", "thickness", "shells")
+    check_choice("event", event, exact.shells(scene))
+    return check_fraction("fraction", fraction) * thickness(scene, event)
+
+
+def plain_thickness(scene, event):
+    """Return the length that ``shell_thickness`` takes a fraction of, in a plain scene."""
     hop = DECLARED[event].kind == "hop"
     vanishing = Box.of(scene).blocking_radius(event) if hop else scene.largest_radius
     room = abs(vanishing - scene.radius)
@@ -210,10 +213,10 @@ def shell_thickness(scene, event, fraction):
     ahead = long if event == "disc_collision" else sides[AXIS[event]]
     if long > 2 * short and ahead == long and not hop:
         room = long - 4 * scene.radius
-    return fraction * (min(scene.radius, room) if room > 0 else scene.radius)
+    return min(scene.radius, room) if room > 0 else scene.radius
 
 
-def _weighted_thickness(scene, event):
+def weighted_thickness(scene, event):
     """Return the length that ``shell_thickness`` takes a fraction of, with effects."""
     kind = DECLARED[event].kind
     if kind == "hop":
@@ -243,7 +246,7 @@ def sample_point(scene, quantities, samples, shell, seed):
     takes some forty times as long. Raises ``InputError`` for an unknown quantity or a number out of
     range.
     """
-    sampler = weighted if check_two_discs(scene, "shells").has_effects else in_prism
+    sampler = of_family(check_scene(scene), "sampling", "rejection", "shells")
     return _drawn(sampler(scene, quantities, shell, seed), samples)
 
 
@@ -276,9 +279,9 @@ def in_prism(scene, quantities, shell, seed):
     )
 
 
-def _with_shell(scene):
+def _shelled(scene):
     """Return the events that are sampled by a shell of their own."""
-    return EVENTS if scene.has_effects else SHELLS
+    return of_family(scene, "sampling", "shelled")
 
 
 def _shells(scene, quantities, shell):
@@ -290,11 +293,9 @@ def _shells(scene, quantities, shell):
         raise InputError("quantities must name at least one quantity, not none")
     shell = check_fraction("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
-    if "any_wall" in wanted and not scene.has_effects:
+    if "any_wall" in wanted and "any_wall" not in _shelled(scene):
         wanted |= {"right_wall", "top_wall"}
-    thickness = [
-        shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in _with_shell(scene)
-    ]
+    thickness = [shell_thickness(scene, e, shell) if e in wanted else 0.0 for e in _shelled(scene)]
     return wanted, thickness
 
 
@@ -305,7 +306,7 @@ def _point(scene, method, wanted, epsilon, samples, measure, counts):
         sampled["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
     # A sample looks at both sides of a hop, and at one disc and one of its walls.
     multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
-    for event, thickness, hits in zip(_with_shell(scene), epsilon, counts[1:], strict=False):
+    for event, thickness, hits in zip(_shelled(scene), epsilon, counts[1:], strict=False):
         if event in wanted:
             sampled[f"{event}_area"] = {
                 "hits": int(hits),
@@ -313,7 +314,7 @@ def _point(scene, method, wanted, epsilon, samples, measure, counts):
                 "epsilon": thickness,
             }
     point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": sampled}
-    if {"right_wall", "top_wall"} <= wanted and not scene.has_effects:
+    if {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene):
         point["right_and_top"] = int(counts[SETS - 1])
     return point
 
@@ -549,20 +550,14 @@ def better_point(scene, quantities, samples, shell, seed):
 def plan(scene, samples):
     """Return what makes the ``Sampler`` that suits a ``Scene``, and the number of its samples.
 
-    It is one of ``in_prism``, ``conditioned`` and ``weighted``; ``samples`` are those of the prism.
-    More than two discs are inserted one by one (``many.measures``), as many times as is asked for.
+    ``samples`` are those of the prism; more than two discs are inserted as many times.
     """
-    if check_scene(scene).discs > 2:
-        from twodiscs.sampling.many import measures  # which plain scenes have no use for
+    return of_family(check_scene(scene), "sampling", "plan")(scene, samples)
 
-        blocks = -(-check_integer("samples", samples) // measures.BLOCK)
-        return measures.inserted, blocks * measures.BLOCK
-    in_blocks = -(-check_integer("samples", samples) // BLOCK) * BLOCK
-    if scene.has_effects:
-        return weighted, in_blocks
-    if exact.free_fraction(scene) >= 1 / COST_RATIO:
-        return in_prism, in_blocks
-    return conditioned, -(-samples // (COST_RATIO * PROPOSALS)) * PROPOSALS
+
+def in_blocks(samples):
+    """Return a number of ``samples`` of the prism, rounded up to whole blocks."""
+    return -(-check_integer("samples", samples) // BLOCK) * BLOCK
 
 
 @dataclass(frozen=True)

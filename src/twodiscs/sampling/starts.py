@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.family import of_family
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
@@ -17,11 +17,9 @@ from twodiscs.sampling.prism import (
     draw_on_surface,
     draw_velocities,
     kinetic_fraction,
-    prism_of,
 )
 from twodiscs.sampling.separations import (
     draw_configuration,
-    draw_constants,
     draw_crossing,
     draw_velocity,
 )
@@ -37,13 +35,6 @@ PIECE = 2**13
 #: Rows of an array of starts.
 COMPONENTS = 12
 
-#: Their names: in every scene, and what balls and rough discs append.
-PLANE, BALLS, ROUGH = (
-    ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2"),
-    ("z1", "z2", "w1", "w2"),
-    ("s1", "s2"),
-)
-
 
 def require_room(scene):
     """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
@@ -52,28 +43,13 @@ def require_room(scene):
 
 
 def require_free_fraction(scene):
-    """Raise ``InputError`` for a ``Scene`` with effects that hardly ever accepts a place.
-
-    More than two discs have other ways to start (``many.initial``).
-    """
-    if scene.discs > 2 or not scene.has_effects:
-        return
-    if (fraction := exact.free_fraction(scene)) < exact.MIN_FRACTION:
-        raise InputError(
-            f"radius {scene.radius!r} leaves the discs {fraction:.1g} of the prism of all places, "
-            f"and a scene with effects needs more room, {exact.MIN_FRACTION:g} of it"
-        )
+    """Raise ``InputError`` for a ``Scene`` whose initial states hardly ever have room."""
+    of_family(scene, "sampling", "require_free_fraction")(scene)
 
 
 def components(scene):
-    """Return the names of the components of a state of a ``Scene``.
-
-    Of N discs x1 … xN, then y, u and v of them.
-    """
-    if scene.discs > 2:
-        return tuple(f"{name}{disc}" for name in "xyuv" for disc in range(1, scene.discs + 1))
-    balls, rough = scene.depth is not None, scene.moment_of_inertia is not None
-    return PLANE + BALLS * balls + ROUGH * rough
+    """Return the names of the components of a state of a ``Scene``."""
+    return of_family(scene, "sampling", "components")(scene)
 
 
 def origins(scene, hop=None, within=None):
@@ -83,9 +59,7 @@ def origins(scene, hop=None, within=None):
     the smaller radius. In a plain scene that is for the horizontal hop. A scene with effects needs
     room (``require_room``), or draws from its prism hardly end.
     """
-    if scene.has_effects:
-        return None, prism_of(scene, hop, within)
-    return draw_constants(scene, within), None
+    return of_family(scene, "sampling", "origins")(scene, hop, within)
 
 
 @inlined
@@ -201,10 +175,12 @@ def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
     ``progress``, if given, is called now and then with how many are drawn, and ``number``.
     """
     require_room(scene)
-    if scene.discs > 2:
-        from twodiscs.sampling.many import initial  # which others have no use for
+    draw = of_family(scene, "sampling", "states")
+    return draw(scene, number, seed, block, sides, progress)
 
-        return initial.labelled(scene.gas, number, seed, block, progress)
+
+def states_of_two(scene, number, seed, block, sides, progress):
+    """Return ``states`` of two discs."""
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     state = in_a_thread(open_stream, np.uint64(seed), block)

@@ -2,10 +2,9 @@
 
 Speeds are uniform on the unit sphere in four dimensions, so the mean time between events of an
 ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
-(Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes that call for effects have other constants and
-weights: they are handed over to ``weighted``, which needs NumPy and is imported only then. So are
-more than two discs to ``many``; where no exact value of them is known it is None, which is another
-state than impossible: ``Scene.is_possible``.
+(Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes with effects have other constants and weights. More
+than two discs have an exact value in some scenes; where none is known it is None, which is another
+state than impossible: ``Scene.is_possible``. Each family has its theory in ``families``.
 """
 
 from __future__ import annotations
@@ -14,9 +13,9 @@ import math
 from functools import lru_cache
 
 from twodiscs.model.checks import InputError, check_choice, check_length
-from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
-from twodiscs.model.scene import check_scene, check_two_discs
-from twodiscs.theory import plain
+from twodiscs.model.events import DECLARED, EVENTS, HOPS
+from twodiscs.model.family import of_family
+from twodiscs.model.scene import check_scene
 
 TYPE_CHECKING = False  # what reads types takes it for true; the module typing is not for free
 if TYPE_CHECKING:
@@ -39,22 +38,11 @@ if TYPE_CHECKING:
 #: overlaps in a scene with effects: starts are drawn from the prism by rejection.
 MIN_FRACTION = 1e-4
 
-#: Times that discs may leave their periodic cell between two events before that counts as work.
-PASSES_PER_EVENT = 64
-
 
 @lru_cache(maxsize=1024)
 def measures(scene):
     """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are remembered."""
-    if scene.discs > 2:
-        from twodiscs.theory.many.exact import volume_and_areas
-
-        return volume_and_areas(scene)
-    if scene.has_effects:
-        from twodiscs.theory import weighted
-
-        return weighted.volume(scene), weighted.areas(scene)
-    return plain.exact(scene)
+    return of_family(scene, "theory", "volume_and_areas")(scene)
 
 
 def volume(scene: Scene) -> float:
@@ -104,18 +92,9 @@ def rate(scene: Scene, event: str) -> float:
 
         td.rate(scene, "any_wall")
     """
-    if check_scene(scene).discs > 2:
-        from twodiscs.theory.many.exact import event_rates
-
-        return event_rates(scene)[check_choice("event", event, EVENTS)]
     volume, areas = measures(check_scene(scene))
-    sides = DECLARED[check_choice("event", event, EVENTS)].sides
-    if scene.has_effects:
-        from twodiscs.theory import weighted
-
-        constant = weighted.constant(scene.velocity_components)
-        return sides / 2 * constant * areas[event] / volume
-    return sides * areas[event] / (1.5 * math.pi * volume)
+    check_choice("event", event, EVENTS)
+    return of_family(scene, "theory", "rate")(scene, event, volume, areas)
 
 
 def passing_rate(scene, hop):
@@ -128,11 +107,8 @@ def passing_rate(scene, hop):
     check_choice("hop", hop, HOPS)
     if DECLARED[hop].axis not in check_scene(scene).periodic:
         return rate(scene, hop)
-    check_two_discs(scene, "passages along a periodic axis")
-    from twodiscs.theory import weighted
-
-    area = weighted.passing_area(scene, hop)
-    return weighted.constant(scene.velocity_components) * area / volume(scene)
+    rate_of = of_family(scene, "theory", "passing_rate", "passages along a periodic axis")
+    return rate_of(scene, hop, volume(scene))
 
 
 def event_rate(scene):
@@ -145,16 +121,9 @@ def event_rate(scene):
 
 
 def work_per_event(scene):
-    """Return how many times as much an event costs as usual, at most; 1 in a box without ends.
-
-    On a periodic axis discs leave their cell between two events, very often where they are small;
-    ``PASSES_PER_EVENT`` times are in what an event costs anyhow, and the kernel of N discs looks
-    again only after half a period.
-    """
-    if check_scene(scene).discs > 2:
-        return 1.0
-    passes = sum(scene.fastest / scene.side(axis) for axis in check_scene(scene).periodic)
-    return max(1.0, passes / PASSES_PER_EVENT / event_rate(scene))
+    """Return how many times as much an event costs as usual, at most; 1 in a box without ends."""
+    work = of_family(check_scene(scene), "theory", "work_per_event")
+    return work(scene, event_rate(scene))
 
 
 def events_per_interval(scene, hop):
@@ -176,13 +145,8 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
 
         td.mean_times(scene)["vertical_hop"]
     """
-    if check_scene(scene).discs > 2:
-        rates = {event: rate(scene, event) for event in EVENTS}
-        return {event: 1 / value if value else None for event, value in rates.items()}
-    return {
-        event: scene.share(event) / rate(scene, event) if area else None
-        for event, area in areas(scene).items()
-    }
+    rates = {event: rate(scene, event) for event in EVENTS}
+    return {event: scene.share(event) / value if value else None for event, value in rates.items()}
 
 
 def exact(scene: Scene) -> Exact:
@@ -225,15 +189,13 @@ def fraction_near(scene, hop, distance):
     """
     check_choice("hop", hop, HOPS)
     distance = check_length("distance", distance)
-    limit = math.sqrt(2) * min(check_two_discs(scene, "fractions near a surface").radii)
+    fraction_of = of_family(
+        check_scene(scene), "theory", "fraction_near", "fractions near a surface"
+    )
+    limit = math.sqrt(2) * min(scene.radii)
     if distance > limit:
         raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
-    if scene.has_effects:
-        from twodiscs.theory import weighted
-
-        return weighted.volume_near(scene, hop, distance) / volume(scene)
-    epsilon = distance / math.sqrt(2)
-    return 2 * epsilon * plain.shell_expectation(scene, hop, epsilon) / volume(scene)
+    return fraction_of(scene, hop, distance, volume(scene))
 
 
 def shell_expectation(scene, event, epsilon):
@@ -252,15 +214,16 @@ def shell_expectation(scene, event, epsilon):
     an ``epsilon`` that is not a length up to the radius, for an event that has no place in the
     scene, and for ``any_wall``, which has no shell of its own in a plain scene.
     """
-    check_two_discs(scene, "shells")
-    check_choice("event", event, scene.events if scene.has_effects else SHELLS)
+    expectation = of_family(check_scene(scene), "theory", "shell_expectation", "shells")
+    check_choice("event", event, shells(scene))
     epsilon = check_length("epsilon", epsilon)
     if epsilon > scene.radius:
         raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
-    if scene.has_effects:
-        from twodiscs.theory import weighted
+    return expectation(scene, event, epsilon)
 
-        return weighted.shell_expectation(scene, event, epsilon)
-    return plain.shell_expectation(scene, event, epsilon)
+
+def shells(scene):
+    """Return the events whose surface has a shell of its own; not of more than two discs."""
+    return of_family(check_scene(scene), "theory", "shells")(scene)

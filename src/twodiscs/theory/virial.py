@@ -2,7 +2,7 @@
 
 Without a field velocities times √mass are uniform on a sphere in D dimensions at total energy 1/2,
 so that a component has the mean square 1/D, and over the passages through a surface, which come at
-a rate ∝ |component|, the mean size 1/(D c_D), with c_D of ``weighted.constant``. In the mean a
+a rate ∝ |component|, the mean size 1/(D c_D), with c_D of ``flux.constant``. In the mean a
 disc of mass m gives the momentum 2√m/(D c_D) to a wall, and the discs give each other 2/(k D c_D),
 k = √(1/m1 + 1/m2). In four dimensions and for equal discs these are 3π/8 and 3π/(8√2).
 
@@ -21,7 +21,7 @@ import math
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import DECLARED, WALLS
 from twodiscs.model.scene import check_scene
-from twodiscs.theory.weighted import constant
+from twodiscs.theory.flux import constant
 
 
 def momentum_per_hit(scene, event):
@@ -65,7 +65,7 @@ def weights(scene):
     if check_scene(scene).effects.keys() - {"moment_of_inertia"}:
         return None
     per_rate = 1 / constant(scene.velocity_components)
-    pairs = math.sqrt(8) if scene.discs == 2 else math.sqrt(2) * scene.discs
+    pairs = math.sqrt(2) * scene.discs
     return {
         "disc_collision": -scene.contact_distance / pairs * per_rate,
         "right_wall": scene.range_x * per_rate,

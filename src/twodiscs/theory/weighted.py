@@ -32,21 +32,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.scene import ENERGY
 from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legendre
-
-
-def constant(components):
-    """Return c_D: the mean of |n·s| for a unit vector s uniform in D ``components``.
-
-    2/π, 4/(3π), 16/(15π) in two, four and six dimensions. Raises ``InputError`` unless D is an
-    integer ≥ 1.
-    """
-    half = check_integer("components", components) / 2
-    return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)
-
 
 # Functions of arrays ------------------------------------------------------------------------------
 

@@ -7,7 +7,6 @@ import pytest
 from mpmath import mp, mpf
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.many import Gas
 from twodiscs.model.scene import Scene
 from twodiscs.theory.many import channel, exact, three
 from twodiscs.theory.many.rates import Measures, rates, virial_sum
@@ -26,29 +25,29 @@ def agree(found, expected, rel):
 
 @pytest.mark.parametrize("width", [1.5, 1.0, 6.0])
 def test_two_discs_have_the_plain_theory(width):
-    gas = Gas(2, width, 0.6, 0.18)
-    agree(channel.measures(gas), exact.measures(gas), BOUND)
+    scene = Scene(width, 0.6, 0.18, discs=2)
+    agree(channel.measures(scene), exact.measures(scene), BOUND)
 
 
 @pytest.mark.parametrize(
     ("width", "height"), [(1.5, 0.6), (1.2, 0.6), (3.0, 0.4), (1.2, 0.36001), (10.0, 0.67)]
 )
 def test_three_discs_have_the_quadrature(width, height):
-    gas = Gas(3, width, height, 0.18)
-    agree(channel.measures(gas), three.measures(gas), BOUND)
+    scene = Scene(width, height, 0.18, discs=3)
+    agree(channel.measures(scene), three.measures(scene), BOUND)
 
 
-def by_moments(gas, digits, order):
+def by_moments(scene, digits, order):
     """Return the ``Measures`` of a channel that is longer than the discs in a row, as ``mpf``.
 
     There the rooms A/(N − 1) − d of the bonds are positive, and A − S is their sum: V = ∫ (A − S)^N
     is made of their moments, by Gauss's rule in many digits. Derivatives are such integrals of
     N (A − S)^(N−1) times the derivative of S, hops those of δ(y_i − y_j).
     """
-    n = gas.discs
+    n = scene.discs
     with mp.workdps(digits):
-        sigma = 2 * mpf(gas.radius)
-        a, b = mpf(gas.width) - sigma, mpf(gas.height) - sigma
+        sigma = 2 * mpf(scene.radius)
+        a, b = mpf(scene.width) - sigma, mpf(scene.height) - sigma
         assert a > (n - 1) * sigma
         nodes = [
             mp.findroot(lambda z: mp.legendre(order, z), mpf(start), solver="newton")
@@ -110,22 +109,22 @@ def by_moments(gas, digits, order):
 )  # fmt: skip
 def test_channels_in_many_digits(discs, width, height, radius):
     """The bound is the one that ``theory.exact.volume`` promises."""
-    gas = Gas(discs, width, height, radius)
-    expected = by_moments(gas, 25, 16 if height < 3.4 * radius else 24)
-    for known, value in zip(channel.measures(gas), expected, strict=True):
+    scene = Scene(width, height, radius, discs=discs)
+    expected = by_moments(scene, 25, 16 if height < 3.4 * radius else 24)
+    for known, value in zip(channel.measures(scene), expected, strict=True):
         assert abs(known - value) <= PROMISED * max(1, abs(value))
 
 
 @pytest.mark.parametrize("width", [1.3, 1.25])
 def test_four_discs_in_a_shorter_channel(width):
     """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
-    gas, values = Gas(4, width, 0.6, 0.18), []
+    scene, values = Scene(width, 0.6, 0.18, discs=4), []
     for order in (40, 56):
         x, w = np.polynomial.legendre.leggauss(order)
-        y, w = gas.range_y * (1 + x) / 2, gas.range_y * w / 2
-        d = np.sqrt(gas.contact_distance**2 - (y[:, None] - y) ** 2)
+        y, w = scene.range_y * (1 + x) / 2, scene.range_y * w / 2
+        d = np.sqrt(scene.contact_distance**2 - (y[:, None] - y) ** 2)
         middle = d[:, :, None] + d[None]
-        room = gas.range_x - middle
+        room = scene.range_x - middle
         total = 0.0
         for i in range(order):
             left = np.maximum(room[i, :, :, None] - d[None], 0.0) ** 4
@@ -133,7 +132,9 @@ def test_four_discs_in_a_shorter_channel(width):
         values.append(math.log(total))
     spread = abs(values[0] - values[1])
     assert spread < 1e-7
-    assert channel.measures(gas, hops=False).log_volume == pytest.approx(values[1], abs=2 * spread)
+    assert channel.measures(scene, hops=False).log_volume == pytest.approx(
+        values[1], abs=2 * spread
+    )
 
 
 @pytest.mark.parametrize(
@@ -142,29 +143,29 @@ def test_four_discs_in_a_shorter_channel(width):
      (64, 30.0, 0.6, 0.18), (4, 1e-6, 4e-7, 1.2e-7)],
 )  # fmt: skip
 def test_the_virial_theorem(discs, width, height, radius):
-    gas = Gas(discs, width, height, radius)
-    known = channel.measures(gas, hops=False)
+    scene = Scene(width, height, radius, discs=discs)
+    known = channel.measures(scene, hops=False)
     # Where there is little room walls and collisions cancel.
-    size = gas.range_x * known.per_width / (2 * discs)
-    assert virial_sum(gas, rates(gas, known)) == pytest.approx(1, abs=1e-11 * size)
+    size = scene.range_x * known.per_width / (2 * discs)
+    assert virial_sum(scene, rates(scene, known)) == pytest.approx(1, abs=1e-11 * size)
 
 
 @pytest.mark.parametrize("discs", [4, 8, 64])
 def test_a_tonks_gas_is_left_where_the_channel_is_as_wide_as_the_discs(discs):
     """V → B^N (A − (N − 1) σ)^N, with relative corrections of the order N (B/σ)² σ/room."""
     radius, gap = 0.25, 1e-6
-    gas = Gas(discs, 1.0 * discs, 0.5 + gap, radius)
-    room = gas.range_x - (discs - 1) * gas.contact_distance
-    known = channel.measures(gas)
-    small = discs**2 * gas.range_y**2 / gas.contact_distance / room
+    scene = Scene(1.0 * discs, 0.5 + gap, radius, discs=discs)
+    room = scene.range_x - (discs - 1) * scene.contact_distance
+    known = channel.measures(scene)
+    small = discs**2 * scene.range_y**2 / scene.contact_distance / room
     assert known.log_volume == pytest.approx(
-        discs * math.log(gas.range_y * room), abs=small + 1e-11 * discs
+        discs * math.log(scene.range_y * room), abs=small + 1e-11 * discs
     )
     assert known.per_width == pytest.approx(discs / room, rel=1e-9)
     assert known.per_contact == pytest.approx(discs * (discs - 1) / room, rel=1e-9)
-    assert known.per_height == pytest.approx(discs / gas.range_y, rel=1e-5)
+    assert known.per_height == pytest.approx(discs / scene.range_y, rel=1e-5)
     # All heights are independent: ∫ δ(y_i − y_j) is 1/B for each pair.
-    assert known.hops_y == pytest.approx(discs * (discs - 1) / 2 / gas.range_y, rel=1e-5)
+    assert known.hops_y == pytest.approx(discs * (discs - 1) / 2 / scene.range_y, rel=1e-5)
 
 
 def test_many_discs_tend_to_the_largest_eigenvalue():
@@ -173,8 +174,8 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     ideal = channel.limit(height, radius, force)
     differences = []
     for discs in (16, 32, 64):
-        gas = Gas(discs, ideal.length * discs + radius, height, radius)
-        known = channel.measures(gas, hops=False)
+        scene = Scene(ideal.length * discs + radius, height, radius, discs=discs)
+        known = channel.measures(scene, hops=False)
         differences.append(
             [known.per_width / force - 1, known.per_contact / discs / ideal.per_contact - 1,
              known.per_height / discs / ideal.per_height - 1]
@@ -198,7 +199,7 @@ def test_the_limit_is_a_tonks_gas_in_a_narrow_channel():
 
 def test_what_is_no_ordered_channel_is_refused():
     with pytest.raises(InputError, match="ordered channel"):
-        channel.measures(Gas(4, 3.0, 1.0, 0.2))
+        channel.measures(Scene(3.0, 1.0, 0.2, discs=4))
     with pytest.raises(InputError, match="2 \\+ √3 radii"):
         channel.limit(1.0, 0.2, 1.0)
     with pytest.raises(InputError, match="force must"):
@@ -206,15 +207,18 @@ def test_what_is_no_ordered_channel_is_refused():
 
 
 def test_turned_channels_are_the_same():
-    along, up = exact.measures(Gas(4, 3.0, 0.6, 0.18)), exact.measures(Gas(4, 0.6, 3.0, 0.18))
+    along, up = (
+        exact.measures(Scene(3.0, 0.6, 0.18, discs=4)),
+        exact.measures(Scene(0.6, 3.0, 0.18, discs=4)),
+    )
     assert along == up.turned()
-    assert exact.mean_times(Gas(4, 3.0, 0.6, 0.18))["horizontal_hop"] is None
+    assert exact.mean_times(Scene(3.0, 0.6, 0.18, discs=4))["horizontal_hop"] is None
 
 
 def test_two_discs_are_those_of_a_scene():
-    scene, gas = Scene(1.5, 1.0, 0.2), Gas(2, 1.5, 1.0, 0.2)
+    scene, scene = Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.2, discs=2)
     from twodiscs.theory.exact import rate
 
-    for event, found in rates(gas, exact.measures(gas)).items():
-        multiplicity = gas.multiplicity(event)
+    for event, found in rates(scene, exact.measures(scene)).items():
+        multiplicity = scene.multiplicity(event)
         assert found == pytest.approx(multiplicity * rate(scene, event), rel=1e-13)

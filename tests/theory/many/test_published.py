@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.model.many import Gas
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many.measures import BLOCK, UNITS, box_of, run_blocks
 from twodiscs.theory import exact, plain
@@ -86,13 +85,19 @@ def test_pressure_on_a_ring_has_the_fourth_virial_coefficient():
     three_discs = around * (third * across + walls[1] / 2) + one * two - one**3 / 3
     three_moved = around * third + one_moved * two + one * two_moved - one**2 * one_moved
 
-    gas, blocks = Gas(4, around, across + 1, 0.5, periodic="x"), 1024
-    sums, products = run_blocks(gas, 4, 0, blocks)
+    scene, blocks = Scene(around, across + 1, 0.5, discs=4, periodic="x"), 1024
+    sums, products = run_blocks(scene, 4, 0, blocks)
     samples = blocks * BLOCK
     mean = sums[2] / UNITS / samples
     error = math.sqrt((products[2, 2] / UNITS / samples - mean**2) / samples)
     # ∂V/∂B = (N/B) (AB)^N ⟨W [free at a wall]⟩.
-    area = gas.discs / across * one**gas.discs * box_of(gas).typical / math.factorial(gas.discs)
+    area = (
+        scene.discs
+        / across
+        * one**scene.discs
+        * box_of(scene).typical
+        / math.factorial(scene.discs)
+    )
     fourth = area * mean - (
         one_moved * three_discs + one * three_moved + two * two_moved
         - 2 * one * one_moved * two - one**2 * two_moved + one**3 * one_moved

@@ -6,41 +6,41 @@ import numpy as np
 import pytest
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.many import Gas
+from twodiscs.model.scene import Scene
 from twodiscs.theory.many import exact, rates
 from twodiscs.theory.virial import weights
 
 KNOWN = [
-    Gas(2, 1.5, 1.0, 0.2), Gas(2, 1.5, 1.0, 0.38), Gas(3, 1.5, 1.0, 0.05), Gas(3, 1.5, 1.0, 0.28),
-    Gas(3, 1.0, 1.5, 0.2), Gas(5, 2.2, 0.6, 0.18), Gas(16, 8.0, 0.5, 0.18),
+    Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.38),
+    *(Scene(*sides, discs=3) for sides in ((1.5, 1.0, 0.05), (1.5, 1.0, 0.28), (1.0, 1.5, 0.2))),
+    Scene(2.2, 0.6, 0.18, discs=5), Scene(8.0, 0.5, 0.18, discs=16),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("gas", KNOWN, ids=repr)
-def test_the_virial_theorem_holds(gas):
-    found = rates.rates(gas, exact.measures(gas, hops=False))
-    size = found["right_wall"] * rates.virial_weights(gas)["right_wall"]
-    assert rates.virial_sum(gas, found) == pytest.approx(1, abs=1e-11 * (1 + size))
+@pytest.mark.parametrize("scene", KNOWN, ids=repr)
+def test_the_virial_theorem_holds(scene):
+    found = rates.rates(scene, exact.measures(scene, hops=False))
+    size = found["right_wall"] * rates.virial_weights(scene)["right_wall"]
+    assert rates.virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
 
 
 def test_two_discs_have_the_weights_of_a_scene():
-    gas = Gas(2, 1.5, 1.0, 0.2)
-    from twodiscs.model.scene import Scene
+    scene = Scene(1.5, 1.0, 0.2, discs=2)
 
     known = weights(Scene(1.5, 1.0, 0.2))
-    for event, weight in rates.virial_weights(gas).items():
+    for event, weight in rates.virial_weights(scene).items():
         # Four pairs of a disc and a wall are counted together here.
         each = weight * (4 if event.endswith("wall") else 1)
         assert each == pytest.approx(known[event], rel=1e-14)
     with pytest.raises(InputError, match="ring"):
-        rates.virial_weights(Gas(3, 1.5, 1.0, 0.1, "x"))
+        rates.virial_weights(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
 
 
-@pytest.mark.parametrize("gas", KNOWN, ids=repr)
-def test_bonferroni_bounds_hold(gas):
-    low, high = rates.bonferroni_bounds(gas)
-    log_all = gas.discs * math.log(gas.range_x * gas.range_y)
-    fraction = math.exp(exact.measures(gas, hops=False).log_volume - log_all)
+@pytest.mark.parametrize("scene", KNOWN, ids=repr)
+def test_bonferroni_bounds_hold(scene):
+    low, high = rates.bonferroni_bounds(scene)
+    log_all = scene.discs * math.log(scene.range_x * scene.range_y)
+    fraction = math.exp(exact.measures(scene, hops=False).log_volume - log_all)
     # For two discs they are equal; a difference from 1 has a rounding of that.
     assert low - 1e-15 <= fraction <= high + 1e-15
 
@@ -48,13 +48,13 @@ def test_bonferroni_bounds_hold(gas):
 def test_bonferroni_bounds_are_close_for_small_discs():
     """They differ by the second order in the number of overlapping pairs."""
     for discs in (3, 8, 64):
-        gas = Gas(discs, 1.5, 1.0, 1e-3)
-        low, high = rates.bonferroni_bounds(gas)
-        pairs = discs * (discs - 1) / 2 * rates.overlap_of_two(gas)
+        scene = Scene(1.5, 1.0, 1e-3, discs=discs)
+        low, high = rates.bonferroni_bounds(scene)
+        pairs = discs * (discs - 1) / 2 * rates.overlap_of_two(scene)
         assert 0 < high - low <= pairs**2
-    gas = Gas(3, 1.5, 1.0, 1e-3)
-    fraction = math.exp(exact.measures(gas).log_volume) / (gas.range_x * gas.range_y) ** 3
-    low, high = rates.bonferroni_bounds(gas)
+    scene = Scene(1.5, 1.0, 1e-3, discs=3)
+    fraction = math.exp(exact.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    low, high = rates.bonferroni_bounds(scene)
     assert low < fraction < high
 
 
@@ -63,9 +63,9 @@ def test_small_discs(discs):
     """The error of the first orders falls like the next one: σ³ for walls, σ² over collisions."""
     errors = {}
     for radius in (2e-3, 1e-3):
-        gas = Gas(discs, 1.5, 1.0, radius)
-        true = rates.rates(gas, exact.measures(gas))
-        for event, rate in rates.small_disc_rates(gas).items():
+        scene = Scene(1.5, 1.0, radius, discs=discs)
+        true = rates.rates(scene, exact.measures(scene))
+        for event, rate in rates.small_disc_rates(scene).items():
             errors.setdefault(event, []).append(abs(rate / true[event] - 1))
     for event, (large, small) in errors.items():
         assert small < 1e-3
@@ -76,9 +76,9 @@ def test_small_discs(discs):
 def test_overlap_on_a_ring():
     """Against the mean over a grid of separations."""
     for height, radius in ((1.0, 0.2), (0.6, 0.18), (0.5, 0.2)):
-        gas = Gas(2, 1.5, height, radius, "x")
-        b, sigma = gas.range_y, gas.contact_distance
+        scene = Scene(1.5, height, radius, discs=2, periodic="x")
+        b, sigma = scene.range_y, scene.contact_distance
         v = b * (np.arange(200_000) + 0.5) / 200_000
-        closed = 2 * np.sqrt(np.maximum(sigma**2 - v**2, 0)) / gas.width
+        closed = 2 * np.sqrt(np.maximum(sigma**2 - v**2, 0)) / scene.width
         mean = np.mean(2 * (b - v) / b * closed)
-        assert rates.overlap_of_two(gas) == pytest.approx(mean, rel=1e-6)
+        assert rates.overlap_of_two(scene) == pytest.approx(mean, rel=1e-6)

@@ -8,7 +8,8 @@ import pytest
 from mpmath import mp, mpf
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.many import Gas, largest_radius
+from twodiscs.model.families.many import largest_known_radius as largest_radius
+from twodiscs.model.scene import Scene
 from twodiscs.theory.many import exact, three
 from twodiscs.theory.many.rates import rates, virial_sum
 
@@ -101,27 +102,27 @@ def test_hops_agree_with_an_integral_of_one_dimension(width, radius):
 def test_volume_by_rejection(radius):
     """Five sigma of a binomial count."""
     rng, n = np.random.default_rng(3), 400_000
-    gas = Gas(3, 1.5, 1.0, radius)
-    x, y = gas.range_x * rng.random((3, n)), gas.range_y * rng.random((3, n))
+    scene = Scene(1.5, 1.0, radius, discs=3)
+    x, y = scene.range_x * rng.random((3, n)), scene.range_y * rng.random((3, n))
     free = np.ones(n, bool)
     for i, j in ((0, 1), (0, 2), (1, 2)):
-        free &= (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 >= gas.contact_distance**2
-    true = math.exp(three.measures(gas).log_volume) / (gas.range_x * gas.range_y) ** 3
+        free &= (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 >= scene.contact_distance**2
+    true = math.exp(three.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
     assert abs(free.mean() - true) < 5 * math.sqrt(true * (1 - true) / n)
 
 
 def test_the_value_of_another_derivation():
     """Scrambled Sobol points, 2e-4 at worst."""
-    gas = Gas(3, 1.5, 1.0, 0.15)
-    known = three.measures(gas)
+    scene = Scene(1.5, 1.0, 0.15, discs=3)
+    known = three.measures(scene)
     assert math.exp(known.log_volume) == pytest.approx(0.2455841, rel=2e-6)
-    found = rates(gas, known)
+    found = rates(scene, known)
     expected = {
         "disc_collision": 1.3936, "right_wall": 1.10890, "top_wall": 1.85397,
         "horizontal_hop": 0.57494,
     }  # fmt: skip
     assert {event: found[event] for event in expected} == pytest.approx(expected, rel=2e-4)
-    assert virial_sum(gas, found) == pytest.approx(1, rel=1e-13)
+    assert virial_sum(scene, found) == pytest.approx(1, rel=1e-13)
 
 
 def test_largest_radius_ends_the_volume():
@@ -138,7 +139,7 @@ def test_largest_radius_ends_the_volume():
 
 def test_only_three_between_walls():
     with pytest.raises(InputError, match="three discs"):
-        three.measures(Gas(4, 1.5, 1.0, 0.1))
+        three.measures(Scene(1.5, 1.0, 0.1, discs=4))
     with pytest.raises(InputError, match="three discs"):
-        three.measures(Gas(3, 1.5, 1.0, 0.1, "x"))
-    assert exact.measures(Gas(4, 1.5, 1.0, 0.1)) is None
+        three.measures(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
+    assert exact.measures(Scene(1.5, 1.0, 0.1, discs=4)) is None

@@ -23,6 +23,7 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
+    LARGEST_INTEGER,
     InputError,
     check_choice,
     check_count,
@@ -247,7 +248,7 @@ class Intervals(Result):
         bins = self.rows[:2]
         at_zero, spread = density_of_chains_at_zero(
             [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins],
-            linear=scene.discs > 2,
+            linear="products" in point,
         )  # fmt: skip
         few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if not scene.is_plain else tails.density_at_zero(scene, self.hop)
@@ -413,8 +414,8 @@ def exact_table(width, height, radii, effects):
         for scene in scenes
     ]
     frame = pd.DataFrame(rows).set_index("radius")
-    if box.discs > 2:  # None among integers of any length
-        parts = [scene.ergodic_components for scene in scenes]
+    parts = [scene.ergodic_components for scene in scenes]
+    if any(part is None or part > LARGEST_INTEGER for part in parts):
         frame["ergodic_components"] = pd.Series(parts, frame.index, object)
     times = [f"{event}_time" for event in EVENTS]
     known = ["volume", *(f"{event}_area" for event in EVENTS), *times]

@@ -10,8 +10,7 @@ import numpy as np
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.dynamics.counting import expected_event_rate
-from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, unwrapped
+from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, new_wraps, unwrap
 from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
@@ -127,22 +126,16 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
             f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "
             f"{format_number(MOST_EVENTS, 'g')} events are due, not {format_number(times[-1], 'g')}"
         )
-    if scene.discs == 2:
-        advance, law, wrapped = advance_all, law_of(scene), 3
-    else:
-        from twodiscs.dynamics import many  # a kernel that two discs have no use for
-
-        advance, law, wrapped = many.advance_all, many.law_of(scene.gas), scene.discs
 
     def snapshots(block):
         """Return the states of a block at time 0, and at all times."""
-        filled, wraps = states(scene, BLOCK, stream, block), np.zeros((wrapped, BLOCK))
+        filled, wraps = states(scene, BLOCK, stream, block), new_wraps(scene, BLOCK)
         yield as_records(scene, filled)
         for step in np.diff(times, prepend=0.0):
             if step:
-                advance(filled, wraps, step, law)
+                advance_all(scene, filled, wraps, step)
             now = as_records(scene, filled)
-            unwrapped(scene, now, wraps)
+            unwrap(scene, now, wraps)
             yield now
 
     total = mean = square = None

@@ -10,7 +10,7 @@ import pandas as pd
 
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
-from twodiscs.dynamics.trajectory import DISCS, followed, followed_many, unwrapped
+from twodiscs.dynamics.trajectory import DISCS, columns, followed
 from twodiscs.model.checks import InputError, as_list, quote
 from twodiscs.sampling.starts import components
 
@@ -24,10 +24,10 @@ VELOCITIES = {"x": "u", "y": "v", "z": "w"}
 class Trajectory(pd.DataFrame):
     """A trajectory: a row an event, with its time, its name, and the state right after it.
 
-    Columns are time, x1, y1, x2, y2 (the centres, from that of the box), event, and u1, v1, u2, v2
-    (velocities). Balls have z1, z2, w1, w2 besides, and rough discs s1, s2, the speeds of their
-    surfaces. On periodic axes places go on beyond the cell. N discs have x1, y1, …, xN, yN, event,
-    first and second (the discs that the event is of) and then u1, v1, …, uN, vN.
+    Columns are time, x1, y1, …, xN, yN (the centres, from that of the box), event, z1, z2 of balls,
+    first and second (the discs that the event is of), and u1, v1, …, uN, vN (velocities); w1, w2 of
+    balls and s1, s2, the speeds of the surfaces of rough discs. On periodic axes centres go on
+    beyond the cell.
     """
 
     @property
@@ -90,42 +90,24 @@ def require_consecutive(trajectory):
 def trajectory(scene, seed, start, duration, name, progress=None):
     """Return one ``Trajectory`` (see the face)."""
     seed = seed_of(scene, "trajectory", seed, name)
-    if scene.discs > 2:
-        return _of_many(scene, seed, start, duration, progress)
     with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
         rows = followed(scene, seed, start, duration, progress)
-    times, events, states = zip(*rows, strict=True)
-    names = components(scene)
-    columns = dict(zip(names, np.array(states).T, strict=True))
-    if scene.periodic:
-        wraps = np.zeros((3, len(rows)))
-        for k, axis in enumerate("xyz"):
-            if axis in scene.periodic:
-                jumped = np.array(events) == f"wrap_{axis}"
-                apart = columns[f"{axis}1"] - columns[f"{axis}2"]
-                wraps[k] = np.cumsum(np.where(jumped, -np.sign(apart), 0.0))
-        unwrapped(scene, columns, wraps)
-    first = [n for n in ("x1", "y1", "x2", "y2") if n in columns]
-    last = sorted((n for n in names if n not in first), key=lambda name: name[0] != "z")
-    columns = {"time": times, **{n: columns[n] for n in first}, "event": events} | {
-        n: columns[n] for n in last
-    }
-    frame = Trajectory(columns)
-    frame.attrs["scene"] = scene
-    return frame
-
-
-def _of_many(scene, seed, start, duration, progress):
-    """Return the ``Trajectory`` of more than two discs."""
-    with progress_bar(progress, f"trajectory r = {scene.radius:g}") as progress:
-        rows = followed_many(scene, seed, start, duration, progress)
-    times, events, first, second, states = zip(*rows, strict=True)
+    times, events, *discs, states = zip(*rows, strict=True)
     known = dict(zip(components(scene), np.array(states).T, strict=True))
-    discs = range(1, scene.discs + 1)
-    columns = {"time": times} | {n: known[n] for d in discs for n in (f"x{d}", f"y{d}")}
-    columns |= {"event": events}
-    columns |= {n: pd.array(ds, "Int64") for n, ds in zip(DISCS, (first, second), strict=True)}
-    columns |= {n: known[n] for d in discs for n in (f"u{d}", f"v{d}")}
-    frame = Trajectory(columns)
+    known |= {"time": times, "event": events}
+    known |= {name: pd.array(of, "Int64") for name, of in zip(DISCS, discs, strict=True)}
+    names = [name for name in columns(scene.discs) if name in known]
+    frame = Trajectory(
+        {
+            name: known[name]
+            for name in [*names, *(n for n in _by_disc(scene, known) if n not in names)]
+        }
+    )
     frame.attrs["scene"] = scene
     return frame
+
+
+def _by_disc(scene, names):
+    """Return ``names`` of components disc by disc: u1, v1, u2, v2, not u1, u2, v1, v2."""
+    numbers = {str(disc): disc for disc in range(1, scene.discs + 1)}
+    return sorted((n for n in names if n[1:] in numbers), key=lambda name: numbers[name[1:]])

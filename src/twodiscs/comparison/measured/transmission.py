@@ -11,7 +11,7 @@ import numpy as np
 from twodiscs.comparison.estimates import Estimate
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result
-from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
+from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS

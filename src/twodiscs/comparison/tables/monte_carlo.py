@@ -114,7 +114,7 @@ class Areas(Sampled):
                     expectation = shell_expectation(scene, event, part["epsilon"])
                     value = exact[radius, quantity]
                     sampled[event] = _sampled_row(point, quantity, value, expectation)
-            if {"right_wall", "top_wall"} <= sampled.keys() and not scene.has_effects:
+            if {"right_wall", "top_wall"} <= sampled.keys() and "right_and_top" in point:
                 value = exact[radius, "any_wall_area"]
                 parts = sampled["right_wall"], sampled["top_wall"]
                 sampled["any_wall"] = _any_wall_row(point, value, *parts)

@@ -5,8 +5,8 @@ from twodiscs.comparison.tables.base import COUNT, LENGTH, TEXT, TIME, Table
 
 class Trajectory(Table):
     """
-    One row an event of one trajectory, in order: the state at the event. More than two discs have x
-    and y of each, and then first and second, the discs that the event is of.
+    One row an event of one trajectory, in order: the state at the event. More than two discs have
+    centres of each. Along periodic axes centres go on beyond the cell.
     """
 
     time: TIME
@@ -20,31 +20,21 @@ class Trajectory(Table):
     y2: LENGTH
     """disc 2, from the centre of the box"""
     event: TEXT
-    """what happens"""
+    """what happens; a wall is named by its axis and the disc"""
     z1: LENGTH
     """ball 1; empty in the plane"""
     z2: LENGTH
     """ball 2; empty in the plane"""
+    first: COUNT
+    """the disc that the event is of, or the first of two; empty where there is none"""
+    second: COUNT
+    """the second of the two discs that the event is of; empty where there is none"""
 
     @classmethod
     def of(cls, names):
-        """Return the table whose columns have these ``names``: of more discs, where they are more.
-
-        It has x1, y1, …, xN, yN, and ``first`` and ``second``, the discs that the event is of.
-        """
-        if "first" not in names:
-            return cls
-        kinds = {"time": TIME, "event": TEXT, "first": COUNT, "second": COUNT}
-        texts = cls.meanings() | {
-            n: f"the {n} disc that the event is of" for n in ("first", "second")
-        }
-        meanings = {n: texts.get(n, f"disc {n[1:]}, from the centre of the box") for n in names}
-        content = {
-            "__annotations__": {name: kinds.get(name, LENGTH) for name in names},
-            "__doc__": cls.__doc__,
-            "meanings": classmethod(lambda table: meanings),
-        }
-        return type(cls.__name__, (Table,), content)
+        """Return the table whose columns have these ``names``, which say how many discs it has."""
+        discs = sum(name[0] == "x" and name[1:].isdigit() for name in names)
+        return cls if discs <= 2 else _of_discs(cls, discs)
 
     @classmethod
     def write(cls, path, rows):
@@ -65,5 +55,19 @@ class Trajectory(Table):
         from twodiscs.dynamics.trajectory import columns, trajectory  # which compiles
 
         scene = box.scene(radius)
-        names = columns(scene)
+        names = columns(scene.discs)
         return [dict(zip(names, row, strict=True)) for row in trajectory(scene, seed)]
+
+
+def _of_discs(table, discs):
+    """Return the ``table`` with columns for so many ``discs``."""
+    numbers, known, texts = range(1, discs + 1), table.columns(), table.meanings()
+    centres = [f"{axis}{disc}" for disc in numbers for axis in "xy"]
+    names = ["time", *centres, "event", *(f"z{disc}" for disc in numbers), "first", "second"]
+    meanings = {name: texts.get(name, f"disc {name[1:]}, as {name[0]}1") for name in names}
+    content = {
+        "__annotations__": {name: known.get(name, LENGTH) for name in names},
+        "__doc__": table.__doc__,
+        "meanings": classmethod(lambda cls: meanings),
+    }
+    return type(table.__name__, (Table,), content)

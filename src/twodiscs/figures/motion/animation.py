@@ -86,8 +86,6 @@ class Stage:
         names = ("time", *places, "event")
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
         self.sides = {"x": width, "y": height}
-        if box.discs == 2:
-            self._unwrap()
         self.times, self.hop, self.centre = self.moments(rows, step)
         self.trace, self.marked = TRACE * step, MARKED * step
         self.axis = "y" if self.hop == "vertical_hop" else "x"
@@ -111,21 +109,6 @@ class Stage:
         drawing.label(self.box, text, (0, 1), (-72 * spare, 5 + up), **above)
         self._draw_strip()
         self.moving = self._moving((-x, x, -y, y))
-
-    def _unwrap(self):
-        """Undo the steps by which rows keep the separation along periodic axes within one period.
-
-        The separation steps by a period, and the centre of mass stays.
-        """
-        share = self.scene.masses[1] / sum(self.scene.masses)
-        for axis in self.scene.periodic:
-            if axis not in self.sides:
-                continue
-            one, other = self.rows[f"{axis}1"], self.rows[f"{axis}2"]
-            stepped = self.rows["event"] == f"wrap_{axis}"
-            steps = np.cumsum(np.where(stepped, np.sign(one - other), 0.0)) * self.sides[axis]
-            self.rows[f"{axis}1"] = one - share * steps
-            self.rows[f"{axis}2"] = other + (1 - share) * steps
 
     def _draw_walls(self, x, y):
         """Draw the walls that there are; the ends of a periodic axis are dotted."""

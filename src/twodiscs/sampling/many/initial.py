@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.model.families.many import arrangement, is_ordered
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
@@ -63,7 +64,7 @@ class Chain(NamedTuple):
 
 
 class Initial(NamedTuple):
-    """How the states of a gas are drawn; of ``cells`` and ``chain`` one at most is not None."""
+    """How the states of a scene are drawn; of ``cells`` and ``chain`` one at most is not None."""
 
     discs: int
     half_x: float
@@ -75,33 +76,33 @@ class Initial(NamedTuple):
 
 
 @lru_cache(maxsize=1024)
-def method(gas):
-    """Return how centres of a ``Gas`` are drawn: "channel", "rejection" or "chain".
+def method(scene):
+    """Return how centres of a ``Scene`` are drawn: "channel", "rejection" or "chain".
 
     A block of insertions, the same one everywhere, tells how much of (AB)^N is free. Where discs
     hardly fit it finds too little, if anything.
     """
-    if gas.is_ordered or (not gas.periodic and gas.turned().is_ordered):
+    if is_ordered(scene) or (not scene.periodic and is_ordered(scene.turned())):
         return "channel"
-    return "rejection" if measures.free_fraction(gas) >= LEAST else "chain"
+    return "rejection" if measures.free_fraction(scene) >= LEAST else "chain"
 
 
-def initial_of(gas, by=None):
-    """Return the ``Initial`` of a ``Gas``, by its ``method`` unless another one is named."""
-    by = by or method(gas)
+def initial_of(scene, by=None):
+    """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named."""
+    by = by or method(scene)
     return Initial(
-        gas.discs, gas.range_x / 2, gas.range_y / 2, gas.contact_distance,
-        gas.width if gas.periodic else None,
-        _cells(gas) if by == "channel" else None,
-        _chain(gas) if by == "chain" else None,
+        scene.discs, scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
+        scene.width if scene.periodic else None,
+        _cells(scene) if by == "channel" else None,
+        _chain(scene) if by == "chain" else None,
     )  # fmt: skip
 
 
-def _chain(gas):
+def _chain(scene):
     # The smallest moves are some fraction of the room that is left to the discs.
-    tightness = max(gas.range_x, gas.range_y) / (gas.largest_radius - gas.radius)
+    tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
     scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
-    return Chain(np.array(gas.arrangement).T.copy(), SWEEPS, scales)
+    return Chain(np.array(arrangement(scene)).T.copy(), SWEEPS, scales)
 
 
 def _rounded(value):
@@ -110,11 +111,11 @@ def _rounded(value):
     return math.ldexp(round(math.ldexp(mantissa, 30)), exponent - 30)
 
 
-def _cells(gas):
-    turned = not gas.is_ordered
-    gas = gas.turned() if turned else gas
-    known = channel.channel_of(gas)
-    n, b, room = gas.discs, gas.range_y, known.room
+def _cells(scene):
+    turned = not is_ordered(scene)
+    scene = scene.turned() if turned else scene
+    known = channel.channel_of(scene)
+    n, b, room = scene.discs, scene.range_y, known.room
     tilt = _rounded(channel.saddle(known)[0])
     # d − d₀ grows by B/d₀ for a length off a corner at most. Over all discs the weights of cells
     # are then some e² above those of heights; far off, cells may be wider.
@@ -131,7 +132,7 @@ def _cells(gas):
     bound = _rounded(n / tilt * math.exp(tilt * room / n - 1))
     cells = len(ends) - 1
     weights, backward = np.empty((cells, cells)), np.ones((n, cells))
-    sizes = gas.contact_distance, b, known.least
+    sizes = scene.contact_distance, b, known.least
     in_a_thread(fill_cells, ends, tilt, *sizes, weights, backward)
     return Cells(ends, weights, backward, room, known.least, (1 - 2.0**-20) / bound, turned)
 
@@ -352,7 +353,7 @@ def exchange_labels(state, states):
                 states[row, k], states[other, k] = states[other, k], states[row, k]
 
 
-def labelled(gas, number, seed, block=0, progress=None):
+def labelled(scene, number, seed, block=0, progress=None):
     """Return ``states`` of which each disc is any of them with the same probability.
 
     A channel has its discs in order, and a chain may not get far from the order it starts with.
@@ -360,14 +361,18 @@ def labelled(gas, number, seed, block=0, progress=None):
     the first states are the same however many there are. ``progress``, if given, is called now and
     then with how many are drawn (None: as before), and ``number``.
     """
-    filled, initial, exchanged = np.zeros((4 * gas.discs, number)), initial_of(gas), method(gas)
+    filled, initial, exchanged = (
+        np.zeros((4 * scene.discs, number)),
+        initial_of(scene),
+        method(scene),
+    )
     seeds = np.uint64(seed), ~np.uint64(seed)
     stream, labels = (in_a_thread(open_stream, each, block) for each in seeds)
     seconds = 0.0
 
     def fill(first, stop):
         nonlocal seconds
-        begin, some = monotonic(), np.zeros((4 * gas.discs, stop - first))
+        begin, some = monotonic(), np.zeros((4 * scene.discs, stop - first))
         draw_states(stream, initial, some)
         if exchanged != "rejection":
             exchange_labels(labels, some)
@@ -388,11 +393,11 @@ def labelled(gas, number, seed, block=0, progress=None):
     return filled
 
 
-def states(gas, number, seed, block=0, by=None):
-    """Return ``number`` states of the invariant measure of a ``Gas``, one a column of (4N, number).
+def states(scene, number, seed, block=0, by=None):
+    """Return ``number`` states of the invariant measure of a ``Scene``, columns of (4N, number).
 
     They are the first ones of the stream of ``seed`` for ``block``.
     """
-    states = np.zeros((4 * gas.discs, number))
-    draw_states(open_stream(np.uint64(seed), block), initial_of(gas, by), states)
+    states = np.zeros((4 * scene.discs, number))
+    draw_states(open_stream(np.uint64(seed), block), initial_of(scene, by), states)
     return states

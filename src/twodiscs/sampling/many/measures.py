@@ -203,36 +203,36 @@ def sample_blocks(seed, first, stop, discs, box, walls):
     return sums, products
 
 
-def box_of(gas):
-    """Return the ``Box`` of a ``Gas``."""
-    pairs = gas.discs * (gas.discs - 1) / 2
+def box_of(scene):
+    """Return the ``Box`` of a ``Scene``."""
+    pairs = scene.discs * (scene.discs - 1) / 2
     # Rounded to a power of two: the same on every machine.
-    typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(gas)))
+    typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(scene)))
     return Box(
-        gas.range_x / 2, gas.range_y / 2, gas.contact_distance,
-        gas.width if gas.periodic else None, typical,
+        scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
+        scene.width if scene.periodic else None, typical,
     )  # fmt: skip
 
 
-def run_blocks(gas, seed, first, stop):
-    """Return (sums, products) of the samples of a ``Gas``, integers: two shards add up."""
-    seed, walls = np.uint64(check_integer("seed", seed, 0)), None if gas.periodic else True
-    return sample_blocks(seed, first, stop, gas.discs, box_of(gas), walls)
+def run_blocks(scene, seed, first, stop):
+    """Return (sums, products) of the samples of a ``Scene``, integers: two shards add up."""
+    seed, walls = np.uint64(check_integer("seed", seed, 0)), None if scene.periodic else True
+    return sample_blocks(seed, first, stop, scene.discs, box_of(scene), walls)
 
 
-def free_fraction(gas):
-    """Return V/(AB)^N of a ``Gas`` as the first block of the stream 0 has it, maybe 0."""
-    sums, _ = in_a_thread(run_blocks, gas, 0, 0, 1)
-    return float(sums[0]) / UNITS / BLOCK * box_of(gas).typical
+def free_fraction(scene):
+    """Return V/(AB)^N of a ``Scene`` as the first block of the stream 0 has it, maybe 0."""
+    sums, _ = in_a_thread(run_blocks, scene, 0, 0, 1)
+    return float(sums[0]) / UNITS / BLOCK * box_of(scene).typical
 
 
-def estimate(gas, sums, products, samples):
+def estimate(scene, sums, products, samples):
     """Return (``Measures``, their standard errors as ``Measures``) of so many ``samples``.
 
     Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a
     ring the walls of x are 0. Raises ``InputError`` where not a sample had room.
     """
-    n, a, b = gas.discs, gas.range_x, gas.range_y
+    n, a, b = scene.discs, scene.range_x, scene.range_y
     if sums[0] == 0:
         raise InputError(f"of {samples} samples none had room for {n} discs")
     unit = UNITS * samples
@@ -242,24 +242,24 @@ def estimate(gas, sums, products, samples):
     covariance = (second - np.outer(mean, mean)) / samples
     pairs = n * (n - 1) / 2
     factors = np.array(
-        [n / a, n / b, pairs * 2 * math.pi * gas.contact_distance / (a * b), pairs / a, pairs / b]
+        [n / a, n / b, pairs * 2 * math.pi * scene.contact_distance / (a * b), pairs / a, pairs / b]
     )
-    if gas.periodic:
+    if scene.periodic:
         factors[0] = 0.0
     ratios = mean[1:] / mean[0]
     spread = np.diag(covariance)[1:] - 2 * ratios * covariance[0, 1:] + ratios**2 * covariance[0, 0]
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]
-    log_volume = n * math.log(a * b) + math.log(box_of(gas).typical) + math.log(mean[0])
+    log_volume = n * math.log(a * b) + math.log(box_of(scene).typical) + math.log(mean[0])
     return (
         Measures(log_volume, *map(float, factors * ratios)),
         Measures(math.sqrt(covariance[0, 0]) / mean[0], *map(float, factors * errors)),
     )
 
 
-def sample(gas, samples, seed):
-    """Return (``Measures``, standard errors) of a ``Gas`` from ``samples``, in whole blocks."""
+def sample(scene, samples, seed):
+    """Return (``Measures``, standard errors) of a ``Scene`` from ``samples``, in whole blocks."""
     blocks = -(-check_integer("samples", samples) // BLOCK)
-    return estimate(gas, *in_a_thread(run_blocks, gas, seed, 0, blocks), blocks * BLOCK)
+    return estimate(scene, *in_a_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
 
 
 # The pipeline -------------------------------------------------------------------------------------
@@ -286,14 +286,13 @@ def inserted(scene, quantities, shell, seed):
     if "any_wall_area" in wanted:
         wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}
     sampled = {name: k for name, k in SUMS.items() if name in wanted}
-    gas = scene.gas
 
     def count(first, stop):
-        return np.vstack(run_blocks(gas, seed, first, stop))
+        return np.vstack(run_blocks(scene, seed, first, stop))
 
     def point(samples, counts):
         sums, products = counts[0], counts[1:]
-        measures = _sampled_measures(gas)
+        measures = _sampled_measures(scene)
         return {
             "radius": scene.radius,
             "method": "insertion",
@@ -311,28 +310,28 @@ def inserted(scene, quantities, shell, seed):
             },
         }  # fmt: skip
 
-    return Sampler(BLOCK, count, point, COST_RATIO * gas.discs)
+    return Sampler(BLOCK, count, point, COST_RATIO * scene.discs)
 
 
-def _sampled_measures(gas):
+def _sampled_measures(scene):
     """Return what a mean weight of 1 says of volume and areas, in the order of ``QUANTITIES``.
 
     Areas are those of ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
     """
-    a, b, n = gas.range_x, gas.range_y, gas.discs
-    volume, pairs = (a * b) ** n * box_of(gas).typical, n * (n - 1) / 2
+    a, b, n = scene.range_x, scene.range_y, scene.discs
+    volume, pairs = (a * b) ** n * box_of(scene).typical, n * (n - 1) / 2
     level = math.sqrt(2) * pairs
-    touching = level * 2 * math.pi * gas.contact_distance / (a * b)
+    touching = level * 2 * math.pi * scene.contact_distance / (a * b)
     factors = (1.0, 1 / a, 1 / b, touching, level / a, level / b)
     return [volume * factor for factor in factors]
 
 
-def expected(gas):
-    """Return about what the ``Measures`` of a ``Gas`` are, from a few blocks of the stream 0.
+def expected(scene):
+    """Return about what the ``Measures`` of a ``Scene`` are, from a few blocks of the stream 0.
 
     The same everywhere. None where not a sample has room.
     """
     try:
-        return sample(gas, 16 * BLOCK, 0)[0]
+        return sample(scene, 16 * BLOCK, 0)[0]
     except InputError:
         return None

@@ -32,6 +32,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError, check_number
+from twodiscs.model.families.many import is_ordered
 from twodiscs.theory.many.rates import Measures
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 
@@ -99,32 +100,32 @@ def _pairs(height, sigma, y):
     return short * (height + separation) / (distance + least), distance, separation, least
 
 
-def _room(gas):
+def _room(scene):
     """Return A − (N − 1) d₀, from an exact difference of squares."""
-    a, n = gas.exact_range_x, gas.discs - 1
-    h, r = Fraction(gas.height), Fraction(gas.radius)
+    a, n = scene.reach("x"), scene.discs - 1
+    h, r = Fraction(scene.height), Fraction(scene.radius)
     square = h * (4 * r - h)
     return float(a * a - n * n * square) / (float(a) + n * math.sqrt(square))
 
 
-def channel_of(gas, force=None, reach=None):
-    """Return the ``Channel`` of a ``Gas``, for transforms at a real part ``force`` of p.
+def channel_of(scene, force=None, reach=None):
+    """Return the ``Channel`` of a ``Scene``, for transforms at a real part ``force`` of p.
 
     Its nodes follow exp(−p (d − d₀)) up to |p| = ``reach``, where that is not negligible.
     """
-    if not gas.is_ordered:
+    if not is_ordered(scene):
         raise InputError(
             "the transfer operator is for an ordered channel, height ≤ (2 + √3) radius, but the "
-            f"height is {gas.height / gas.radius!r} radii"
+            f"height is {scene.height / scene.radius!r} radii"
         )
-    room = _room(gas)
+    room = _room(scene)
     # At the saddle p is N/room to (2N + 1)/room.
-    force = force or gas.discs / room
-    nodes = _nodes(*_panels(gas.range_y, gas.contact_distance, force, reach or 2 * force))
+    force = force or scene.discs / room
+    nodes = _nodes(*_panels(scene.range_y, scene.contact_distance, force, reach or 2 * force))
     y, weights = nodes
-    apart, distance, separation, least = _pairs(gas.range_y, gas.contact_distance, y)
+    apart, distance, separation, least = _pairs(scene.range_y, scene.contact_distance, y)
     return Channel(
-        gas.discs, gas.contact_distance, gas.range_y, least, room, weights, apart, distance,
+        scene.discs, scene.contact_distance, scene.range_y, least, room, weights, apart, distance,
         separation,
     )  # fmt: skip
 
@@ -252,8 +253,8 @@ def _levels(channel, kinds, vectors, logs):
     return total
 
 
-def measures(gas, hops=True, tail=TAIL):
-    """Return the ``Measures`` of a ``Gas`` in an ordered channel.
+def measures(scene, hops=True, tail=TAIL):
+    """Return the ``Measures`` of a ``Scene`` in an ordered channel.
 
     Hops in x are impossible. Hops in y, of any pair, take the time of N matrix products for each
     term; with ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer
@@ -262,17 +263,17 @@ def measures(gas, hops=True, tail=TAIL):
     they have methods of their own. Raises ``InputError`` where the channel is not ordered or the
     terms are too many.
     """
-    channel = channel_of(gas)
+    channel = channel_of(scene)
     p, phi = saddle(channel)
     step = _step(channel, p, phi)
     terms, first, reach, check, last = [], None, 2 * p, FIRST_TERMS, None
-    channel = channel_of(gas, p, reach)
+    channel = channel_of(scene, p, reach)
     while True:
         z = complex(p, len(terms) * step)
         if abs(z) > reach:
             # Nodes that follow the phase p (d − d₀), as far as the next doubling.
             reach = 2 * abs(z)
-            channel = channel_of(gas, p, reach)
+            channel = channel_of(scene, p, reach)
         scale, values = _inverses(channel, z, hops)
         first = scale if first is None else first
         terms.append((values * np.exp((z - p) * channel.room + scale - first)).real)
@@ -284,11 +285,12 @@ def measures(gas, hops=True, tail=TAIL):
             break
         if len(terms) >= TERMS:
             raise InputError(
-                f"the inverse Laplace transform for {gas.discs} discs needs more than {TERMS} terms"
+                f"the inverse Laplace transform for {scene.discs} discs needs more than {TERMS}"
+                " terms"
             )
         last, check = sums, math.ceil(1.25 * check)
     sums = sums * step / math.pi
-    log_volume = math.lgamma(gas.discs + 1) + math.log(sums[0]) + first + p * channel.room
+    log_volume = math.lgamma(scene.discs + 1) + math.log(sums[0]) + first + p * channel.room
     ratios = sums[1:] / sums[0]
     return Measures(
         log_volume, *map(float, ratios[:3]), hops_x=0.0, hops_y=float(ratios[3]) if hops else None

@@ -9,31 +9,32 @@ import math
 from functools import lru_cache
 
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
+from twodiscs.model.families.many import is_ordered, multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
+from twodiscs.theory.flux import constant
 from twodiscs.theory.many import channel, three
 from twodiscs.theory.many.rates import Measures, rates
-from twodiscs.theory.weighted import constant
 
 
-def method(gas):
-    """Return which theory knows a ``Gas``: "plain", "three", "channel", or None."""
-    if gas.periodic:
+def method(scene):
+    """Return which theory knows a ``Scene``: "plain", "three", "channel", or None."""
+    if scene.periodic:
         return None
-    if gas.discs < 4:
-        return "plain" if gas.discs == 2 else "three"
-    return "channel" if gas.is_ordered or gas.turned().is_ordered else None
+    if scene.discs < 4:
+        return "plain" if scene.discs == 2 else "three"
+    return "channel" if is_ordered(scene) or is_ordered(scene.turned()) else None
 
 
 @lru_cache(maxsize=1024)
-def measures(gas, hops=True):
-    """Return the ``Measures`` of a ``Gas``, None where no exact value is known here.
+def measures(scene, hops=True):
+    """Return the ``Measures`` of a ``Scene``, None where no exact value is known here.
 
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
-    known = method(gas)
+    known = method(scene)
     if known == "plain":
-        volume, areas = plain.exact(Scene(gas.width, gas.height, gas.radius))
+        volume, areas = plain.exact(Scene(scene.width, scene.height, scene.radius))
         root = math.sqrt(2)
         return Measures(
             math.log(volume),
@@ -44,11 +45,11 @@ def measures(gas, hops=True):
             areas["vertical_hop"] / root / volume,
         )
     if known == "three":
-        return three.measures(gas)
+        return three.measures(scene)
     if known == "channel":
-        if gas.is_ordered:
-            return channel.measures(gas, hops)
-        return channel.measures(gas.turned(), hops).turned()
+        if is_ordered(scene):
+            return channel.measures(scene, hops)
+        return channel.measures(scene.turned(), hops).turned()
     return None
 
 
@@ -60,24 +61,23 @@ def volume_and_areas(scene):
     one disc at one wall. An area is 0.0 where the event is impossible or has no place; where no
     exact value is known it is None, and so is the volume.
     """
-    gas = scene.gas
-    known = measures(gas)
+    known = measures(scene)
     areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
     if known is None:
         return None, areas
     volume = math.exp(known.log_volume)
-    over_volume = surfaces(gas, known)
+    over_volume = surfaces(scene, known)
     areas |= {e: volume * part for e, part in over_volume.items() if scene.is_possible(e)}
     return volume, areas
 
 
-def surfaces(gas, known):
-    """Return {event: area over volume} of a ``Gas``, given its ``Measures``, as ``theory.exact``.
+def surfaces(scene, known):
+    """Return {event: area over volume} of a ``Scene``, given its ``Measures``, as ``theory.exact``.
 
     That is in the metric in which a state is a point of 2N coordinates. All walls are 2N of each
     axis with walls.
     """
-    root, discs = math.sqrt(2), gas.discs
+    root, discs = math.sqrt(2), scene.discs
     over = {
         "hop": lambda event: root * (known.hops_y if event.axis == "y" else known.hops_x),
         "collision": lambda event: root * known.per_contact,
@@ -94,27 +94,26 @@ def event_rates(scene):
     Of a collision or a hop of any pair, of one disc at one wall, or of any of them at any. They do
     not need the volume, which may be too small for a double where its logarithm is none.
     """
-    gas = scene.gas
-    known = measures(gas)
+    known = measures(scene)
     if known is None:
         return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    constant_of = constant(gas.velocity_components)
+    constant_of = constant(scene.velocity_components)
     return {
         event: DECLARED[event].sides / 2 * constant_of * part if scene.is_possible(event) else 0.0
-        for event, part in surfaces(gas, known).items()
+        for event, part in surfaces(scene, known).items()
     }
 
 
-def mean_times(gas):
-    """Return {class of events: mean time between two events that share its rate}.
+def mean_times(scene):
+    """Return {event: mean time}.
 
     For walls that is one disc at one wall, averaged over all initial conditions; for collisions and
     hops any pair. None where the event is impossible; an empty dict where no exact value is known.
     """
-    known = measures(gas)
+    known = measures(scene)
     if known is None:
         return {}
     return {
-        event: gas.multiplicity(event) / rate if rate else None
-        for event, rate in rates(gas, known).items()
+        event: multiplicity(scene, DECLARED[event]) / rate if rate else None
+        for event, rate in rates(scene, known).items()
     }

@@ -1,7 +1,7 @@
 """Rates of N discs from what is known of configuration space, and what holds for every N.
 
 With D components of velocity (2N, less a momentum that is conserved) uniform on a sphere at total
-energy 1/2, and c_D of ``weighted.constant``, all events of a class together happen at the rates
+energy 1/2, and c_D of ``flux.constant``, all events of a class together happen at the rates
 
     collisions     −(c_D/√2) ∂lnV/∂σ
     walls of x     c_D ∂lnV/∂A                              walls of y likewise
@@ -22,7 +22,7 @@ from typing import NamedTuple
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
-from twodiscs.theory.weighted import constant
+from twodiscs.theory.flux import constant
 
 
 class Measures(NamedTuple):
@@ -47,13 +47,13 @@ class Measures(NamedTuple):
         )  # fmt: skip
 
 
-def rates(gas, measures):
-    """Return {class of events: rate}, of all events of the class, given the ``Measures``.
+def rates(scene, measures):
+    """Return {event: rate × multiplicity} of a ``Scene``, given its ``Measures``.
 
-    For a ``Gas``. Hops that are None there have no entry. Those along a ring, which are no events,
-    have one: how often two discs pass each other.
+    Hops that are None there have no entry. Those along a ring, which are no events, have one: how
+    often two discs pass each other.
     """
-    c = constant(gas.velocity_components)
+    c = constant(scene.velocity_components)
     rates = {
         "vertical_hop": measures.hops_y and math.sqrt(2) * c * measures.hops_y,
         "horizontal_hop": measures.hops_x and math.sqrt(2) * c * measures.hops_x,
@@ -64,71 +64,71 @@ def rates(gas, measures):
     return {event: rate for event, rate in rates.items() if rate is not None}
 
 
-def virial_weights(gas):
-    """Return {class of events: weight} with which the rates of a ``Gas`` add up to 1.
+def virial_weights(scene):
+    """Return {class of events: weight} with which the rates of a ``Scene`` add up to 1.
 
     Between walls only: on a ring the force across a line is no rate of events. Raises
     ``InputError`` there.
     """
-    if gas.periodic:
+    if scene.periodic:
         raise InputError("a ring has no walls of x, whose rate the virial theorem needs")
-    c = gas.velocity_components * constant(gas.velocity_components)
+    c = scene.velocity_components * constant(scene.velocity_components)
     return {
-        "disc_collision": -math.sqrt(2) * gas.contact_distance / c,
-        "right_wall": gas.range_x / c,
-        "top_wall": gas.range_y / c,
+        "disc_collision": -math.sqrt(2) * scene.contact_distance / c,
+        "right_wall": scene.range_x / c,
+        "top_wall": scene.range_y / c,
     }
 
 
-def virial_sum(gas, rates):
-    """Return what the virial theorem says is 1, from {class of events: rate} of a ``Gas``."""
-    return math.fsum(weight * rates[event] for event, weight in virial_weights(gas).items())
+def virial_sum(scene, rates):
+    """Return what the virial theorem says is 1, from {class of events: rate} of a ``Scene``."""
+    return math.fsum(weight * rates[event] for event, weight in virial_weights(scene).items())
 
 
 # Small discs --------------------------------------------------------------------------------------
 
 
-def overlap_of_two(gas):
+def overlap_of_two(scene):
     """Return q, the probability that two of the centres, drawn uniformly, overlap."""
-    if gas.periodic:
+    if scene.periodic:
         # The separation along x is uniform, that along y has the density 2 (B − v)/B².
-        b, sigma = gas.range_y, gas.contact_distance
+        b, sigma = scene.range_y, scene.contact_distance
         reach = min(b, sigma)
         phi = math.asin(reach / sigma)
         whole = b * sigma * (phi + math.sin(phi) * math.cos(phi)) / 2 * sigma
         moment = sigma**3 * (1 - math.cos(phi) ** 3) / 3
-        return 4 * (whole - moment) / (b * b * gas.width)
-    two = Scene(gas.width, gas.height, gas.radius)
-    return 1 - plain.exact(two)[0] / (gas.range_x * gas.range_y) ** 2
+        return 4 * (whole - moment) / (b * b * scene.width)
+    two = Scene(scene.width, scene.height, scene.radius)
+    return 1 - plain.exact(two)[0] / (scene.range_x * scene.range_y) ** 2
 
 
-def bonferroni_bounds(gas):
+def bonferroni_bounds(scene):
     """Return (lower, upper) bounds of V/(AB)^N, the probability of no overlap at all.
 
     With q for a pair they are 1 − n q and 1 − n q + S₂, n = N(N − 1)/2 (Bonferroni 1936). S₂ sums
     the probabilities that two given pairs overlap: q² where they have no disc in common, and else
     at most q times the largest part of the box that a disc closes to another one, πσ²/(AB).
     """
-    n, q = gas.discs * (gas.discs - 1) / 2, overlap_of_two(gas)
-    closed = min(1.0, math.pi * gas.contact_distance**2 / (gas.range_x * gas.range_y))
-    sharing = n * (gas.discs - 2)
+    n, q = scene.discs * (scene.discs - 1) / 2, overlap_of_two(scene)
+    closed = min(1.0, math.pi * scene.contact_distance**2 / (scene.range_x * scene.range_y))
+    sharing = n * (scene.discs - 2)
     apart = n * (n - 1) / 2 - sharing
     first = 1 - n * q
     return max(0.0, first), min(1.0, first + sharing * q * closed + apart * q * q)
 
 
-def small_disc_rates(gas):
+def small_disc_rates(scene):
     """Return {class of events: rate} to the first order in σ at fixed ranges A and B, but hops.
 
     From V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2: walls are those of
     an ideal gas with its second virial coefficient, and collisions have the first two orders.
     """
-    c, n = constant(gas.velocity_components), gas.discs * (gas.discs - 1) / 2
-    a, b, sigma = gas.range_x, gas.range_y, gas.contact_distance
+    c, n = constant(scene.velocity_components), scene.discs * (scene.discs - 1) / 2
+    a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
     closed = math.pi * sigma**2 / (a * b)
     return {
         "disc_collision": c / math.sqrt(2) * n * (2 * closed / sigma)
         * (1 - 2 * sigma * (a + b) / (math.pi * a * b)),
-        "right_wall": c * (gas.discs + n * closed) / a,
-        "top_wall": c * (gas.discs + n * closed) / b,
+        "right_wall": c * (scene.discs + n * closed) / a,
+        "top_wall": c * (scene.discs + n * closed) / b,
     }  # fmt: skip

@@ -137,17 +137,17 @@ def _gaps(a, sigma, t, c):
     return np.where(near_p, p, 0.0), q, weight, near_p, near_q
 
 
-def measures(gas):
-    """Return the ``Measures`` of a ``Gas`` of three discs between walls, with both hops.
+def measures(scene):
+    """Return the ``Measures`` of a ``Scene`` of three discs between walls, with both hops.
 
     Raises ``InputError`` for another number of discs and for a ring.
     """
-    if gas.discs != 3 or gas.periodic:
+    if scene.discs != 3 or scene.periodic:
         raise InputError("the quadrature for three discs is for three discs between walls")
     volume, per_width, per_height, per_contact, hops_x = integrals(
-        gas.range_x, gas.range_y, gas.contact_distance
+        scene.range_x, scene.range_y, scene.contact_distance
     )
-    hops_y = integrals(gas.range_y, gas.range_x, gas.contact_distance)[4]
+    hops_y = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
     return Measures(
         math.log(volume),
         *(part / volume for part in (per_width, per_height, per_contact, hops_x, hops_y)),

@@ -27,8 +27,9 @@ from tqdm import tqdm
 from twodiscs.comparison.estimates import LinearFit
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.dynamics import counting, strip
+from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics.two import strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import check_integer, check_length
 from twodiscs.model.events import EVENTS, HOPS

@@ -14,8 +14,8 @@ from functools import cache
 import numpy as np
 
 from twodiscs.dynamics import law as law_module
-from twodiscs.dynamics.counting import LOOKS
 from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, put_state, state_at
+from twodiscs.dynamics.two.lockstep import LOOKS
 from twodiscs.model.checks import check_choice, check_integer, check_length
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.jit import OPTIONS, numba

@@ -8,9 +8,11 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics import many
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.model.many import CLASSES, Gas
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.events import DECLARED, SHELLS
+from twodiscs.model.families.many import multiplicity
+from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
@@ -22,26 +24,26 @@ WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
 DISCS, RADII = (2, 3, 4, 8), (0.1, 0.2, 0.28)
 
 
-def dynamics_rates(gas, events, seed):
+def dynamics_rates(scene, events, seed):
     """Return ({class: rate}, {class: error}, error of the virial sum) of about so many events."""
-    duration = many.duration_of(gas)
-    each = many.simulated_events(many.run_blocks(gas, seed, 0, 1, duration)[0])
+    duration = many.replica_duration(scene)
+    each = many.simulated_events(many.run_blocks(scene, seed, 0, 1, duration)[0])
     blocks = max(2, math.ceil(events / each))
-    sums, products = many.run_blocks(gas, seed, 0, blocks, duration)
+    sums, products = many.run_blocks(scene, seed, 0, blocks, duration)
     replicas = blocks * REPLICAS
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
-    weights = np.array([virial_weights(gas).get(event, 0.0) for event in CLASSES])
-    rates = dict(zip(CLASSES, (sums / replicas / duration).tolist(), strict=True))
-    errors = dict(zip(CLASSES, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
+    rates = dict(zip(SHELLS, (sums / replicas / duration).tolist(), strict=True))
+    errors = dict(zip(SHELLS, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     return rates, errors, math.sqrt(weights @ covariance @ weights)
 
 
-def _time(gas, event, rate, error=0.0):
+def _time(scene, event, rate, error=0.0):
     """Return (mean time, its error) of events that share a rate; None where there are none."""
     if not rate:
         return None, None
-    time = gas.multiplicity(event) / rate / math.sqrt(gas.discs / 2)
+    time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 
@@ -51,26 +53,26 @@ def _deviate(value, error, other, spread=0.0):
 
 
 def rows(events, samples, seed, discs=DISCS, radii=RADII):
-    """Yield the rows of more_discs.csv, of so many ``events`` and ``samples`` for each gas."""
+    """Yield the rows of more_discs.csv, of so many ``events`` and ``samples`` for each scene."""
     for radius in radii:
         for number in discs:
-            gas = Gas(number, WIDTH_PER_DISC * number, HEIGHT, radius)
-            yield from _of_gas(gas, events, samples, seed)
+            scene = Scene(WIDTH_PER_DISC * number, HEIGHT, radius, discs=number)
+            yield from _of_scene(scene, events, samples, seed)
 
 
-def _of_gas(gas, events, samples, seed):
-    known = exact.measures(gas)
-    true = rates(gas, known) if known else {}
-    sampled, spread = (rates(gas, part) for part in measures.sample(gas, samples, seed))
-    counted, errors, virial_error = dynamics_rates(gas, events, seed)
+def _of_scene(scene, events, samples, seed):
+    known = exact.measures(scene)
+    true = rates(scene, known) if known else {}
+    sampled, spread = (rates(scene, part) for part in measures.sample(scene, samples, seed))
+    counted, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
-        "discs": gas.discs, "width": gas.width, "height": gas.height, "radius": gas.radius,
-        "theory": exact.method(gas) or "none", "states": initial.method(gas),
+        "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
+        "theory": exact.method(scene) or "none", "states": initial.method(scene),
     }  # fmt: skip
-    for event in CLASSES:
-        time, _ = _time(gas, event, true.get(event))
-        estimate, estimate_error = _time(gas, event, sampled[event], spread[event])
-        seen, error = _time(gas, event, counted[event], errors[event])
+    for event in SHELLS:
+        time, _ = _time(scene, event, true.get(event))
+        estimate, estimate_error = _time(scene, event, sampled[event], spread[event])
+        seen, error = _time(scene, event, counted[event], errors[event])
         reference, uncertain = (time, 0.0) if known else (estimate, estimate_error)
         z = (
             None
@@ -82,9 +84,9 @@ def _of_gas(gas, events, samples, seed):
             "monte_carlo_stderr": estimate_error, "dynamics": seen, "dynamics_stderr": error,
             "z": z,
         }  # fmt: skip
-    total = virial_sum(gas, counted)
+    total = virial_sum(scene, counted)
     yield start | {
-        "event": "virial", "exact": 1.0, "monte_carlo": virial_sum(gas, sampled),
+        "event": "virial", "exact": 1.0, "monte_carlo": virial_sum(scene, sampled),
         "monte_carlo_stderr": None, "dynamics": total, "dynamics_stderr": virial_error,
         "z": _deviate(total, virial_error, 1.0),
     }  # fmt: skip

@@ -45,7 +45,7 @@ class MoreDiscs(Table):
 
     @staticmethod
     def rows(events, samples, seed):
-        """Return the rows of so many ``events`` and ``samples`` for each gas."""
+        """Return the rows of so many ``events`` and ``samples`` for each scene."""
         from twodiscs_paper.studies.more_discs import measure
 
         return list(measure.rows(events, samples, seed))

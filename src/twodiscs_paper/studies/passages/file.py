@@ -11,7 +11,7 @@ import numpy as np
 
 from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import LANES
-from twodiscs.dynamics.many import N, advance, find_events, law_of, nearest
+from twodiscs.dynamics.many.lockstep import N, advance, find_events, law_of, nearest
 from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
@@ -63,8 +63,8 @@ def follow(states, lanes, times, law, squares, crossings):
         crossings[first : first + lanes] = level
 
 
-def diffusion(gas, time, replicas, seed):
-    """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Gas`` on a ring.
+def diffusion(scene, time, replicas, seed):
+    """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
 
     D is from what is displaced between ``time`` and twice that, ν from all hops until then, of
     ``replicas`` independent initial states (rounded up to whole lanes). Raises ``InputError`` for
@@ -72,21 +72,21 @@ def diffusion(gas, time, replicas, seed):
     """
     (time,) = check_ascending("time", [time])
     replicas = -(-check_integer("replicas", replicas, 2) // LANES) * LANES
-    states = initial.states(gas, replicas, seed)
+    states = initial.states(scene, replicas, seed)
     squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
-    follow(states, LANES, np.array([time, 2 * time]), law_of(gas), squares, crossings)
-    hops = mean_of(2 * crossings / (gas.discs * 2 * time))
-    per_disc = gas.width / gas.discs
+    follow(states, LANES, np.array([time, 2 * time]), law_of(scene), squares, crossings)
+    hops = mean_of(2 * crossings / (scene.discs * 2 * time))
+    per_disc = scene.width / scene.discs
     moved = mean_of((squares[:, 1] - squares[:, 0]) / (2 * time) / per_disc**2)
     ratio = moved.value / (hops.value / 2)
     error = ratio * math.hypot(moved.stderr / moved.value, hops.stderr / hops.value)
     return Estimate(ratio, error, replicas), hops
 
 
-def sampled_rate(gas, samples, seed):
+def sampled_rate(scene, samples, seed):
     """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo."""
     found, error = (
-        rates(gas, part)["horizontal_hop"] for part in measures.sample(gas, samples, seed)
+        rates(scene, part)["horizontal_hop"] for part in measures.sample(scene, samples, seed)
     )
-    share = 2 / gas.discs  # a hop is that of both
+    share = 2 / scene.discs  # a hop is that of both
     return Estimate(share * found, share * error, check_integer("samples", samples))

@@ -22,11 +22,11 @@ from twodiscs.comparison.measured.transmission import (
     seed_of,
 )
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.passages import REPLICAS, cluster_sizes, hop_sums
+from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.checks import check_integer
 from twodiscs.model.events import HOPS
-from twodiscs.model.many import Gas
+from twodiscs.model.scene import Scene
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages import exclusion, file
 
@@ -248,19 +248,19 @@ def in_file(name, box, discs, events, seed):
     """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
     for n in RING:
         scene = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
-        gas = Gas(discs, box.width * discs / 2, box.height, scene.radius, "x")
+        scene = Scene(box.width * discs / 2, box.height, scene.radius, discs=discs, periodic="x")
         row = {
-            "scene": name, "width": gas.width, "height": gas.height, "periodic": "x",
-            "event": "horizontal_hop", "discs": discs, "radius": gas.radius,
+            "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
+            "event": "horizontal_hop", "discs": discs, "radius": scene.radius,
             "distance": 2.0**-n, "method": "states",
         }  # fmt: skip
         streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
-        sampled = file.sampled_rate(gas, FILE_SAMPLES, streams[0])
+        sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
         # A power of two: a time of its own would be rounded by the last digits of the rate.
         time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
         price = 2 * time * exact.event_rate(scene) * (discs / 2) ** 0.5
         replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
-        moved, hops = file.diffusion(gas, time, replicas, streams[1])
+        moved, hops = file.diffusion(scene, time, replicas, streams[1])
         z = (hops.value - sampled.value) / math.hypot(hops.stderr, sampled.stderr)
         counted = {"estimate": hops.value, "stderr": hops.stderr, "z": z, "test": "normal"}
         reference = {"reference": sampled.value, "reference_stderr": sampled.stderr}

@@ -20,7 +20,7 @@ from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
-from twodiscs.dynamics.trajectory import advance
+from twodiscs.dynamics.two.path import advance
 from twodiscs.model.checks import LARGEST_INTEGER, check_integer
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal

@@ -21,7 +21,7 @@ import numpy as np
 from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
-from twodiscs.dynamics.trajectory import advance, time_to_next
+from twodiscs.dynamics.two.path import advance, time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_ascending, check_choice, check_integer
 from twodiscs.model.events import HOPS

@@ -1,6 +1,6 @@
 """More than two discs: how theory, Monte Carlo and dynamics agree."""
 
-from twodiscs.model.many import CLASSES
+from twodiscs.model.events import SHELLS
 from twodiscs_paper.pipeline.documents.numbers.agreement import scores
 from twodiscs_paper.pipeline.documents.numbers.rounding import (
     Number,
@@ -52,7 +52,7 @@ def more_discs_table(rows):
             "radius": significant(radius, 3),
             "discs": whole(discs),
             "theory": Number(None, some["theory"].replace("none", "--")),
-            **{event: _cell(times.get(event)) for event in CLASSES},
+            **{event: _cell(times.get(event)) for event in SHELLS},
             "largest": at_most(scores(row for row in times.values() if row["z"] is not None)),
         }
     return cells

@@ -43,7 +43,7 @@ from twodiscs.dynamics.law import (
     crossing_time,
     law_of,
 )
-from twodiscs.dynamics.strip import law_reverses
+from twodiscs.dynamics.two.strip import law_reverses
 from twodiscs.model.checks import (
     InputError,
     check_ascending,
@@ -52,7 +52,8 @@ from twodiscs.model.checks import (
     check_length,
 )
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.scene import Scene, check_scene, check_two_discs
+from twodiscs.model.family import of_family
+from twodiscs.model.scene import check_scene, hopping_along
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import COMPONENTS, fill_start, require_room
@@ -173,27 +174,14 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
 # From a scene to what the kernel needs ----------------------------------------------------------
 
 
-def lying(scene, hop):
-    """Return a ``Scene`` and its hop that are the same but for names, along x wherever that can be.
-
-    Without a field the axes may be exchanged: so one compiled kernel serves both hops.
-    """
-    check_choice("hop", hop, HOPS)
-    if hop == "horizontal_hop" or check_scene(scene).field:
-        return scene, hop
-    effects = dict(scene.effects)
-    if scene.periodic:
-        effects["periodic"] = scene.periodic.translate(str.maketrans("xy", "yx"))
-    return Scene(scene.height, scene.width, scene.radius, **effects), "horizontal_hop"
-
-
 def require_passing(scene, hop):
     """Raise ``InputError`` unless the discs of a ``Scene`` can be followed past each other.
 
     The axis of the ``hop`` may be periodic, where hops are no events of the scene.
     """
     check_choice("hop", hop, HOPS)
-    require_room(check_two_discs(scene, "passages"))
+    of_family(check_scene(scene), "dynamics", "rare_run", "passages")
+    require_room(scene)
     periodic = AXIS[hop] in scene.periodic
     if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):
         raise InputError(
@@ -223,7 +211,7 @@ def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):
 
 def _followed(scene, hop, blocks, seed, first, times, gap, sums, sizes, on_surface=True):
     """Run ``follow_hops``, some blocks at a time; return the number of events."""
-    scene, hop = lying(scene, hop)
+    scene, hop = hopping_along(scene, hop, "x")
     horizontal, events = None if AXIS[hop] == "y" else True, 0
     for start in range(0, blocks, CHUNK):
         number = min(CHUNK, blocks - start)

@@ -29,8 +29,8 @@ from twodiscs.dynamics.ensemble import (
     state_at,
 )
 from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
-from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, HOPS
+from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
 from twodiscs.sampling.blocks.strata import PARTS, fractions_of_speeds, mean_of
@@ -149,7 +149,7 @@ def acceptance(scene, hop, strip):
     With effects it may be anything: in a field there is hardly any energy left where the discs can
     pass, or hardly any of the neck is free.
     """
-    if not scene.has_effects:
+    if scene.is_plain:
         return 0.25
     measure = proposed_measure(prism_of(scene, hop, strip.within))
     return strip.fraction * exact.volume(scene) / measure
@@ -159,11 +159,8 @@ def rare_hops(scene):
     """Return the hops that are counted from strips: those that are rare because of a neck.
 
     But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
-    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain. Of
-    more than two discs none is: strips are those of a pair alone.
+    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain.
     """
-    if scene.discs > 2:
-        return ()
     return tuple(
         hop
         for hop in HOPS
@@ -256,16 +253,19 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
 
     Returns (sums, events) as ``count_hops`` does. They are integers: two shards add up.
     """
-    horizontal = True if hop == "horizontal_hop" else None
     speeds = len(fractions_of_speeds(scene.velocity_components))
     sizes = strip.within / PARTS, scene.fastest / PARTS, speeds
-    if not scene.has_effects and not horizontal:
-        # That is a horizontal hop of the box on its side.
-        scene, hop, horizontal = Box.of(scene).turned().scene(scene.radius), "horizontal_hop", True
+    scene, hop = of_family(scene, "sampling", "near_hop")(scene, hop)
+    horizontal = True if hop == "horizontal_hop" else None
     return count_hops(
         np.uint64(seed), first, stop, replicas, lanes, strip.time, strip.fastest, sizes,
         law_of(scene), *origins(scene, hop, strip.within), horizontal,
     )  # fmt: skip
+
+
+def planned(scene, blocks, affordable):
+    """Return the blocks that are planned: as many as are needed; strips share the budget."""
+    return blocks
 
 
 def run_of(scene, hop, target, budget, seed):

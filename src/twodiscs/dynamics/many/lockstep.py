@@ -26,8 +26,7 @@ from twodiscs.dynamics.law import (
     crosses,
     wall_quotient,
 )
-from twodiscs.model.events import by_kind
-from twodiscs.model.many import CLASSES
+from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.initial import draw_states, initial_of, method
@@ -42,12 +41,12 @@ REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 LOOK_AGAIN = -1.0
 
 #: Classes of events, in the order of all counts.
-N = len(CLASSES)
+N = len(SHELLS)
 VERTICAL, HORIZONTAL, COLLISIONS, BESIDE, ABOVE = range(N)
 
 #: The classes whose counts are those of an event, in the order of ``EVENTS``.
 PARTS = by_kind(
-    "dynamics/many.py",
+    "dynamics/many/lockstep.py",
     {
         "hop": lambda event: ("vertical_hop" if event.axis == "y" else "horizontal_hop",),
         "collision": lambda event: ("disc_collision",),
@@ -69,13 +68,13 @@ class ManyLaw(NamedTuple):
     ring: tuple | None = None
 
 
-def law_of(gas):
-    """Return the ``ManyLaw`` of a ``Gas``."""
-    half_y, sigma = gas.range_y / 2, gas.contact_distance
-    if gas.periodic:
-        half = gas.width / 2
-        return ManyLaw(None, half_y, sigma, (gas.width, half, half / math.sqrt(2)))
-    return ManyLaw(gas.range_x / 2, half_y, sigma)
+def law_of(scene):
+    """Return the ``ManyLaw`` of a ``Scene``."""
+    half_y, sigma = scene.range_y / 2, scene.contact_distance
+    if scene.periodic:
+        half = scene.width / 2
+        return ManyLaw(None, half_y, sigma, (scene.width, half, half / math.sqrt(2)))
+    return ManyLaw(scene.range_x / 2, half_y, sigma)
 
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
@@ -220,7 +219,7 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
     """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of ``CLASSES``. ``hops_x`` is None where hops in x are impossible.
+    the order of ``SHELLS``. ``hops_x`` is None where hops in x are impossible.
     """
     x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
@@ -274,7 +273,7 @@ def count_laps(laps, x, u, times, ring):
 
 
 @compiled
-def advance_all(states, laps, time, law, lanes=LANES):
+def advance_states(states, laps, time, law, lanes=LANES):
     """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas).
@@ -376,35 +375,35 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
     return totals
 
 
-def run_blocks(gas, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
-    """Count all classes of events of a ``Gas`` in the blocks ``first`` … ``stop`` − 1.
+def run_blocks(scene, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
+    """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
 
     A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
     for ``duration``. Returns (sums, products) as ``count_blocks`` does: integers, which depend on
     neither lanes nor shards.
     """
-    hops_x = None if gas.periodic or gas.height <= 4 * gas.radius else True
+    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     return count_blocks(
-        np.uint64(seed), first, stop, replicas, lanes, duration, gas.discs, law_of(gas),
-        initial_of(gas), hops_x,
+        np.uint64(seed), first, stop, replicas, lanes, duration, scene.discs, law_of(scene),
+        initial_of(scene), hops_x,
     )  # fmt: skip
 
 
-def run_intervals(gas, event, seed, first, stop, replicas, window, bins, sums, going):
-    """Record the intervals between hops of a ``Gas`` as ``record_intervals`` does."""
+def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums, going):
+    """Record the intervals between hops of a ``Scene`` as ``record_intervals`` does."""
     hops_x = True if event == "horizontal_hop" else None
     return record_intervals(
-        np.uint64(seed), first, stop, replicas, window, law_of(gas), initial_of(gas), hops_x, bins,
-        sums, going,
+        np.uint64(seed), first, stop, replicas, window, law_of(scene), initial_of(scene), hops_x,
+        bins, sums, going,
     )  # fmt: skip
 
 
 def of_events(sums, products):
-    """Return (sums, products) of ``EVENTS`` from those of ``CLASSES``.
+    """Return (sums, products) of ``EVENTS`` from those of ``SHELLS``.
 
     Hits of all walls are those of the two classes of them, in every replica.
     """
-    matrix = np.array([[name in parts for name in CLASSES] for parts in PARTS.values()], np.int64)
+    matrix = np.array([[name in parts for name in SHELLS] for parts in PARTS.values()], np.int64)
     whole = products + np.triu(products, 1).T
     return matrix @ sums, np.triu(matrix @ whole @ matrix.T)
 
@@ -414,13 +413,12 @@ def expected_rates(scene):
     """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
 
     Exact where that is known, and else from some insertions (``measures.expected``), within a few
-    per cent. Where these have no room, of wall hits and collisions a guess (``duration_of``).
+    per cent. Where these have no room, of wall hits and collisions a guess (``replica_duration``).
     """
-    gas = scene.gas
-    known = exact.measures(gas) or measures.expected(gas)
+    known = exact.measures(scene) or measures.expected(scene)
     if known is None:
-        return {"disc_collision": _guessed_rate(gas) / 2, "any_wall": _guessed_rate(gas) / 2}
-    by_class = rates(gas, known)
+        return {"disc_collision": _guessed_rate(scene) / 2, "any_wall": _guessed_rate(scene) / 2}
+    by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
     return {event: rate for event, rate in summed.items() if rate and event in scene.events}
 
@@ -436,17 +434,17 @@ def simulated_events(sums):
     return int(sums[COLLISIONS] + sums[BESIDE] + sums[ABOVE])
 
 
-def duration_of(gas, events=None):
+def replica_duration(scene, events=None):
     """Return a power of two in which about so many ``events`` happen, within a factor of two.
 
     Those are the wall hits of an ideal gas, and what discs do in the room that is left to them
     below the largest radius. Unless told, ``events`` are 256, or ``EVENTS_OF_CHAIN`` where an
     initial state takes a chain of moves.
     """
-    events = events or (EVENTS_OF_CHAIN if method(gas) == "chain" else REPLICA_EVENTS)
-    return nearest_power_of_two(events / _guessed_rate(gas))
+    events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
+    return nearest_power_of_two(events / _guessed_rate(scene))
 
 
-def _guessed_rate(gas):
-    room = gas.largest_radius - gas.radius
-    return math.sqrt(gas.discs) * (0.5 / gas.range_x + 0.5 / gas.range_y + 0.35 / room)
+def _guessed_rate(scene):
+    room = scene.largest_radius - scene.radius
+    return math.sqrt(scene.discs) * (0.5 / scene.range_x + 0.5 / scene.range_y + 0.35 / room)

@@ -1,0 +1,1 @@
+"""The molecular dynamics of each family of scenes; ``counting`` and its neighbours fetch it."""

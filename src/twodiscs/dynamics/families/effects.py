@@ -1,0 +1,36 @@
+"""The molecular dynamics of two discs in scenes with effects."""
+
+from twodiscs.dynamics.two.lockstep import (
+    cost_ratio,
+    expected_rate,
+    replica_duration,
+    run_blocks,
+    work_per_event,
+)
+from twodiscs.dynamics.two.path import (
+    advance_all,
+    events_of,
+    new_wraps,
+    state_of,
+    unwrap,
+    usual_duration,
+)
+from twodiscs.dynamics.two.path import event_rate as trajectory_rate
+from twodiscs.dynamics.two.returns import (
+    INTERVAL_SUMS,
+    events_per_interval,
+    interval_cost,
+    mean_interval,
+    record_intervals,
+)
+from twodiscs.dynamics.two.strip import planned, rare_hops
+from twodiscs.dynamics.two.strip import run_of as rare_run
+from twodiscs.dynamics.two.strip import summary as rare_summary
+from twodiscs.theory.exact import event_rate as expected_event_rate
+
+__all__ = [
+    "INTERVAL_SUMS", "advance_all", "cost_ratio", "events_of", "events_per_interval",
+    "expected_event_rate", "expected_rate", "interval_cost", "mean_interval", "new_wraps",
+    "planned", "rare_hops", "rare_run", "rare_summary", "record_intervals", "replica_duration",
+    "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
+]  # fmt: skip

@@ -1,0 +1,1 @@
+"""The kernels of more than two discs, and what they need."""

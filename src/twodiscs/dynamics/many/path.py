@@ -1,0 +1,124 @@
+"""One trajectory of more than two discs, event by event."""
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import nearest_power_of_two
+from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
+from twodiscs.dynamics.many.lockstep import (
+    N,
+    advance,
+    advance_states,
+    expected_event_rate,
+    find_events,
+    law_of,
+)
+from twodiscs.dynamics.trajectory import ROUNDING, no_state
+from twodiscs.model.checks import InputError
+from twodiscs.model.scene import ENERGY
+from twodiscs.sampling.starts import components
+
+#: Events that a trajectory lasts: its rows are long, and some pair often hops.
+LONGEST_TRAJECTORY = 1500
+
+event_rate = expected_event_rate
+
+
+def advance_all(scene, states, wraps, time):
+    """Advance the columns of ``states``, see ``trajectory.advance_all``."""
+    advance_states(states, wraps, time, law_of(scene))
+
+
+def new_wraps(scene, number):
+    """Return the counts of rounds for ``number`` states: none."""
+    return np.zeros((scene.discs, number))
+
+
+def unwrap(scene, columns, wraps):
+    """Add the rounds that discs have made on a ring, see ``trajectory.unwrap``."""
+    for disc, laps in enumerate(wraps, 1):
+        columns[f"x{disc}"] += scene.width * laps
+
+
+def usual_duration(scene):
+    """Return the time of some ``LONGEST_TRAJECTORY`` events, a power of two."""
+    return nearest_power_of_two(LONGEST_TRAJECTORY / event_rate(scene))
+
+
+def events_of(scene, state, duration):
+    """Yield (time, event, first, second, state) of more than two discs.
+
+    ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.
+    """
+    n, law, time = scene.discs, law_of(scene), 0.0
+    x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
+    ring = law.ring[0] if law.ring else None
+    # By so much places are beyond the cell that the kernel keeps to.
+    beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
+    x -= beyond
+    old_x, old_y, counts = np.zeros_like(x), np.zeros_like(y), np.zeros((N, 1))
+    remaining, times, codes, speeds = (np.full(1, float(duration)) for _ in range(4))
+    pairs = [(j, i) for i in range(n) for j in range(i)]
+    along = ((n, "vertical_hop"), (0, "horizontal_hop"))
+    along = [(start, hop) for start, hop in along if hop in scene.events]
+    yield time, "start", None, None, np.ravel([x + beyond, y, u, v])
+    while True:
+        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v])
+        find_events(x, y, u, v, remaining, times, codes, speeds, law)
+        flight, code = float(times[0]), int(codes[0])
+        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
+        if ring:
+            beyond = ring * np.round(((before + flight * speed)[:n, None] - x) / ring)
+        after, hops = np.ravel([x + beyond, y]), []
+        for start, name in along:
+            for i, j in pairs:
+                a, b = start + i, start + j
+                apart = before[a] - before[b]
+                if crosses(apart, after[a] - after[b]):
+                    hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
+        for until, name, i, j in sorted(hops):
+            then = before + until * speed
+            yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
+        time, now = time + flight, np.ravel([x + beyond, y, u, v])
+        if code == int(END_OF_TIME):
+            yield float(duration), "end", None, None, now
+            return
+        if code > 2 * n:
+            i, j = pairs[code - 2 * n - 1]
+            yield time, "disc_collision", i + 1, j + 1, now
+        elif code > 0:
+            disc = (code - 1) // 2 + 1
+            yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
+
+
+def state_of(scene, start):
+    """Return ``start`` as an array of 4N numbers, checked as in ``state_of``."""
+    names, n = components(scene), scene.discs
+    try:
+        state = np.array([float(value) for value in start])
+    except (TypeError, ValueError, OverflowError):
+        state = np.array([])
+    if state.size != len(names) or not np.isfinite(state).all():
+        raise no_state(names, start)
+    (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
+    for axis in scene.walled:
+        centres = x if axis == "x" else y
+        reach = scene.side(axis) / 2 - scene.radius
+        if (disc := int(np.argmax(np.abs(centres)))) >= 0 and abs(centres[disc]) > reach + (
+            ROUNDING * scene.side(axis)
+        ):
+            raise InputError(
+                f"start must have disc {disc + 1} inside the box, with {axis}{disc + 1} between "
+                f"{-reach!r} and {reach!r}, not {float(centres[disc])!r}"
+            )
+    dx = x[:, None] - x
+    if scene.periodic:
+        dx -= scene.width * np.round(dx / scene.width)
+    apart = np.hypot(dx, y[:, None] - y)[np.triu_indices(n, 1)].min()
+    if apart < scene.contact_distance * (1 - ROUNDING):
+        raise InputError(
+            f"start must have the discs apart, with {scene.contact_distance!r} or more between "
+            f"their centres, not {float(apart)!r}"
+        )
+    if abs((energy := float(velocities @ velocities) / 2) - ENERGY) > ROUNDING:
+        raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
+    return state

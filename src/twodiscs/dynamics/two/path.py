@@ -1,0 +1,246 @@
+"""One trajectory of two discs, event by event."""
+
+import math
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import across, nearest_power_of_two, put_state, state_at
+from twodiscs.dynamics.law import (
+    DISC,
+    END_OF_TIME,
+    WALL_X1,
+    WALL_X2,
+    WALL_Y1,
+    WALL_Y2,
+    WALL_Z1,
+    WALL_Z2,
+    WRAP_X,
+    WRAP_Y,
+    WRAP_Z,
+    after_event,
+    crosses,
+    crossing_time,
+    law_of,
+    next_event,
+)
+from twodiscs.dynamics.trajectory import ROUNDING, no_state
+from twodiscs.model.checks import InputError
+from twodiscs.model.events import HOPS
+from twodiscs.model.scene import ENERGY
+from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.starts import components
+from twodiscs.theory import exact
+
+#: Wall and disc events that a trajectory lasts at most, on average.
+LONGEST_TRAJECTORY = 6000
+
+#: What ends a flight, by code: its name, and the discs that it is of.
+_NAMES = {
+    END_OF_TIME: ("end", None, None),
+    WALL_X1: ("wall_x1", 1, None),
+    WALL_Y1: ("wall_y1", 1, None),
+    WALL_X2: ("wall_x2", 2, None),
+    WALL_Y2: ("wall_y2", 2, None),
+    DISC: ("disc_collision", 1, 2),
+    WALL_Z1: ("wall_z1", 1, None),
+    WALL_Z2: ("wall_z2", 2, None),
+}
+
+#: The axis of the periodic separation that jumps at the end of a flight, by code.
+_JUMPS = {WRAP_X: "x", WRAP_Y: "y", WRAP_Z: "z"}
+
+
+@compiled
+def advance(state, law):
+    """Return the state after the next event, and the time and code of that event."""
+    time, code = next_event(state, math.inf, law)
+    return after_event(state, time, code, law), time, code
+
+
+@compiled
+def time_to_next(state, law, hop, longest):
+    """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
+
+    Where it is more than ``longest``, some such time is returned.
+    """
+    elapsed = 0.0
+    while elapsed <= longest:
+        before, rising = across(state, None)
+        state, time, code = advance(state, law)
+        if hop and crosses(before, across(state, None)[0]):
+            return elapsed + crossing_time(before, rising)
+        elapsed += time
+        if code == DISC and not hop:
+            break
+    return elapsed
+
+
+@optional(lambda state, present: 0.0)
+def deep_separation(state, present):
+    """Return z1 − z2, or 0 in the plane."""
+    return state[8] - state[9]
+
+
+@compiled
+def advance_states(states, wraps, time, law):
+    """Advance the columns of ``states`` (``COMPONENTS``, n) by a ``time`` > 0.
+
+    Jumps of a periodic separation along x, y, z are added to ``wraps`` (3, n), with the sign of the
+    separation before.
+    """
+    for i in range(states.shape[1]):
+        state, left, code = state_at(states, i, law), time, 1.0
+        while code != END_OF_TIME:
+            flight, code = next_event(state, left, law)
+            state = after_event(state, flight, code, law)
+            left -= flight
+            if code == WRAP_X:
+                wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
+            elif code == WRAP_Y:
+                wraps[1, i] -= math.copysign(1.0, state[1] - state[3])
+            elif code == WRAP_Z:
+                wraps[2, i] -= math.copysign(1.0, deep_separation(state, law.depth))
+        put_state(states, i, state, law)
+
+
+def advance_all(scene, states, wraps, time):
+    """Advance the columns of ``states``, see ``trajectory.advance_all``."""
+    advance_states(states, wraps, time, law_of(scene))
+
+
+def new_wraps(scene, number):
+    """Return the counts of jumps for ``number`` states: none."""
+    return np.zeros((3, number))
+
+
+def unwrap(scene, columns, wraps):
+    """Undo the jumps of a periodic separation, see ``trajectory.unwrap``."""
+    law = law_of(scene)
+    for k, axis in enumerate("xyz"):
+        if axis in scene.periodic:
+            _, first, second = getattr(law, f"wrap_{axis}")
+            columns[f"{axis}1"] += first * wraps[k]
+            columns[f"{axis}2"] -= second * wraps[k]
+
+
+class Jumps:
+    """The jumps of a periodic separation along one trajectory, which keep it within a period."""
+
+    def __init__(self, scene, law):
+        self.scene, self.wraps = scene, np.zeros((3, 1))
+
+    def see(self, code, state):
+        """Count the jump that ends a flight with this ``code`` in ``state``, if it is one."""
+        if axis := _JUMPS.get(code):
+            first, second = {"x": (0, 2), "y": (1, 3), "z": (8, 9)}[axis]
+            apart = state[first] - state[second]
+            self.wraps["xyz".index(axis)] -= math.copysign(1.0, apart)
+
+    def undone(self, state):
+        """Return ``state`` with centres that go on beyond the cell."""
+        if not self.scene.periodic:
+            return state
+        names = components(self.scene)
+        columns = dict(zip(names, state, strict=True))
+        unwrap(self.scene, columns, self.wraps[:, 0])
+        return tuple(columns.values())
+
+
+def events_of(scene, state, duration):
+    """Yield (time, event, first, second, state) of all that happens within ``duration``.
+
+    ``state`` of the ``Scene`` is as in ``law``. Hops are events here, reported where they occur in
+    a flight; walls are named by axis and disc; ``first`` and ``second`` are the discs that the
+    event is of, None where there is none. The first row is the start, the last one the end. Along
+    periodic axes centres go on beyond the cell.
+    """
+    law, time = law_of(scene), 0.0
+    jumps = Jumps(scene, law)
+    yield time, "start", None, None, state
+    while True:
+        flight, code = next_event(state, duration - time, law)
+        after = after_event(state, flight, code, law)
+        hops = []
+        for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
+            before, rising = across(state, horizontal)
+            passed = crosses(before, across(after, horizontal)[0])
+            if name in scene.events and passed:
+                hops.append((crossing_time(before, rising), name))
+        for until, name in sorted(hops):
+            at_hop = after_event(state, until, END_OF_TIME, law)
+            yield time + until, name, 1, 2, jumps.undone(at_hop)
+        time, state = time + flight, after
+        jumps.see(code, state)
+        if code in _NAMES:
+            yield time, *_NAMES[code], jumps.undone(state)
+        if code == END_OF_TIME:
+            return
+
+
+def event_rate(scene):
+    """Return the wall and disc events per time, and what jumps cost in their unit."""
+    return exact.event_rate(scene) * exact.work_per_event(scene)
+
+
+def usual_duration(scene):
+    """Return eight mean times of the rarest hop that is open, as a power of two.
+
+    It is no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
+    """
+    hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
+    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / event_rate(scene))
+    return nearest_power_of_two(duration)
+
+
+def state_of(scene, start):
+    """Return ``start`` as a state of the ``Scene``: a tuple of floats, as ``law`` has it.
+
+    ``start`` is one of ``sampling.starts.records``, or as many numbers. On periodic axes any image
+    of disc 2 serves. Raises ``InputError`` for anything else, for discs that overlap or lie
+    outside, and for another energy than 1/2.
+    """
+    names = components(scene)
+    try:
+        state = dict(zip(names, map(float, start), strict=True))
+    except (TypeError, ValueError, OverflowError):
+        state = {}
+    if len(state) != len(names) or not all(map(math.isfinite, state.values())):
+        raise no_state(names, start)
+    apart = {}
+    for axis in scene.axes:
+        side = scene.side(axis)
+        if axis in scene.walled:
+            for disc, radius in enumerate(scene.radii, 1):
+                reach, centre = side / 2 - radius, state[f"{axis}{disc}"]
+                if abs(centre) > reach + ROUNDING * side:
+                    raise InputError(
+                        f"start must have disc {disc} inside the box, with {axis}{disc} between "
+                        f"{-reach!r} and {reach!r}, not {centre!r}"
+                    )
+        apart[axis] = state[f"{axis}1"] - state[f"{axis}2"]
+        if axis in scene.periodic:
+            apart[axis] = math.remainder(apart[axis], side)
+            state[f"{axis}2"] = state[f"{axis}1"] - apart[axis]
+    distance, contact = math.hypot(*apart.values()), scene.contact_distance
+    if distance < contact * (1 - ROUNDING):
+        raise InputError(
+            f"start must have the discs apart, with {contact!r} or more between their centres, not "
+            f"{distance!r}"
+        )
+    energy = _energy(scene, state)
+    if abs(energy - ENERGY) > ROUNDING:
+        raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
+    return tuple(state.values())
+
+
+def _energy(scene, state):
+    """Return the total energy of a state, {name: value}, of a ``Scene``."""
+    energy = 0.0
+    for disc, (mass, radius) in enumerate(zip(scene.masses, scene.radii, strict=True), 1):
+        speeds = [state[f"{name}{disc}"] for name in "uvw"[: len(scene.axes)]]
+        energy += mass * math.fsum(speed * speed for speed in speeds) / 2
+        if scene.moment_of_inertia is not None:
+            energy += mass * scene.moment_of_inertia * state[f"s{disc}"] ** 2 / 2
+        if scene.field:
+            energy += mass * scene.field * (state[f"y{disc}"] + scene.height / 2 - radius)
+    return energy

@@ -1,0 +1,232 @@
+"""The geometry of N equal, smooth discs in the plane, between walls or on a ring along x.
+
+What two discs have in ``families.plain`` and ``families.effects`` has the same name here.
+"""
+
+import math
+from fractions import Fraction
+from functools import cache
+
+from twodiscs.model.checks import InputError
+
+#: Decimal digits before or after the point that the volume of all places may have: a double then
+#: holds it.
+MOST_DIGITS = 150
+
+
+def check(scene):
+    """Raise ``InputError`` for a ``Scene`` that is none: effects, a radius that does not fit."""
+    if other := [name for name in scene.effects if name != "periodic"]:
+        raise InputError(
+            f"{other[0]} must be left out with {scene.discs} discs, for more than two are equal "
+            f"and smooth discs of the plane, not {scene.effects[other[0]]!r}"
+        )
+    if scene.periodic not in ("", "x"):
+        raise InputError(
+            f"periodic must be left out or x for more than two discs, not {scene.periodic!r}"
+        )
+    if scene.radius >= scene.largest_radius:
+        raise InputError(
+            f"radius {scene.radius!r} does not fit: {scene.discs} discs in a box of "
+            f"{scene.width!r} × {scene.height!r} need a radius below {scene.largest_radius!r}, as "
+            "far as arrangements are known here"
+        )
+    size = scene.discs * math.log10(scene.range_x * scene.range_y)
+    if abs(size) > MOST_DIGITS:
+        raise InputError(
+            f"width and height must be in a unit of length in which the prism of all places of "
+            f"{scene.discs} discs lies between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
+            f"{scene.width!r} and {scene.height!r} at radius {scene.radius!r}"
+        )
+
+
+def largest_radius(scene):
+    """Return the largest radius at which an arrangement of the discs is known here.
+
+    Two and three discs between walls, and any number in an ordered channel, have none at a larger
+    one.
+    """
+    return largest_known_radius(scene.discs, scene.width, scene.height, scene.periodic)
+
+
+def require_followable(scene):
+    """Accept every ``Scene``: its radius is below the largest one."""
+
+
+def passed(scene):
+    """Return the axes with walls along which geometry does not keep the discs from passing."""
+    return tuple(axis for axis in scene.walled if can_be_level(scene, axis))
+
+
+def confined(scene):
+    """Return (False, False): wall times of many discs are averages over all initial states."""
+    return False, False
+
+
+def multiplicity(scene, event):
+    """Return how many events of a ``Scene`` have the rate of ``event``; an ``Event``.
+
+    Any of the discs hits either wall of an axis at the rate of one of them at one wall.
+    """
+    return 2 * scene.discs if event.kind == "wall" else 1
+
+
+def is_ordered(scene):
+    """Say whether the discs keep their order along x and only neighbours can touch.
+
+    That is so between walls if h ≤ (2 + √3) r: discs with one between them are then at least
+    2√(σ² − B²) ≥ σ apart.
+    """
+    return not scene.periodic and scene.height <= (2 + math.sqrt(3)) * scene.radius
+
+
+def ergodic_components(scene):
+    """Return the number of disjoint parts of configuration space; None where it is not known here.
+
+    Where all discs fit side by side along an axis, they can always be drawn apart along it:
+    places that go linearly, in their order, to σ or more from neighbour to neighbour never come
+    nearer to each other than √(σ² − Δ²), Δ what the pair is apart along the other axis. Then
+    neighbours can be exchanged if that other axis has more room than σ, and all is one part.
+    Else there is one for each order, N! of them, on a ring (N − 1)! up to a cyclic shift. In an
+    ordered channel too short for that the heights have parts of their own (``_zigzags``).
+    """
+    n, sigma, ring = scene.discs, 2 * Fraction(scene.radius), bool(scene.periodic)
+    a, b = Fraction(scene.width) - sigma, Fraction(scene.height) - sigma
+    if Fraction(scene.width) > n * sigma if ring else a > (n - 1) * sigma:
+        return 1 if b > sigma else math.factorial(n - ring)
+    if b > (n - 1) * sigma:
+        return 1 if ring or a > sigma else math.factorial(n)
+    if is_ordered(scene):
+        return math.factorial(n) * _zigzags(scene)
+    return None if ring or not is_ordered(scene.turned()) else ergodic_components(scene.turned())
+
+
+def _zigzags(scene):
+    """Return how many disjoint parts the heights of one order have in an ordered channel.
+
+    They are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave: so
+    each part has a corner of that cube, and two corners are in one part if a path along edges
+    joins them, for what is cut out is convex. At a corner k neighbours are level, with d = σ,
+    and all others d₀ = √(σ² − B²) apart. A level pair comes and goes at the ends of the row,
+    or with one next to it; it moves by one disc where A allows for two pairs halfway,
+    2 √(σ² − B²/4).
+    """
+    n, sigma, a = scene.discs, scene.contact_distance, scene.range_x
+    least = math.sqrt((sigma - scene.range_y) * (sigma + scene.range_y))
+    most = max(k for k in range(n) if k == 0 or k * sigma + (n - 1 - k) * least < a)
+    if most == 0:
+        return 2
+    midway = 2 * math.sqrt(sigma**2 - scene.range_y**2 / 4)
+    if most == n - 1 or (most - 1) * sigma + (n - 2 - most) * least + midway < a:
+        return 1
+    # The others stay where they are: neither at an end nor next to each other.
+    return (2 if most == 1 else 1) + 2 * math.comb(n - 2 - most, most)
+
+
+def can_be_level(scene, axis):
+    """Say whether geometry lets two discs be level along ``axis``, "x" or "y", beside a third.
+
+    Two that are level along y are σ apart at least along x, and a third one keeps σ from both:
+    it is best off at the other wall of y, in the middle between them or beside them. The condition
+    is exact for three discs; for two the third is ignored; for more than three it is necessary, not
+    sufficient.
+    """
+    along, across = scene.range_x, scene.range_y
+    if axis == "x":
+        along, across = across, along
+    ring = bool(scene.periodic) and axis == "y"
+    sigma = scene.contact_distance
+    if along <= (2 * sigma if ring else sigma):
+        return False
+    beside = (along - sigma) / 2 if ring else max(along / 2, along - sigma)
+    return scene.discs < 3 or math.hypot(beside, across) > sigma
+
+
+def arrangement(scene):
+    """Return centres [(x, y), …] of a state without overlap, as far apart as is known here."""
+    half_x = scene.range_x / 2
+    centres, _ = arranged(scene.discs, scene.range_x, scene.range_y, scene.periodic)
+    return [(x - half_x, y - scene.range_y / 2) for x, y in centres]
+
+
+# Arrangements ------------------------------------------------------------------------------------
+
+
+def _patterns(n, along, across, ring):
+    """Yield (least distance, rows, discs a row, shift, fewer, spacing) of rows of ``n`` discs.
+
+    Rows stand in line, or are shifted in turns by half a spacing; then every other one may have a
+    disc less.
+    """
+    for rows in range(1, n + 1):
+        v = across / (rows - 1) if rows > 1 else math.inf
+        least = -(-n // rows)
+        for count in (least, least + 1):
+            for shift, fewer in ((0.0, 0), (0.5, 0), (0.5, 1)):
+                if count * rows - fewer * (rows // 2) < n or (ring and fewer):
+                    continue
+                steps = count if ring else count - 1 + (0.0 if fewer else shift)
+                s = along / steps if steps > 0 else 0.0
+                # On a ring the only disc of a row is its own neighbour, which is no contact.
+                in_row = s if count > 1 else math.inf
+                two_on = 2 * v if shift else math.inf
+                yield min(in_row, math.hypot(shift * s, v), two_on), rows, count, shift, fewer, s
+
+
+def _rows(n, along, across, ring):
+    """Return (least distance, centres) of the best of ``_patterns``."""
+    best = max(_patterns(n, along, across, ring))
+    least, rows, count, shift, fewer, s = best
+    v = across / (rows - 1) if rows > 1 else 0.0
+    centres = [
+        ((i + shift * (row % 2)) * s, row * v)
+        for row in range(rows)
+        for i in range(count - fewer * (row % 2))
+    ]
+    return least, centres[:n]
+
+
+def _largest_triangle(a, b):
+    """Return (corners, side) of the largest equilateral triangle in a × b, b ≤ a ≤ 2b/√3."""
+    # One corner at (0, 0), one on x = a, one on y = b: a = s cos θ, b = s cos(π/6 − θ).
+    side = 2 * math.sqrt(max(a * a + b * b - math.sqrt(3) * a * b, 0.0))
+    low = math.sqrt(max(side * side - a * a, 0.0))
+    high = math.sqrt(max(side * side - b * b, 0.0))
+    return [(0.0, 0.0), (a, low), (high, b)], side
+
+
+def arranged(discs, a, b, periodic=""):
+    """Return (centres in [0, ``a``] × [0, ``b``], their least distance), the best known here.
+
+    Of rows in line and staggered ones along either axis, and for three discs the largest triangle,
+    which is the best of all.
+    """
+    least, centres = _rows(discs, a, b, bool(periodic))
+    if not periodic:
+        other, turned = _rows(discs, b, a, False)
+        if other > least:
+            least, centres = other, [(x, y) for y, x in turned]
+    if discs == 3 and not periodic and min(a, b) > max(a, b) * math.sqrt(3) / 2:
+        corners, side = _largest_triangle(max(a, b), min(a, b))
+        if side > least:
+            least, centres = side, corners if a >= b else [(x, y) for y, x in corners]
+    return centres, least
+
+
+@cache
+def largest_known_radius(discs, width, height, periodic=""):
+    """Return the largest radius of which ``arranged`` knows centres at least 2r apart.
+
+    Bisection, to the last digit. On a ring it is at most a quarter of the circumference.
+    """
+    low, high = 0.0, min(width, height) / 2
+    if periodic:
+        high = min(width / 4, height / 2)
+    for _ in range(80):
+        radius = (low + high) / 2
+        across = height - 2 * radius
+        along = width if periodic else width - 2 * radius
+        fits = across >= 0 and along >= 0
+        fits = fits and arranged(discs, along, across, periodic)[1] >= 2 * radius
+        low, high = (radius, high) if fits else (low, radius)
+    return low

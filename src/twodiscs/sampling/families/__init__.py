@@ -1,0 +1,1 @@
+"""How each family of scenes is sampled: initial states, and Monte Carlo of volume and areas."""

@@ -1,0 +1,1 @@
+"""The exact theory of each family of scenes; ``theory.exact`` fetches it."""

@@ -1,0 +1,37 @@
+"""The exact theory of two equal, smooth discs between walls."""
+
+import math
+
+from twodiscs.model.events import DECLARED, SHELLS
+from twodiscs.theory import plain
+from twodiscs.theory.plain import shell_expectation
+
+__all__ = [
+    "fraction_near", "rate", "shell_expectation", "shells", "volume_and_areas", "work_per_event",
+]  # fmt: skip
+
+
+def volume_and_areas(scene):
+    """Return (volume, {event: area}) of a ``Scene``."""
+    return plain.exact(scene)
+
+
+def rate(scene, event, volume, areas):
+    """Return the rate of ``event``, given the ``volume`` and {event: area}."""
+    return DECLARED[event].sides * areas[event] / (1.5 * math.pi * volume)
+
+
+def work_per_event(scene, event_rate):
+    """Return 1: an event costs as usual."""
+    return 1.0
+
+
+def shells(scene):
+    """Return the events whose surface has a shell of its own."""
+    return SHELLS
+
+
+def fraction_near(scene, hop, distance, volume):
+    """Return the share of configuration space within a ``distance`` of level, see ``exact``."""
+    epsilon = distance / math.sqrt(2)
+    return 2 * epsilon * shell_expectation(scene, hop, epsilon) / volume
