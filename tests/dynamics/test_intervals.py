@@ -12,6 +12,7 @@ from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.dynamics import intervals, trajectory
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.two import returns
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
@@ -64,7 +65,7 @@ def test_hop_chains_do_not_depend_on_lanes():
     wide = np.repeat([65, 66], [1, 64])
     for lanes in (5, 64):
         sums = np.zeros((2, 67), np.int64)
-        totals = intervals.record_returns(
+        totals = returns.record_returns(
             np.uint64(1), 0, 2, 64, lanes, 16, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
             sums, np.ones(1, np.bool_),
         )  # fmt: skip
@@ -80,7 +81,7 @@ def test_squares_are_those_of_the_counts_of_each_chain():
     wide[: edges[-1]] = 65 + np.searchsorted(edges, np.arange(edges[-1]), side="right") - 1
     for first, stop in (*((i, i + 1) for i in range(8)), (0, 8)):
         sums = np.zeros((2, 66 + edges.size), np.int64)
-        intervals.record_returns(
+        returns.record_returns(
             np.uint64(3), first, stop, 1, 4, 32, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
             sums, np.ones(1, np.bool_),
         )  # fmt: skip

@@ -164,7 +164,8 @@ import hashlib
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
-scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8), Scene(1.5, 1.0, 0.2, discs=6)]
+scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
+scenes += [Scene(1.5, 1.0, 0.2, discs=6)]
 found = hashlib.sha256()
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
     counts = many.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.two import strip
+from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
@@ -19,6 +19,7 @@ from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anyw
 from twodiscs.sampling.starts import require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
+from twodiscs.theory.families.effects import PASSES_PER_EVENT
 
 
 def decades(low, high):
@@ -84,8 +85,8 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
         return
     events, leaves = passes(scene, counting.replica_duration(scene))
     # A duration is rounded to a power of two.
-    assert events <= 2**0.5 * counting.EVENTS_PER_REPLICA
-    assert leaves <= 2**0.5 * counting.EVENTS_PER_REPLICA * exact.PASSES_PER_EVENT
+    assert events <= 2**0.5 * lockstep.EVENTS_PER_REPLICA
+    assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
     assert exact.work_per_event(scene) >= 1.0
 
 
@@ -93,7 +94,7 @@ def test_small_discs_on_a_torus_end():
     scene = Box(1.5, 1.0, {"periodic": "xy"}).scene(1e-9)
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found["replicas"] * found["duration"])
-    block = counting.REPLICAS * counting.EVENTS_PER_REPLICA * exact.PASSES_PER_EVENT
+    block = counting.REPLICAS * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
     assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
     assert found["status"] == {"disc_collision": "budget"}
 

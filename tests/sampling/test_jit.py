@@ -202,7 +202,7 @@ def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
 #: Print how often each machine instruction stands in the kernel that counts all events of a scene.
 INSTRUCTIONS = """
 import collections, json, re, sys
-from twodiscs.dynamics.counting import count_blocks, run_blocks
+from twodiscs.dynamics.two.lockstep import count_blocks, run_blocks
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 scene = Scene(1.5, 1.0, 0.2, **json.loads(sys.argv[1]))
