@@ -12,7 +12,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.plugins import plugin
 
-#: What the values of a column are to pandas: kinds that know an empty cell.
+#: The pandas types of columns, which know an empty cell.
 KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
 
 

@@ -4,7 +4,7 @@ from itertools import groupby
 
 from twodiscs.model.checks import InputError, check_choice
 
-#: What the point of a stage has.
+#: The fields of the point of a stage.
 FIELDS = {
     "monte_carlo": ("radius", "method", "samples", "quantities"),
     "dynamics": (
@@ -22,10 +22,10 @@ OBJECTS = {
     "intervals": (),
 }
 
-#: What a strip of a point of dynamics has.
+#: The fields of a strip of a point of dynamics.
 STRIP = ("duration", "share", "replicas", "count", "squares", "status", "strata")
 
-#: What of it is the sum of a part of the strata, and of which one.
+#: The fields of a strip that are sums over its strata, {field: part of the strata}.
 SUMS = {"replicas": "starts", "count": "counts", "squares": "squares"}
 
 

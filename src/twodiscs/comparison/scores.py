@@ -1,4 +1,4 @@
-"""How far an estimate is from the exact value: z, and the bounds for many comparisons at once.
+"""How far an estimate is from the exact value: z, and the bounds for many comparisons.
 
 A z-score is always a standard normal deviate: a test whose own law is not normal gives a two-sided
 p-value that is never too small, and z is the deviate with that p-value. Positive z means that the
@@ -157,12 +157,12 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
 
 
 def chi2_p(chi2, degrees):
-    """Return the probability of a larger χ² of so many ``degrees`` of freedom."""
+    """Return the probability of a larger χ² with ``degrees`` of freedom."""
     return float(gammaincc(degrees / 2, chi2 / 2))
 
 
 def bonferroni_bound(comparisons, alarm=FALSE_ALARM):
-    """Return the |z| that one of ``comparisons`` passes by chance with probability ≤ ``alarm``."""
+    """Return the |z| that one of ``comparisons`` exceeds randomly with probability ≤ ``alarm``."""
     comparisons = check_integer("comparisons", comparisons, 1)
     return float(-ndtri(check_fraction("alarm", alarm) / (2 * comparisons)))
 

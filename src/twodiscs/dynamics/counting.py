@@ -29,7 +29,7 @@ def simulated_events(sums):
 def expected_rate(scene, event):
     """Return how often per time all that counts as ``event`` happens, exactly if that is known.
 
-    Of more than two discs it may be an estimate; 0 where nothing is known of it.
+    For more than two discs it may be an estimate; it is 0 where nothing is known.
     """
     return of_family(scene, "dynamics", "expected_rate")(scene, event)
 

@@ -51,7 +51,7 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     ``going`` is an array to stop it with.
     """
     edges = wide_edges()
-    # What is longer than all bins, or is in the last ones that fill no wide bin, has no wide bin.
+    # Intervals beyond all bins, or in the last ones that fill no wide bin, have no wide bin.
     beyond = BINS + len(edges)
     wide = np.full(BINS + 1, beyond)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
@@ -129,7 +129,7 @@ class IntervalRun:
 
     @cached_property
     def _going(self):
-        """What a kernel looks at that may run for long: false once nobody waits for it."""
+        """A flag that long kernels look at: false once nobody waits for their result."""
         return np.ones(1, np.bool_)
 
     @cached_property

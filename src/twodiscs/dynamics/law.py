@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 from twodiscs.sampling.jit import inlined, optional
 
-#: What ended a free flight. Codes are floats because they travel in the same registers as the
-#: state. To leave a periodic cell and come back on its other side is no event: those are negative.
+#: The event that ended a free flight. Codes are floats because they travel in the same registers
+#: as the state. To leave a periodic cell and come back on its other side is no event: those are negative.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
 WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
@@ -38,7 +38,7 @@ NEVER = math.inf
 
 
 class Law(NamedTuple):
-    """What the motion of a scene depends on; None for what is absent, lengths otherwise.
+    """The constants of the motion in a scene, lengths; None for absent effects.
 
     The centre of disc i keeps within ±half_xi; the half-ranges of disc 2 are None where they are
     those of disc 1, and both are where the axis is periodic. ``wrap_x`` is (half the period, the

@@ -35,7 +35,7 @@ ROUNDING = 1e-9
 
 
 def columns(discs=2):
-    """Return the names of what a row of a trajectory of so many ``discs`` holds."""
+    """Return the names of the columns of a trajectory of a number of ``discs``."""
     numbers = range(1, discs + 1)
     centres = (f"{axis}{disc}" for disc in numbers for axis in "xy")
     return ("time", *centres, "event", *(f"z{disc}" for disc in numbers), *DISCS)
@@ -54,7 +54,7 @@ def new_wraps(scene, number):
 def advance_all(scene, states, wraps, time):
     """Advance the columns of ``states`` by a ``time`` > 0; each centre stays in its cell.
 
-    What that takes from places along periodic axes is counted in ``wraps`` (``new_wraps``).
+    ``wraps`` (``new_wraps``) counts how often a centre was moved back along a periodic axis.
     """
     of_family(scene, "dynamics", "advance_all")(scene, states, wraps, time)
 

@@ -1,1 +1,1 @@
-"""What is studied: events, effects, the scene, its box and its radii. Standard library only."""
+"""Events, effects, the scene, its box and its radii. Standard library only."""

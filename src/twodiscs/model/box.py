@@ -54,7 +54,7 @@ class Box:
         return hash((self.width, self.height, *self.calls_for.items()))
 
     def __repr__(self):
-        # What a configuration is known by: that of two discs does not know that there may be more.
+        # Streams are seeded by this text: for two discs it does not mention their number.
         more = f", discs={self.discs!r}" if "discs" in self.calls_for else ""
         sides = f"width={self.width!r}, height={self.height!r}"
         return f"Box({sides}, effects={self.effects!r}{more})"
@@ -89,7 +89,7 @@ class Box:
 
     @property
     def calls_for(self):
-        """What it calls for beyond a plain box, as ``Scene.calls_for``."""
+        """Everything beyond a plain box, {name: value}, as ``Scene.calls_for``."""
         return self.effects | ({"discs": self.discs} if self.discs != USUAL["discs"] else {})
 
     @property

@@ -28,7 +28,7 @@ _SHORT.maxlevel = 2
 
 
 class InputError(ValueError):
-    """What a user got wrong, in a sentence: an argument, a configuration, a file.
+    """A user's mistake in an argument, a configuration or a file, said in a sentence.
 
     Several sentences stand on a line each. The command lines answer with them alone. Any other
     exception is a mistake in the program, and keeps its traceback.

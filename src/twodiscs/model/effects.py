@@ -1,4 +1,4 @@
-"""What a scene may call for beyond two equal, smooth discs between walls. Declared here, once.
+"""The effects beyond two equal, smooth discs between walls. Each is declared here, once.
 
 The fields of ``Scene``, the keys of a configuration, the options of the command line and the labels
 of the figures follow from these declarations.
@@ -39,7 +39,7 @@ class Effect:
     def checked(self, value):
         """Return ``value``, a number as a float; raise ``InputError`` unless absent or in range.
 
-        Of text only the kind is checked.
+        For text only the type is checked.
         """
         if not self.is_number:
             if not isinstance(value, str):

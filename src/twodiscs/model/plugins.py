@@ -1,4 +1,4 @@
-"""What packages on top of this one offer it, by entry points of the group "twodiscs"."""
+"""The entry points of the group "twodiscs", by which packages on top of this one extend it."""
 
 from importlib import metadata
 

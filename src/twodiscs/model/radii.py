@@ -78,7 +78,7 @@ def radii(width, height, smallest, count):
 def even_radii(smallest, largest, count):
     """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
 
-    Each is rounded to the fewest digits that leave it near its place, but for the first. Raises
+    Each except the first is rounded to the fewest digits that leave it near its place. Raises
     ``InputError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
     """
     smallest, largest = check_length("smallest", smallest), check_length("largest", largest)

@@ -6,7 +6,7 @@ over that speed.
 
 The plain scene has equal, smooth discs between walls. A scene may call for effects: unequal radii
 or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
-are balls), more discs than two. What a scene does not call for is neither simulated nor compiled.
+are balls), more discs than two. Absent effects are neither simulated nor compiled.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
 from twodiscs.model.families.two import ENERGY
 from twodiscs.model.family import of_family
 
-#: What is open to the discs, named by the hops that remain.
+#: The regimes, named by the hops that are open.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
 
@@ -194,7 +194,7 @@ class Scene:
 
     @property
     def calls_for(self):
-        """What it calls for beyond two equal, smooth discs between walls, {name: value}.
+        """Everything beyond two equal, smooth discs between walls, {name: value}.
 
         These are its effects, and ``discs`` where they are more than two.
         """
@@ -288,8 +288,8 @@ class Scene:
     def largest_radius(self) -> float:
         """The radius of disc 1 at which the discs have no room left.
 
-        Of more than three discs it is that of the densest arrangement that is known here;
-        in a channel so narrow that only neighbours can touch there is no denser one.
+        For more than three discs it is that of the densest arrangement that is known here. In a
+        channel so narrow that only neighbours can touch no arrangement is denser.
         """
         return self._geometry("largest_radius")
 
@@ -345,10 +345,10 @@ class Scene:
     def ergodic_components(self) -> int | None:
         """The number of disjoint parts of configuration space.
 
-        Each hop that is blocked between walls doubles it. A periodic axis has a way around. Of more
-        than two discs there are N! where they keep their order, (N − 1)! on a ring, more in a short
-        channel where heights have parts of their own, 1 where all discs pass each other with room
-        to spare, and None where it is not known.
+        Each hop that is blocked between walls doubles it. A periodic axis has a way around. More
+        than two discs have N! components if they keep their order, (N − 1)! on a ring, more in a
+        short channel where heights have components of their own, 1 if all discs pass each other
+        with room to spare, and None where the number is not known.
         """
         return self._geometry("ergodic_components")
 
@@ -413,7 +413,7 @@ def check_scene(value):
 
 
 def hopping_along(scene, hop, axis):
-    """Return a ``Scene`` and its hop that are the same but for names, the hop along ``axis``.
+    """Return an equivalent ``Scene`` and hop, axes exchanged so that the hop is along ``axis``.
 
     ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). In a field, where axes
     cannot be exchanged, both are returned as they are. One compiled kernel then serves both hops.

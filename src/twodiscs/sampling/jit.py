@@ -37,7 +37,8 @@ def _use_wide_vectors():
 
 _use_wide_vectors()
 
-# What numba makes when it is imported stays: to look for garbage there is a fifth of the start.
+# Objects that numba makes when it is imported stay: a garbage collection there takes a fifth of
+# the start.
 collecting = gc.isenabled()
 gc.disable()
 
@@ -49,7 +50,7 @@ from numba.extending import overload  # noqa: E402
 # No kernel needs BLAS, and importing SciPy's, where numba looks for it, takes a quarter of a start.
 # For numba there is none, then; its own functions for inner products take their place.
 if (blas := "scipy.linalg.cython_blas") not in sys.modules:
-    sys.modules[blas] = None  # so an import of it fails at once
+    sys.modules[blas] = None  # so an import of it fails
     import numba.np.arraymath
 
     del sys.modules[blas]
@@ -67,7 +68,7 @@ OPTIONS = {
     "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
 }  # fmt: skip
 
-#: Compiled code that no process has used for so many seconds, of sources that were edited, goes.
+#: Compiled code of edited sources is removed when no process has used it for this many seconds.
 UNUSED = 30 * 86400
 
 
@@ -102,7 +103,7 @@ def cache_home():
 def cache_folder(module):
     """Return the folder of the compiled code of a ``module``, a dotted name.
 
-    What has been there unused for long is removed when a new one is made.
+    Folders that were unused for long are removed when a new one is made.
     """
     folder = cache_home() / f"kernels-{fingerprint(module)}"
     if not folder.exists():
@@ -148,7 +149,7 @@ def compiled(function):
     finally:
         numba.config.CACHE_LOCATOR_CLASSES = usual
     if not numba.config.DISABLE_JIT:  # else it is the function itself
-        # Numba numbers its files, and two processes that save at once would give two kernels one.
+        # Numba numbers its files: two processes that save together would use a number twice.
         kept._cache._cache_file._data_name_pattern = (
             f"{function.__name__}.{uuid.uuid4().hex}.{{number:d}}.nbc"
         )

@@ -137,8 +137,8 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
     """Count the samples of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
     ``ends`` are those of the shells, with places in grains. Returns int64 counts: volume, shells in
-    the order of ``SHELLS``, right and top at once. ``areas`` is True, or None where only the volume
-    is wanted: the shells are then not compiled.
+    the order of ``SHELLS``, right and top together. ``areas`` is True, or None where only the
+    volume is wanted: the shells are then not compiled.
     """
     s0, s1 = np.empty(LANES, np.uint64), np.empty(LANES, np.uint64)
     packed, totals = np.zeros(LANES, np.int64), np.zeros(SETS, np.int64)

@@ -31,7 +31,7 @@ class Neck(NamedTuple):
 
 
 class PrismSampler(NamedTuple):
-    """What a draw by rejection needs to know of a scene; None for what is absent.
+    """The constants of a scene for draws by rejection; None for absent effects.
 
     The centre of disc i lies within ±half_xi, half the side where the axis is periodic; ``period``
     holds the sides of periodic axes, 0 between walls.

@@ -30,7 +30,7 @@ from twodiscs.sampling.streams import (
 
 
 class SeparationSampler(NamedTuple):
-    """What a draw of separations needs to know of the scene; all lengths, weights without unit."""
+    """The constants of a scene for draws of separations: lengths, and weights without unit."""
 
     half_x: float  # a
     half_y: float  # b

@@ -70,7 +70,7 @@ def areas(scene: Scene) -> dict[str, float]:
     Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
     or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
     balls, carries 1/√mass (1 for disc 1), and has the weight (1 − U/E)₊^((D − 1)/2) in a field (see
-    ``volume``). Of more than two discs it is None where no exact value is known. Accuracy and
+    ``volume``). For more than two discs it is None where no exact value is known. Accuracy and
     errors as for ``volume``.
 
     Example:
@@ -152,8 +152,8 @@ def mean_times(scene: Scene) -> dict[str, float | None]:
 def exact(scene: Scene) -> Exact:
     """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
 
-    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. What is not known
-    of more than two discs is None. Raises
+    Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Values that are not
+    known for more than two discs are None. Raises
     ``InputError`` for anything that is not a ``Scene``.
 
     Example:

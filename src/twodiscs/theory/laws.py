@@ -30,7 +30,7 @@ def closed_form(scene):
     """
     r = check_plain_scene(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
-    # Of the quarter circle, the angle within [0, a] × [0, b].
+    # The angle of the quarter circle within [0, a] × [0, b].
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
 
     def side(a, b):

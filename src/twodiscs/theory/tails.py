@@ -59,7 +59,7 @@ def tail_constant(scene, event):
     ``event`` is a disc collision or a hop. C is 0.0 where no neutral motion is left, and the tail
     falls faster than any power as far as is known; it is None where the event is impossible.
 
-    Discs that move along x but for slow drifts v1, v2 pass clear of each other as long as
+    Discs that move along x, with slow drifts v1, v2, pass clear of each other as long as
     |y1 − y2| ≥ σ. With wall hits unfolded, the slacks between discs and walls move on a straight
     line in the square |p| + |q| ≤ B − σ, and do not leave it within t for a drift in an area
     2 (B − σ)²/t². For both orders of the discs, a density 1/π of (v1, v2) at 0 and likewise along y

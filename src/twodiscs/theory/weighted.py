@@ -17,7 +17,7 @@ Of an axis only the separation t of the centres matters. For either order of the
 f(t), the integral over their common motion, is elementary: U is linear along it (``Branch``). V is
 the integral of Π f over Σ t² ≥ σ², A for disc collisions one over Σ t² = σ²; for a hop t is 0 along
 its axis, for a wall the disc stays there. These are done an axis at a time, over the angle θ of
-t = ρ cos θ, where ρ² is what the axes before leave of σ². What remains of the range of an axis is
+t = ρ cos θ, where ρ² is what the axes before leave of σ². The rest of the range of an axis is
 never found as a difference: the room Σ reach² − σ² is rounded once and passed on from axis to axis.
 So the sums are accurate up to the largest radius.
 """
@@ -338,7 +338,7 @@ class _Space:
         return _periodic(self.scene.side(axis), farthest)
 
     def axes(self, **replaced):
-        """Return {``Branch``: how often} of all axes, but for those that are ``replaced``."""
+        """Return {``Branch``: how often} of all axes except those that are ``replaced``."""
         return [replaced[a] if a in replaced else self.axis(a) for a in self.order]
 
     def beyond(self, **replaced):
@@ -400,7 +400,7 @@ def _area(space, event):
     )
 
 
-# What is exact ------------------------------------------------------------------------------------
+# Exact values -------------------------------------------------------------------------------------
 
 
 def volume(scene):

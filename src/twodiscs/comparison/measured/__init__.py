@@ -1,1 +1,1 @@
-"""What the face returns: measurements beside exact values, that print, save and show themselves."""
+"""The results of the face: measurements beside exact values, which print and save themselves."""

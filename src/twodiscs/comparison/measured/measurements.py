@@ -1,4 +1,4 @@
-"""What a simulation or a sample measured, beside the exact values: objects that print themselves.
+"""Results of simulations and samples beside the exact values: objects that print themselves.
 
 Their numbers are those of the rows of the tables, made by the same functions.
 """
@@ -174,7 +174,7 @@ class Measurements(Result, Mapping[str, Measurement]):
     ) -> Measurements:
         """Return a result with a smaller ``error``, a larger ``budget``, or more ``samples``.
 
-        It goes on from this one, and is the same, bit for bit, as one asked for at once.
+        It goes on from this one, and is the same, bit for bit, as one asked for in one call.
         """
         changes = {"error": error, "budget": budget, "samples": samples}
         return self._again(changes, cores, progress)
@@ -264,7 +264,7 @@ class Intervals(Result):
     def more(
         self, number: float | None = None, cores: int = 1, progress: bool | None = None
     ) -> Intervals:
-        """Return ``number`` intervals, these among them: the same as if asked for at once."""
+        """Return ``number`` intervals, these among them, as if asked for in one call."""
         return self._again({"number": number}, cores, progress)
 
     def _repr_html_(self) -> str:
@@ -292,7 +292,7 @@ def _theory(scene):
     return Theory.rows(Box.of(scene), [scene.radius])
 
 
-# What is done -----------------------------------------------------------------------------------
+# The calls -------------------------------------------------------------------------------------
 
 
 def seed_of(scene, method, seed, name):

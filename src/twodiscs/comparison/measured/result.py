@@ -30,7 +30,7 @@ MAKERS = {
 
 
 class Result:
-    """What was measured, and how: ``kind`` is the function of the face that made it.
+    """A result and how it was made: ``kind`` is the function of the face that made it.
 
     ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error
     asked for; ``version`` is that of the package. ``kept`` holds the sums of the blocks of work

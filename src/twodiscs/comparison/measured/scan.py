@@ -59,7 +59,7 @@ class Scan(Result, Sequence[Measurements]):
     ) -> Scan:
         """Return the scan with a smaller ``error`` or a larger ``budget`` at each radius.
 
-        It goes on from this one, and is the same, bit for bit, as one asked for at once.
+        It goes on from this one, and is the same, bit for bit, as one asked for in one call.
         """
         return Scan([result.more(error, budget, None, cores, progress) for result in self.results])
 

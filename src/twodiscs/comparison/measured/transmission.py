@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
     from twodiscs.model.scene import Scene
 
-#: A cluster ends where no hop comes for so many times that a disc of speed 1 takes along the box.
+#: A cluster ends if no hop comes for this many times the time that a disc of speed 1 takes along
+#: the box.
 #: Hops that follow each other after a tenth of that are still correlated; what comes later makes κ
 #: too large by about 1e-3 where hops are most frequent, at a distance of 2⁻⁶, and less elsewhere.
 QUIET = 48
@@ -147,7 +148,7 @@ class Transmission(Result):
     def more(
         self, hops: float | None = None, cores: int = 1, progress: bool | None = None
     ) -> Transmission:
-        """Return the same from more ``hops``, these among them: as if asked for at once."""
+        """Return the result from more ``hops``, these among them, as if asked for in one call."""
         return self._again({"hops": hops}, cores, progress)
 
     def _repr_html_(self) -> str:
@@ -188,7 +189,7 @@ class Transmission(Result):
 
 
 def parts_of(scene, hop, gap, times, blocks, name, seed):
-    """Return the runs {"times": …} of so many ``blocks``, and "clusters" where hops are rare."""
+    """Return the runs {"times": …} of some ``blocks``, and "clusters" where hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
 
     def clusters(first, stop):

@@ -23,7 +23,7 @@ from twodiscs.model.checks import InputError
 
 @dataclass(frozen=True)
 class Column:
-    """What the values of a column are: their type, and their unit, "" for none."""
+    """A column: the type of its values, and their unit, "" for none."""
 
     kind: type
     unit: str = ""

@@ -1,9 +1,9 @@
-"""What jobs took and what they are going to take: cost.csv and forecast.csv."""
+"""The seconds of jobs, measured and forecast: cost.csv and forecast.csv."""
 
 from twodiscs.comparison.points import by_radius
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Table
 
-#: What counts as events in the points of a stage.
+#: The number of events in the points of a stage.
 WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}
 
 

@@ -85,7 +85,7 @@ def _bin_rows(point):
             weights, totals, products = {"n": per_chain}, {"n": count}, {"n*n": squares}
             density = estimates.combination(weights, totals, products, chains)
             if product:
-                # Of counts over all intervals of a chain, whose number varies.
+                # The counts are over all intervals of a chain, whose number varies.
                 weights |= {"all": -per_chain * count / intervals}
                 products |= {"n*all": product[0], "all*all": point["intervals_squared"]}
                 totals |= {"all": intervals}

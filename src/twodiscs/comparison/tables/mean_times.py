@@ -8,8 +8,8 @@ from twodiscs.model.events import EVENTS
 
 class MeanTimes(Table):
     """
-    One row per radius and event: the mean time between events, exact and by dynamics. What starts
-    anywhere saw of a hop whose row is from a strip is compared in check.csv.
+    One row per radius and event: the mean time between events, exact and by dynamics. If a hop is
+    measured in a strip, check.csv also compares the count from ordinary initial states.
     """
 
     radius: LENGTH

@@ -60,7 +60,7 @@ class Trajectory(Table):
 
 
 def _of_discs(table, discs):
-    """Return the ``table`` with columns for so many ``discs``."""
+    """Return the ``table`` with columns for a number of ``discs``."""
     numbers, known, texts = range(1, discs + 1), table.columns(), table.meanings()
     centres = [f"{axis}{disc}" for disc in numbers for axis in "xy"]
     names = ["time", *centres, "event", *(f"z{disc}" for disc in numbers), "first", "second"]

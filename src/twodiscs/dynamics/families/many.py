@@ -25,8 +25,8 @@ __all__ = [
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3
 
-#: What a pair of discs adds to the time of an event, which it takes of the plain ensemble: 3, 4 and
-#: 8 discs take 3.7, 5.9 and 22 times as long.
+#: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble:
+#: 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
 PAIR = 0.8
 
 trajectory_rate = expected_event_rate

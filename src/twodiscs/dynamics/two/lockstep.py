@@ -68,7 +68,7 @@ def facing(position, side, gravity):
     return position * side > 0.0
 
 
-# Of a wall everything counts that ``Scene.multiplicity`` does.
+# All hits count as a wall event that ``Scene.multiplicity`` counts.
 
 
 def _wall_seen(event):
@@ -100,7 +100,7 @@ N = len(EVENTS)
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 BESIDE, ABOVE = EVENTS.index("right_wall"), EVENTS.index("top_wall")
 
-#: A lane counts in a double: fields of eight bits, so many of which it holds. A second double takes
+#: A lane counts in a double that holds this many fields of eight bits. A second double takes
 #: the events that the first one has no room for.
 FIELDS = 6
 if N > 2 * FIELDS:

@@ -1,7 +1,7 @@
 """Which hops are passages: how the hops that follow one another are correlated.
 
 A hop is a passage if the discs do not soon hop back. Transition state theory counts every crossing
-of the surface u = 0 of a hop, where u is x1 − x2 or y1 − y2. What becomes of them is said by the
+of the surface u = 0 of a hop, where u is x1 − x2 or y1 − y2. Their fate is the
 reactive flux (Chandler, J. Chem. Phys. 68, 2959 (1978)),
 
     C(t) = 1 + 2 ⟨Σ s_0 s_k⟩,
@@ -62,15 +62,15 @@ from twodiscs.sampling.streams import open_stream
 #: Passes between two looks at which lanes have come to the end of their time.
 PASSES = 2
 
-#: Replicas that share a random stream, and blocks of them whose states are in memory at once.
+#: Replicas that share a random stream, and blocks of them whose states are in memory together.
 REPLICAS = 64
 CHUNK = 1024
 
-#: Clusters of so many hops, or more, are in one class. It counts as even, which makes κ too small
+#: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
 #: by less than the fraction of hops in it over their number.
 LARGEST = 2**13
 
-#: What is summed up at each time: n = Σ s_0 s_k and n², N hops and N².
+#: The sums at each time: n = Σ s_0 s_k and n², N hops and N².
 SUMS = 4
 
 

@@ -34,7 +34,7 @@ from twodiscs.theory import exact
 #: Wall and disc events that a trajectory lasts at most, on average.
 LONGEST_TRAJECTORY = 6000
 
-#: What ends a flight, by code: its name, and the discs that it is of.
+#: The name of the event that ends a flight, by code, and the discs that it is of.
 _NAMES = {
     END_OF_TIME: ("end", None, None),
     WALL_X1: ("wall_x1", 1, None),

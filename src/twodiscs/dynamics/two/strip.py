@@ -40,7 +40,8 @@ from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fracti
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Hops that come more often than once in so many events are counted from starts anywhere.
+#: Hops that come more often than once in this many events are counted from ordinary initial
+#: states.
 RARE = 40
 
 #: Passes between two looks at which lanes have ended: paths are short.
@@ -51,7 +52,7 @@ PASSES = 2
 FILL = 0.75
 NO_NECK = 0.97
 
-#: Wall and disc events in the time 2T, about: at most so many.
+#: The largest number of wall and disc events in the time 2T, about.
 MOST_EVENTS = 32
 
 #: The share of the time 2T that paths last, about: the more events the less, 1 to 0.55.
@@ -69,7 +70,7 @@ COST_RATIO = 6
 #: an event of the budget may have. Where it takes more, fewer events are what the budget allows.
 PROPOSAL, PROPOSALS_PER_EVENT = 2, 64
 
-#: Counts of hops and of events share a double: a hop counts so many events.
+#: Counts of hops and of events share a double: a hop counts as this many events.
 HOP = 2.0**32
 
 

@@ -198,8 +198,8 @@ def _largest_triangle(a, b):
 def arranged(discs, a, b, periodic=""):
     """Return (centres in [0, ``a``] × [0, ``b``], their least distance), the best known here.
 
-    Of rows in line and staggered ones along either axis, and for three discs the largest triangle,
-    which is the best of all.
+    Candidates are rows in line and staggered rows along either axis; for three discs also the
+    largest triangle, which is the best of all.
     """
     least, centres = _rows(discs, a, b, bool(periodic))
     if not periodic:

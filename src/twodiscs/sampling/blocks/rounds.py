@@ -1,7 +1,7 @@
 """Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
 One process works in rounds until all is known well enough (``in_rounds``), or does the blocks that
-are planned at once (``all_at_once``). Many processes do the ``pieces`` of as many blocks as are
+are planned in one go (``all_at_once``). Many processes do the ``pieces`` of as many blocks as are
 planned before anything runs, and their sums are ``joined``: the same bits however large the pieces
 are and whoever does them.
 """
@@ -55,12 +55,12 @@ class SequentialRun:
 
     @property
     def block_work(self):
-        """What a block takes, in events of the plain ensemble."""
+        """The work of a block, in events of the plain ensemble."""
         return self.block_events * self.cost_ratio
 
 
 class Outcome(NamedTuple):
-    """What a run has found: sums of so many blocks after so many rounds, and their errors."""
+    """The result of a run: the sums of its blocks, how many rounds they took, and their errors."""
 
     sums: list
     blocks: int
@@ -69,7 +69,7 @@ class Outcome(NamedTuple):
 
 
 def fixed(work, blocks, block_events, cost_ratio=1.0):
-    """Return the ``SequentialRun`` of exactly so many ``blocks``."""
+    """Return the ``SequentialRun`` of exactly this number of ``blocks``."""
     return SequentialRun(
         work, lambda sums, done: np.array([]), lambda sums: 1, block_events, math.inf, blocks,
         cost_ratio, blocks,
@@ -140,7 +140,7 @@ def in_rounds(run, progress=None, cores=1, kept=None):
 
 
 class Sampler(NamedTuple):
-    """Draws in blocks of so many samples.
+    """Draws in blocks of ``block`` samples.
 
     ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
     what is found, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over that of one
@@ -186,7 +186,7 @@ def on_grid(blocks):
 
 
 def pieces(blocks, per_piece):
-    """Return the pieces [(first, stop), …] of so many ``blocks``, on an absolute grid.
+    """Return the pieces [(first, stop), …] of a number of ``blocks``, on an absolute grid.
 
     They begin at multiples of ``per_piece``, a power of two; the last one is cut at ``blocks``.
     """

@@ -20,14 +20,14 @@ PARTS = 8
 #: The fastest starts are one stratum, of at least such a share.
 LEAST_FRACTION = 1 / 64
 
-#: Where the smallest stratum expects fewer starts than so many, neighbours are taken together.
+#: If the smallest stratum expects fewer initial states than this, neighbours are merged.
 FEWEST = 16
 
 
 def fraction_below(cosine, components):
     """Return the share of directions with a component between −``cosine`` and ``cosine``.
 
-    They are uniform on the unit sphere in so many dimensions, ``components`` ≥ 2; 0 ≤ cosine ≤ 1.
+    Directions are uniform on the unit sphere in ``components`` ≥ 2 dimensions; 0 ≤ cosine ≤ 1.
     The component is sin t with density ∝ cosⁿ⁻² t.
     """
 
@@ -62,7 +62,7 @@ def mean_of(shares, starts, counts, squares):
 
     That is their exact ``shares``, which add up to 1, the numbers of ``starts``, Σ N and Σ N²,
     arrays (n, m). Which strata are taken together depends on the number of all starts, so that the
-    mean has no bias but for the rare case of a stratum with fewer than two of them. The error is
+    mean has no bias, except in the rare case of a stratum with fewer than two of them. The error is
     infinite for a single start. Raises ``InputError`` for arrays that are no such numbers.
     """
     try:

@@ -1,4 +1,4 @@
-"""Work in threads: on so many cores as are given, and so that Ctrl-C is heard at once.
+"""Work in threads: on a number of cores, and so that Ctrl-C is heard without delay.
 
 Kernels release Python's lock, so threads are enough for all cores. A kernel hears of no signal
 while it runs, and when Python's handler strikes in the middle of what numba does before and after,
@@ -13,7 +13,7 @@ from threading import Thread
 
 from twodiscs.model.checks import check_integer
 
-#: Seconds between two looks of who waits: so often a progress is told that time goes by.
+#: Seconds between two calls of ``waiting`` while a result is waited for.
 LOOK = 0.2
 
 #: No more threads than that.
@@ -32,7 +32,7 @@ def _serve(work, calls):
 
 
 def in_threads(work, arguments, cores=1, waiting=None):
-    """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by so many threads.
+    """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by ``cores`` threads.
 
     With one of them the calls come one after the other. Only some are begun ahead of what is asked
     for; those that have not begun when this ends, or is interrupted, never are. ``waiting()`` is

@@ -53,7 +53,7 @@ def proposals_per_event(scene, duration):
 
 
 def near_hop(scene, hop):
-    """Return a ``Scene`` and a hop that are the same but for names: draws are made along x."""
+    """Return an equivalent ``Scene`` and hop along x, the axis along which draws are made."""
     return hopping_along(scene, hop, "x")
 
 

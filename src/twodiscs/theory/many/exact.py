@@ -1,8 +1,8 @@
 """The exact numbers of N discs, where there are any: which method has them.
 
 Two discs have the plain theory, three the quadrature between its kinks, and any number in a channel
-so low that they keep their order the transfer operator. Of all others no exact value is known here,
-which is not to say that an event is impossible.
+so low that they keep their order the transfer operator. No exact value is known here for all
+others; their events may be possible all the same.
 """
 
 import math
@@ -91,8 +91,9 @@ def surfaces(scene, known):
 def event_rates(scene):
     """Return {event: rate} of a ``Scene`` of more than two discs; 0.0 if never, None if not known.
 
-    Of a collision or a hop of any pair, of one disc at one wall, or of any of them at any. They do
-    not need the volume, which may be too small for a double where its logarithm is none.
+    Rates are those of a collision or a hop of any pair, of one disc at one wall, and of any disc at
+    any wall. They do not need the volume, which may be too small for a double although its
+    logarithm is not.
     """
     known = measures(scene)
     if known is None:

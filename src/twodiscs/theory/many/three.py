@@ -5,13 +5,13 @@ given the heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, as
 
     h(s, d13) = ∫ (A − t)(t − s) dt from d13 to A = (A − s) m²/2 − m³/3,  m = (A − d13)₊
 
-beyond that. Of the heights only the gaps between them matter, sorted by height: a larger one P, a
+beyond that. Only the gaps between the heights matter, sorted by height: a larger one P, a
 smaller one Q and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
 
     V = 24 ∫_0^B dt (B − t) ∫_{t/2}^t dP [g(p + q) + g(q + c) + h(p + c, q)]
 
 where h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
-their terms are positive. Of the pairs that are level in x, at least σ apart in y,
+their terms are positive. For pairs that are level in x, at least σ apart in y,
 
     Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
                        [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
@@ -106,7 +106,7 @@ def _kinks(a, sigma, t, c):
         by_q = [np.full_like(t, sigma), np.full_like(t, level), beside]
     p = np.array(by_p + [t - q for q in by_q])
     q = np.array([t - p for p in by_p] + by_q)
-    # What is nowhere in the range is an end.
+    # A kink outside of the range is replaced by an end of it.
     p, q = np.clip(np.where(np.isnan(p), t, p), t / 2, t), np.clip(np.nan_to_num(q), 0.0, t / 2)
     order = np.argsort(p, axis=0)
     return np.take_along_axis(p, order, 0), np.take_along_axis(q, order, 0)

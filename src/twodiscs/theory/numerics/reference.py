@@ -261,7 +261,7 @@ def mean_time(event, q):
     return volume(q) / (parts * declared.sides * AREAS[event](q) * normal_speed())
 
 
-#: What tables call it, as a function of a ``MpScene``.
+#: The quantities of tables, as functions of a ``MpScene``.
 QUANTITIES = {
     "volume": volume,
     **{f"{event}_area": area for event, area in AREAS.items()},
@@ -296,7 +296,7 @@ def _lower(q, f):
 
 
 def excluded_volume(q):
-    """What the discs take from the prism."""
+    """Return the volume of the prism in which the discs overlap."""
     return (4 * q.a * q.b) ** 2 - volume(q)
 
 
@@ -325,17 +325,17 @@ def whole_wall(q):
 
 
 def upper_wall(q):
-    """What the upper triangle takes from it."""
+    """Return the part of it in the upper triangle."""
     return _upper(q, _wall_weight(q))
 
 
 def lower_wall(q):
-    """What the lower triangle takes from it."""
+    """Return the part of it in the lower triangle."""
     return _lower(q, _wall_weight(q))
 
 
 def sector_wall(q):
-    """What the sector of the circle takes from it."""
+    """Return the part of it in the sector of the circle."""
     return whole_wall(q) - right_wall_area(q) - upper_wall(q) - lower_wall(q)
 
 
