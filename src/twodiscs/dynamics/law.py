@@ -20,7 +20,8 @@ from typing import NamedTuple
 from twodiscs.sampling.jit import inlined, optional
 
 #: The event that ended a free flight. Codes are floats because they travel in the same registers
-#: as the state. To leave a periodic cell and come back on its other side is no event: those are negative.
+#: as the state. To leave a periodic cell and come back on its other side is no event: those codes
+#: are negative.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
 WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
