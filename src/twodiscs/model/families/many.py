@@ -9,6 +9,11 @@ from functools import cache
 
 from twodiscs.model.checks import InputError
 
+__all__ = [
+    "check", "confined", "ergodic_components", "largest_radius", "multiplicity", "passed",
+    "require_followable",
+]  # fmt: skip
+
 #: Decimal digits before or after the point that the volume of all places may have: a double then
 #: holds it.
 MOST_DIGITS = 150

@@ -1,0 +1,111 @@
+"""Families: the same names on every floor, one sentence for what is missing, edits for one alone."""
+
+import shutil
+from importlib import import_module
+
+import pytest
+
+from twodiscs.model import sources
+from twodiscs.model.checks import InputError
+from twodiscs.model.family import FAMILIES, module_of, of_family
+from twodiscs.model.scene import Scene
+
+FLOORS = ("model", "theory", "sampling", "dynamics")
+
+SCENES = {
+    "plain": Scene(1.5, 1.0, 0.2),
+    "effects": Scene(1.5, 1.0, 0.2, mass_ratio=2.0),
+    "many": Scene(1.5, 1.0, 0.15, discs=3),
+}
+
+#: The functions that a family does not have, by floor.
+ABSENT = {
+    ("theory", "plain"): {"passing_rate"},
+    ("theory", "many"): {"fraction_near", "passing_rate", "shell_expectation", "shells"},
+    ("sampling", "many"): {"near_hop", "origins", "rejection", "shelled", "thickness"},
+    ("dynamics", "many"): {"rare_run", "rare_summary"},
+}
+
+
+def names(floor, family):
+    return set(import_module(module_of(floor, family)).__all__)
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+def test_families_have_the_same_names(floor):
+    every = set().union(*(names(floor, family) for family in FAMILIES))
+    for family in FAMILIES:
+        assert every - names(floor, family) == ABSENT.get((floor, family), set()), family
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_scene_knows_its_family(family):
+    assert SCENES[family].family == family
+
+
+def test_what_a_family_cannot_do_is_one_sentence():
+    with pytest.raises(InputError, match=r"^discs must be 2 for shells, not 3$"):
+        of_family(SCENES["many"], "theory", "shell_expectation", "shells")
+    with pytest.raises(InputError, match=r"^discs must be 2 for near hop, not 3$"):
+        of_family(SCENES["many"], "sampling", "near_hop")
+    with pytest.raises(
+        InputError, match=r"^scene must be plain for nothing at all, but it has mass"
+    ):
+        of_family(SCENES["effects"], "dynamics", "nothing", "nothing at all")
+
+
+# An edit for one family ---------------------------------------------------------------------------
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    """Return a function: the fingerprints of the work on a family after an edit of some modules."""
+    ignored = shutil.ignore_patterns("__pycache__")
+    for package in sources.PACKAGES:
+        shutil.copytree(sources.ROOT / package, tmp_path / package, ignore=ignored)
+    monkeypatch.setattr(sources, "ROOT", tmp_path)
+    known = (sources._file, sources._imports, sources._read, sources.fingerprint)
+
+    def fingerprints(*edited):
+        for name in edited:
+            with open(tmp_path / f"{name.replace('.', '/')}.py", "a", encoding="utf-8") as file:
+                file.write("\nADDED = 1\n")
+        for function in known:
+            function.cache_clear()
+        jobs = ("twodiscs.sampling.montecarlo", "twodiscs.dynamics.counting")
+        return {
+            family: sources.fingerprint(*jobs, *(module_of(floor, family) for floor in FLOORS))
+            for family in FAMILIES
+        }
+
+    yield fingerprints
+    monkeypatch.undo()
+    for function in known:
+        function.cache_clear()
+
+
+def changed(before, after):
+    return {family for family in FAMILIES if before[family] != after[family]}
+
+
+def test_an_edit_for_one_family_changes_the_fingerprint_of_no_other(copy):
+    before = copy()
+    of_many = [
+        ".".join(name)
+        for name in sources.modules()
+        if name[0] == "twodiscs" and "many" in name and "figures" not in name
+    ]
+    assert len(of_many) > 10
+    edits = [
+        (of_many, {"many"}),
+        (["twodiscs.theory.weighted"], {"effects"}),
+        ([module_of(floor, "effects") for floor in FLOORS], {"effects"}),
+        (["twodiscs.dynamics.two.lockstep"], {"plain", "effects"}),
+        (["twodiscs.theory.flux"], {"effects", "many"}),
+        (["twodiscs.model.scene"], set(FAMILIES)),
+    ]
+    for modules, families in edits:
+        files = [name for name in modules if not name.endswith(".many") or "families" in name]
+        after = copy(*files)
+        assert changed(before, after) == families, modules
+        before = after
