@@ -1,4 +1,4 @@
-"""Families: the same names on every floor, one sentence for what is missing, edits for one alone."""
+"""Families: the same names on every floor, one sentence for what is missing, edits for one each."""
 
 import shutil
 from importlib import import_module

@@ -154,8 +154,8 @@ rule explorer:
             source(f"workflow/explorer/{name}")
             for name in (
                 "explorer.html",
-                "twodiscs.theory.js",
-                "twodiscs.dynamics.js",
+                "theory.js",
+                "dynamics.js",
                 "page.js",
                 "uPlot/uPlot.iife.min.js",
                 "uPlot/uPlot.min.css",
