@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from twodiscs.arguments import Parser, named, run
+from twodiscs.comparison.measured.transmission import QUIET
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
@@ -12,8 +13,11 @@ from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import said
 from twodiscs_paper.pipeline.documents.numbers.rounding import whole
-from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, numbers, read, table_rows
+from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, printed, read, table_rows
 from twodiscs_paper.pipeline.results.provenance import commit, versions
+
+#: Numbers of the methods, which stand in no table.
+CONSTANTS = {"dearer": COST_RATIO, "intervals": RETURNS, "passages_pause": QUIET}
 
 
 def captions(results, scene):
@@ -27,11 +31,11 @@ def captions(results, scene):
     }
 
 
-def printed(contents):
-    """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
+def numbers_of(contents):
+    """Return {name: ``Printed``} of all that the manuscript prints, see ``typeset``."""
     scenes = contents["scenes"]
-    values = numbers(read(contents["results"], scenes, contents["long_run"]), scenes)
-    constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
+    constants = CONSTANTS | {"seed": contents["seed"]}
+    values = printed(read(contents["results"], scenes, contents["long_run"]), scenes)
     return values | {name: whole(value) for name, value in constants.items()}
 
 
@@ -39,7 +43,7 @@ def typeset(template, output, contents, values):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
-    "seed"; ``values`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
+    "seed"; ``values`` is {name: ``Printed``}. The template finds them under ``sys.inputs.contents``,
     as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
     template, the ``versions``, and ``results``, their folder, as a path from the root that results
     and the project have in common. The same inputs at the same commit give the same bytes on every
@@ -121,7 +125,7 @@ def main():
     contents = contents_of(options.files, boxes, options.output)
     contents |= {"configuration": options.configuration, "seed": options.seed}
     contents |= {"long_run": options.long_run}
-    values = printed(contents)
+    values = numbers_of(contents)
     PaperNumbers.write(options.numbers, table_rows(values))
     typeset(options.template, options.output, contents, values)
 
