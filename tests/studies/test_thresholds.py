@@ -178,3 +178,13 @@ def test_without_times_there_are_first_passages(box, read, tmp_path):
     assert {row["quantity"] for row in found} == {"first_passage"}
     with style.context():
         figure.draw(box, passages | {"thresholds": found}).draw_without_rendering()
+
+
+def test_the_share_of_mean_times_from_strips_is_told():
+    fit = {"event": "vertical_hop", "points": 4, "parameter": "exponent", "z": 3.0}
+    fit = Thresholds.empty(**fit)
+    times = [{"starts": starts} for starts in ("strip", "invariant", "strip", "strip")]
+    row = thresholds.strips(fit, times)
+    assert row.keys() == fit.keys()
+    assert (row["parameter"], row["estimate"], row["z"]) == ("strips", 0.75, None)
+    assert (row["event"], row["points"]) == ("vertical_hop", 4)

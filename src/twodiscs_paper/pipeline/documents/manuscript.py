@@ -43,11 +43,11 @@ def typeset(template, output, contents, values):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
-    "seed"; ``values`` is {name: ``Printed``}. The template finds them under ``sys.inputs.contents``,
-    as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
-    template, the ``versions``, and ``results``, their folder, as a path from the root that results
-    and the project have in common. The same inputs at the same commit give the same bytes on every
-    machine: fonts are those that come with Typst.
+    "seed"; ``values`` is {name: ``Printed``}. The template finds them as JSON under
+    ``sys.inputs.contents``: the texts of ``numbers``, the ``captions`` of all figures, the
+    ``commit`` of the template, the ``versions``, and ``results``, their folder, as a path from the
+    root that results and the project have in common. The same inputs at the same commit give the
+    same bytes on every machine: fonts are those that come with Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst

@@ -32,7 +32,7 @@ class Agreement(Table):
     """the value"""
     stderr: NUMBER
     """
-    its standard error; of mean_square √(2/count), that of as many independent standard normal scores
+    its standard error; of mean_square √(2/count), that of independent standard normal scores
     """
 
     @classmethod

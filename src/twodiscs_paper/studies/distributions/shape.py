@@ -22,23 +22,23 @@ def is_drifted(row):
 
 
 def late_bins(rate, hazards):
-    """Return the bins with a hop in the last two fifths of the time that a ``rate`` was fitted to."""
-    return [bin for bin in hazards if bin["first"] >= LATE * rate["last"] and bin["count"] > 0]
+    """Return the ``hazards`` with a hop in the last two fifths of the time of a fitted ``rate``."""
+    return [row for row in hazards if row["first"] >= LATE * rate["last"] and row["count"] > 0]
 
 
 def late_hazard(late):
     """Return (hazard, standard error) of the bins ``late``: their hops over their time at risk."""
-    hops = sum(bin["count"] for bin in late)
-    hazard = hops / sum(bin["count"] / bin["estimate"] for bin in late)
+    hops = sum(row["count"] for row in late)
+    hazard = hops / sum(row["count"] / row["estimate"] for row in late)
     return hazard, hazard / math.sqrt(hops)
 
 
 def over_cubic(late):
-    """Return the hops in the bins ``late`` over those expected of the hazard 3/t of a cubic tail."""
+    """Return the hops in the bins ``late`` over those of the hazard 3/t of a cubic tail."""
     expected = sum(
-        6 * bin["count"] / bin["estimate"] / (bin["first"] + bin["last"]) for bin in late
+        6 * row["count"] / row["estimate"] / (row["first"] + row["last"]) for row in late
     )
-    return sum(bin["count"] for bin in late) / expected
+    return sum(row["count"] for row in late) / expected
 
 
 def shape(case):
@@ -57,7 +57,7 @@ def shape(case):
     if late:
         hazard, error = late_hazard(late)
         ends = {"first": late[0]["first"], "last": late[-1]["last"]}
-        ends["count"] = sum(bin["count"] for bin in late)
+        ends["count"] = sum(row["count"] for row in late)
         found |= ends | {"estimate": hazard, "stderr": error}
         if hazard < FALLEN * rate["estimate"]:
             ratio = {"quantity": "over_cubic", "estimate": over_cubic(late)}

@@ -13,12 +13,13 @@ APPROACHES = ("vertical_hop", "horizontal_hop")
 
 
 def last_ratios(rows):
-    """Yield the rows on the last well measured ratio of each tail to its law, and on its approach."""
-    last = {}
-    for row in rows:
-        if row["method"] == "weighted" and row["law"] and row["stderr"]:
-            if row["stderr"] < WELL_MEASURED * row["estimate"]:
-                last[row["event"]] = row
+    """Yield the rows on the last well measured ratio of each tail to its law, and its approach."""
+    last = {
+        row["event"]: row
+        for row in rows
+        if row["method"] == "weighted" and row["law"] and row["stderr"]
+        if row["stderr"] < WELL_MEASURED * row["estimate"]
+    }
     for event, row in last.items():
         ratio, error = row["estimate"] / row["law"], row["stderr"] / row["law"]
         start = row | {"method": "fit", "law": None}

@@ -3,14 +3,10 @@
 Nothing is computed here: what needs a fit, a correlation or a χ² is a row of the table of a study.
 """
 
-import math
-
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.pipeline.documents.numbers.number import FIRST_HOP, MAIN, Cells, Number, Other
 from twodiscs_paper.pipeline.documents.numbers.rounding import (
     AS_TYPED,
-    Format,
-    Printed,
     COUNTED,
     COUNTED_IN_WORDS,
     DISTINCT_IN_WORDS,
@@ -23,9 +19,7 @@ from twodiscs_paper.pipeline.documents.numbers.rounding import (
     decimals,
     digits,
     largest,
-    several,
     smallest,
-    at_most,
     total,
 )
 from twodiscs_paper.pipeline.documents.numbers.texts import (
@@ -37,8 +31,11 @@ from twodiscs_paper.pipeline.documents.numbers.texts import (
     FIRST_LETTER,
     METHODS,
     NUMBER_WORDS,
+    OTHERS,
+    OVERLAP,
     PLAIN,
     PLURALS,
+    POWER_OF_TWO,
     QUOTIENT,
     RATIO,
     SEVERITY,
@@ -47,6 +44,20 @@ from twodiscs_paper.pipeline.documents.numbers.texts import (
     STEP_FLOORS,
     THEORY,
 )
+
+
+def _of(table):
+    """Return a function that declares a number of a ``table``."""
+    return lambda name, where, *how, **same: Number(name, table, where, *how, **same)
+
+
+check, grid, volume, areas, mean_times = map(
+    _of, ("check", "grid", "volume", "areas", "mean_times")
+)
+cost, long_run, agreement, errata = map(_of, ("cost", "long_run", "agreement", "errata"))
+distributions, tails, thresholds = map(_of, ("distributions", "tails", "thresholds"))
+effects, passages, more_discs = map(_of, ("effects", "passages", "more_discs"))
+accuracy_cost, stability = map(_of, ("accuracy_cost", "stability"))
 
 ESTIMATE = ("estimate", "stderr")
 OVER_MEAN = ("estimate/exact_mean", "stderr/exact_mean")
@@ -62,59 +73,53 @@ MEAN_SCORES = {"comparison": "z_mean"}
 EVERYWHERE, STRIPS = {"starts": "invariant"}, {"starts": "strip"}
 
 AGREEMENT = (
-    Number("scenes", "grid", {}, "scene", DISTINCT_IN_WORDS),
-    Number("radii", "grid", {}, "radius", COUNTED),
-    Number("comparisons", "check", COMPARED, "passed", COUNTED),
-    Number("tests", "check", TESTS, "passed", COUNTED),
-    Number("tests_largest", "check", TESTS, "z", largest()),
-    Number("tests_none_seen", "check", TESTS | {"status": "none-seen"}, "passed", COUNTED),
-    Number("bounds", "check", TESTS, "bound", RANGE_OF_THREE),
-    Number("sum_rule_radii", "check", COMPARED | {"comparison": "sum_rule"}, "passed", COUNTED),
-    Number("sum_rule_largest", "check", COMPARED | {"comparison": "sum_rule"}, "z", largest()),
-    Number("mean_time_largest", "check", COMPARED | {"comparison": "mean_time"}, "z", largest()),
-    Number(
-        "monte_carlo_largest", "check", {"method": ("monte_carlo", "conditioned")}, "z", largest()
-    ),
-    Number("dynamics_tests", "agreement", {"quantity": "mean_square"}, "count", WHOLE),
-    Number("dynamics_mean_square", "agreement", {"quantity": "mean_square"}, "estimate", digits(2)),
-    Number("dynamics_spread", "agreement", {"quantity": "mean_square"}, "stderr", digits(1)),
+    grid("scenes", {}, "scene", DISTINCT_IN_WORDS),
+    grid("radii", {}, "radius", COUNTED),
+    check("comparisons", COMPARED, "passed", COUNTED),
+    check("tests", TESTS, "passed", COUNTED),
+    check("tests_largest", TESTS, "z", largest()),
+    check("tests_none_seen", TESTS | {"status": "none-seen"}, "passed", COUNTED),
+    check("bounds", TESTS, "bound", RANGE_OF_THREE),
+    check("sum_rule_radii", COMPARED | {"comparison": "sum_rule"}, "passed", COUNTED),
+    check("sum_rule_largest", COMPARED | {"comparison": "sum_rule"}, "z", largest()),
+    check("mean_time_largest", COMPARED | {"comparison": "mean_time"}, "z", largest()),
+    check("monte_carlo_largest", {"method": ("monte_carlo", "conditioned")}, "z", largest()),
+    agreement("dynamics_tests", {"quantity": "mean_square"}, "count", WHOLE),
+    agreement("dynamics_mean_square", {"quantity": "mean_square"}, "estimate", digits(2)),
+    agreement("dynamics_spread", {"quantity": "mean_square"}, "stderr", digits(1)),
     *(
-        Number(name, "agreement", {"quantity": "correlation", "event": e}, "estimate", digits(2))
+        agreement(name, {"quantity": "correlation", "event": e}, "estimate", digits(2))
         for name, e in (("correlation_walls", "right_wall"), ("correlation_hops", "vertical_hop"))
     ),
-    Number("mean_scores", "check", MEAN_SCORES, "z", COUNTED),
-    Number("mean_scores_largest", "check", MEAN_SCORES, "z", largest()),
+    check("mean_scores", MEAN_SCORES, "z", COUNTED),
+    check("mean_scores_largest", MEAN_SCORES, "z", largest()),
     *(
-        Number(f"mean_scores_{name}", "check", MEAN_SCORES | {"z": ...}, columns, form, pick)
+        check(f"mean_scores_{name}", MEAN_SCORES | {"z": ...}, columns, form, pick)
         for pick in [("largest", "z")]
         for name, columns, form in (
             ("quantity", "quantity", NAME),
             ("box", ("width", "height"), SIDES),
         )
     ),
-    Number("configurations", "cost", {"stage": "monte_carlo"}, "events", total(2)),
-    Number("samples", "volume", {}, "samples", RANGE),
-    Number("epsilon", "areas", {}, "epsilon", RANGE),
-    Number("events", "cost", {"stage": "dynamics"}, "events", total(2)),
-    Number("duration", "mean_times", EVERYWHERE, "duration", RANGE_OF_THREE),
-    Number("replicas", "mean_times", EVERYWHERE, "replicas", RANGE),
-    Number("target", "mean_times", {}, "target", RANGE),
-    Number("strips", "mean_times", STRIPS, "exact", COUNTED_IN_WORDS),
-    Number("strips_longest", "mean_times", STRIPS, "estimate", digits(2), ("largest", "estimate")),
+    cost("configurations", {"stage": "monte_carlo"}, "events", total(2)),
+    volume("samples", {}, "samples", RANGE),
+    areas("epsilon", {}, "epsilon", RANGE),
+    cost("events", {"stage": "dynamics"}, "events", total(2)),
+    mean_times("duration", EVERYWHERE, "duration", RANGE_OF_THREE),
+    mean_times("replicas", EVERYWHERE, "replicas", RANGE),
+    mean_times("target", {}, "target", RANGE),
+    mean_times("strips", STRIPS, "exact", COUNTED_IN_WORDS),
+    mean_times("strips_longest", STRIPS, "estimate", digits(2), ("largest", "estimate")),
 )
 
 RAREST = ("largest", "exact")
 LONG_RUN = (
-    Number(
-        "long_run_events", "long_run", {"event": ("any_wall", "disc_collision")}, "count", total(2)
-    ),
-    Number("long_run_radius", "long_run", {}, "radius", AS_TYPED, FIRST),
-    Number("long_run_error", "long_run", {}, "relative_stderr", smallest(1)),
-    Number("long_run_rare", "long_run", {}, "exact", digits(2), RAREST),
-    Number(
-        "long_run_rare_error", "long_run", {"exact": ...}, "relative_stderr", largest(1), RAREST
-    ),
-    Number("long_run_largest", "long_run", {}, "z", largest()),
+    long_run("long_run_events", {"event": ("any_wall", "disc_collision")}, "count", total(2)),
+    long_run("long_run_radius", {}, "radius", AS_TYPED, FIRST),
+    long_run("long_run_error", {}, "relative_stderr", smallest(1)),
+    long_run("long_run_rare", {}, "exact", digits(2), RAREST),
+    long_run("long_run_rare_error", {"exact": ...}, "relative_stderr", largest(1), RAREST),
+    long_run("long_run_largest", {}, "z", largest()),
 )
 
 AGREEMENT_CELLS = Cells(
@@ -123,13 +128,13 @@ AGREEMENT_CELLS = Cells(
     {},
     ("scene",),
     (
-        Number("box", "check", {}, ("width", "height"), SIDES, FIRST),
-        Number("radii", "grid", {}, "radius", COUNTED),
-        Number("events", "cost", {"stage": "dynamics"}, "events", total(2)),
-        Number("comparisons", "check", COMPARED, "passed", COUNTED),
-        Number("tests", "check", TESTS, "passed", COUNTED),
-        Number("failed", "check", COMPARED, "passed", FAILED),
-        Number("largest", "check", {}, "z", largest()),
+        check("box", {}, ("width", "height"), SIDES, FIRST),
+        grid("radii", {}, "radius", COUNTED),
+        cost("events", {"stage": "dynamics"}, "events", total(2)),
+        check("comparisons", COMPARED, "passed", COUNTED),
+        check("tests", TESTS, "passed", COUNTED),
+        check("failed", COMPARED, "passed", FAILED),
+        check("largest", {}, "z", largest()),
     ),
 )
 
@@ -137,24 +142,26 @@ AGREEMENT_CELLS = Cells(
 
 DENSITIES = {"quantity": "density_at_zero", "z": ...}
 ODD = ("largest", "z")
-ODD_DENSITY = Number("odd_density", "distributions", DENSITIES, ESTIMATE, WITH_ERROR, ODD)
-HOPS_RATIO = {"event": "vertical_hop", "quantity": "last_ratio"}
+ODD_DENSITY = distributions("odd_density", DENSITIES, ESTIMATE, WITH_ERROR, ODD)
 DECAY = {"quantity": "rate"}
 
 
 def _tail(name, event):
     """Return the numbers on the last ratio of a tail to its law."""
     ratio = {"event": event, "quantity": "last_ratio"}
-    last = Number(f"tail_{name}_ratio", "tails", ratio, ESTIMATE, WITH_ERROR)
+    last = tails(f"tail_{name}_ratio", ratio, ESTIMATE, WITH_ERROR)
     return (
         last,
-        Number(f"tail_{name}_time", "tails", ratio, "time/exact_mean", digits(2)),
-        Number(
-            f"tail_{name}_probability", "tails", {"quantity": "survival", "method": "weighted"},
-            "estimate", digits(2), same=(last, "event", "radius", "time"),
+        tails(f"tail_{name}_time", ratio, "time/exact_mean", digits(2)),
+        tails(
+            f"tail_{name}_probability",
+            {"quantity": "survival", "method": "weighted"},
+            "estimate",
+            digits(2),
+            same=(last, "event", "radius", "time"),
         ),
-        Number(f"tail_{name}_radius", "tails", ratio, "radius", digits(3)),
-    )  # fmt: skip
+        tails(f"tail_{name}_radius", ratio, "radius", digits(3)),
+    )
 
 
 def _hazards(quantity):
@@ -165,48 +172,49 @@ def _hazards(quantity):
 ELSEWHERE = {"scene": Other(MAIN), "event": "vertical_hop", "quantity": "falling_without_drift"}
 
 DISTRIBUTIONS = (
-    Number("chain_factor", "agreement", {"quantity": "error_ratio"}, "estimate", largest()),
-    Number("densities", "distributions", DENSITIES, "z", COUNTED),
-    Number("densities_largest", "distributions", DENSITIES, "z", largest()),
-    Number(
-        "densities_others", "distributions", DENSITIES, "z",
-        several(lambda z: at_most(sorted(map(abs, z))[:-1]) if len(z) > 1 else None),
-    ),
+    agreement("chain_factor", {"quantity": "error_ratio"}, "estimate", largest()),
+    distributions("densities", DENSITIES, "z", COUNTED),
+    distributions("densities_largest", DENSITIES, "z", largest()),
+    distributions("densities_others", DENSITIES, "z", OTHERS),
     ODD_DENSITY,
-    Number("odd_density_exact", "distributions", DENSITIES, "reference", digits(5), ODD),
-    Number("odd_density_box", "distributions", DENSITIES, ("width", "height"), SIDES, ODD),
-    Number("odd_density_radius", "distributions", DENSITIES, "radius", AS_TYPED, ODD),
-    Number(
-        "odd_density_chains", "agreement", {"quantity": "density_at_zero"}, ESTIMATE, WITH_ERROR,
+    distributions("odd_density_exact", DENSITIES, "reference", digits(5), ODD),
+    distributions("odd_density_box", DENSITIES, ("width", "height"), SIDES, ODD),
+    distributions("odd_density_radius", DENSITIES, "radius", AS_TYPED, ODD),
+    agreement(
+        "odd_density_chains",
+        {"quantity": "density_at_zero"},
+        ESTIMATE,
+        WITH_ERROR,
         same=(ODD_DENSITY, "scene", "event", "radius"),
     ),
     *_tail("collisions", "disc_collision"),
     *_tail("hops", "vertical_hop"),
-    Number(
-        "tail_hops_approach", "tails", {"event": "vertical_hop", "quantity": "approach"},
-        ESTIMATE, WITH_ERROR,
+    tails(
+        "tail_hops_approach",
+        {"event": "vertical_hop", "quantity": "approach"},
+        ESTIMATE,
+        WITH_ERROR,
     ),
-    Number("decay_rate", "tails", DECAY, TIMES_MEAN, WITH_ERROR),
-    Number("decay_radius", "tails", DECAY, "radius", digits(3)),
-    Number("decay_first", "tails", DECAY, "time/exact_mean", digits(2)),
-    Number("decay_last", "tails", DECAY, "until/exact_mean", digits(2)),
-    Number("decay_chi2", "tails", {"quantity": "chi2"}, "estimate", digits(3)),
-    Number("decay_degrees", "tails", {"quantity": "degrees"}, "estimate", WHOLE),
-    Number("decay_chance", "tails", {"quantity": "chance"}, "estimate", digits(2)),
-    Number("hazards", "distributions", _hazards("rate"), "estimate", COUNTED),
-    Number("plateaus", "distributions", _hazards("plateau"), "estimate", COUNTED),
-    Number("plateau_cases", "distributions", _hazards("plateau"), ("event", "radius"), CASES),
-    Number("plateau_rates", "distributions", _hazards("plateau"), "estimate*exact_mean", RANGE),
-    Number("rates_nearest", "distributions", _hazards("rate"), "z", smallest()),
-    Number(
-        "falling_cases", "distributions", _hazards(("falling", "falling_without_drift")),
-        ("event", "radius"), CASES,
+    tails("decay_rate", DECAY, TIMES_MEAN, WITH_ERROR),
+    tails("decay_radius", DECAY, "radius", digits(3)),
+    tails("decay_first", DECAY, "time/exact_mean", digits(2)),
+    tails("decay_last", DECAY, "until/exact_mean", digits(2)),
+    tails("decay_chi2", {"quantity": "chi2"}, "estimate", digits(3)),
+    tails("decay_degrees", {"quantity": "degrees"}, "estimate", WHOLE),
+    tails("decay_chance", {"quantity": "chance"}, "estimate", digits(2)),
+    distributions("hazards", _hazards("rate"), "estimate", COUNTED),
+    distributions("plateaus", _hazards("plateau"), "estimate", COUNTED),
+    distributions("plateau_cases", _hazards("plateau"), ("event", "radius"), CASES),
+    distributions("plateau_rates", _hazards("plateau"), "estimate*exact_mean", RANGE),
+    distributions("rates_nearest", _hazards("rate"), "z", smallest()),
+    distributions(
+        "falling_cases", _hazards(("falling", "falling_without_drift")), ("event", "radius"), CASES
     ),
-    Number("fallen_cases", "distributions", _hazards("over_cubic"), ("event", "radius"), CASES),
-    Number("over_cubic", "distributions", _hazards("over_cubic"), "estimate", RANGE),
-    Number("first_passage_largest", "distributions", _hazards("first_passage"), "z", largest()),
+    distributions("fallen_cases", _hazards("over_cubic"), ("event", "radius"), CASES),
+    distributions("over_cubic", _hazards("over_cubic"), "estimate", RANGE),
+    distributions("first_passage_largest", _hazards("first_passage"), "z", largest()),
     *(
-        Number(f"elsewhere_{name}", "distributions", ELSEWHERE, columns, form, ("last",))
+        distributions(f"elsewhere_{name}", ELSEWHERE, columns, form, ("last",))
         for name, columns, form in (
             ("box", ("width", "height"), SIDES),
             ("radius", "radius", AS_TYPED),
@@ -215,11 +223,11 @@ DISTRIBUTIONS = (
             ("last", "last/exact_mean", digits(2)),
         )
     ),
-)  # fmt: skip
+)
 
 
 def _rates(column, quantity, columns, form, **more):
-    return Number(column, "distributions", {"quantity": quantity} | more, columns, form)
+    return distributions(column, {"quantity": quantity} | more, columns, form)
 
 
 RATES_CELLS = Cells(
@@ -248,16 +256,13 @@ REDUCED = {"form": "reduced"}
 SHARES = {"quantity": "never_met_share", "scene": "rough"}
 ROUGH = SHARES | {"effects": Other("{}")}
 WORST = ("largest", "duration", "estimate")
-NEVER_MET = Number("never_met_rough", "effects", ROUGH, "estimate", digits(2), WORST)
+NEVER_MET = effects("never_met_rough", ROUGH, "estimate", digits(2), WORST)
 
 POWERS = (
-    Number("reduced_largest", "thresholds", LAWS | REDUCED, "z", largest()),
-    Number(
-        "strip_powers", "thresholds", LAWS | {"parameter": "strips", "estimate": 1.0},
-        "event", PLURALS,
-    ),
+    thresholds("reduced_largest", LAWS | REDUCED, "z", largest()),
+    thresholds("strip_powers", LAWS | {"parameter": "strips", "estimate": 1.0}, "event", PLURALS),
     *(
-        Number(f"{hop.removesuffix('_hop')}_{name}", "thresholds", LAWS | PLAIN_EXPONENT | of, c, form)
+        thresholds(f"{hop.removesuffix('_hop')}_{name}", LAWS | PLAIN_EXPONENT | of, c, form)
         for hop in HOPS
         for of in [{"event": hop}]
         for name, c, form in (
@@ -265,23 +270,23 @@ POWERS = (
             ("reach", "farthest/limit_radius", digits(2, 100)),
         )
     ),
-    Number("effects", "agreement", {"quantity": "effects"}, "count", WHOLE),
-    Number(
-        "effect_scenes", "effects", {"quantity": Other("never_met_share")}, "scene",
-        DISTINCT_IN_WORDS,
-    ),
-    Number("effects_largest", "agreement", {"quantity": "effects"}, "estimate", largest()),
+    agreement("effects", {"quantity": "effects"}, "count", WHOLE),
+    effects("effect_scenes", {"quantity": Other("never_met_share")}, "scene", DISTINCT_IN_WORDS),
+    agreement("effects_largest", {"quantity": "effects"}, "estimate", largest()),
     NEVER_MET,
-    Number("never_met_time", "effects", ROUGH | {"estimate": ...}, "duration", digits(2), WORST),
-    Number("never_met_radius", "effects", ROUGH | {"estimate": ...}, "radius", AS_TYPED, WORST),
-    Number(
-        "never_met_smooth", "effects", SHARES | {"effects": "{}"}, ("count", "replicas"), SHARE,
+    effects("never_met_time", ROUGH | {"estimate": ...}, "duration", digits(2), WORST),
+    effects("never_met_radius", ROUGH | {"estimate": ...}, "radius", AS_TYPED, WORST),
+    effects(
+        "never_met_smooth",
+        SHARES | {"effects": "{}"},
+        ("count", "replicas"),
+        SHARE,
         same=(NEVER_MET, "radius", "duration"),
     ),
-    Number("statements", "errata", {}, "verdict", COUNTED),
-    Number("statements_right", "errata", {"verdict": "right"}, "verdict", COUNTED),
-    Number("statements_major", "errata", {"severity": "major"}, "verdict", COUNTED),
-)  # fmt: skip
+    errata("statements", {}, "verdict", COUNTED),
+    errata("statements_right", {"verdict": "right"}, "verdict", COUNTED),
+    errata("statements_major", {"severity": "major"}, "verdict", COUNTED),
+)
 
 #: Times between hits of any wall follow from those of the right and of the top wall.
 POWERS_CELLS = Cells(
@@ -290,17 +295,19 @@ POWERS_CELLS = Cells(
     LAWS | {"event": Other("any_wall")},
     ("event",),
     (
-        Number("event", "thresholds", PLAIN_EXPONENT, "event", SHORT_EVENT),
-        Number("points", "thresholds", PLAIN_EXPONENT, "points", WHOLE),
-        Number("plain", "thresholds", PLAIN_EXPONENT, ESTIMATE, WITH_ERROR),
-        Number("curve", "thresholds", PLAIN_EXPONENT, "curve", digits(5)),
-        Number("reduced", "thresholds", REDUCED | {"parameter": "exponent"}, ESTIMATE, WITH_ERROR),
-        Number(
-            "coefficient", "thresholds", REDUCED | {"parameter": "coefficient"},
-            ("estimate/law", "stderr/law"), WITH_ERROR,
+        thresholds("event", PLAIN_EXPONENT, "event", SHORT_EVENT),
+        thresholds("points", PLAIN_EXPONENT, "points", WHOLE),
+        thresholds("plain", PLAIN_EXPONENT, ESTIMATE, WITH_ERROR),
+        thresholds("curve", PLAIN_EXPONENT, "curve", digits(5)),
+        thresholds("reduced", REDUCED | {"parameter": "exponent"}, ESTIMATE, WITH_ERROR),
+        thresholds(
+            "coefficient",
+            REDUCED | {"parameter": "coefficient"},
+            ("estimate/law", "stderr/law"),
+            WITH_ERROR,
         ),
     ),
-)  # fmt: skip
+)
 
 ERRATA_CELLS = Cells(
     "errata",
@@ -308,13 +315,13 @@ ERRATA_CELLS = Cells(
     {"verdict": Other("right")},
     (),
     (
-        Number("number", "errata", {}, "number", PLAIN),
-        Number("label", "errata", {}, "label", PLAIN),
-        Number("section", "errata", {}, "place", PLAIN),
-        Number("severity", "errata", {}, ("severity", "verdict"), SEVERITY),
-        Number("ratio", "errata", {}, ("ratio", "radius"), RATIO),
-        Number("by", "errata", {}, "decided_by", METHODS),
-        Number("right", "errata", {}, "correction", CORRECTION),
+        errata("number", {}, "number", PLAIN),
+        errata("label", {}, "label", PLAIN),
+        errata("section", {}, "place", PLAIN),
+        errata("severity", {}, ("severity", "verdict"), SEVERITY),
+        errata("ratio", {}, ("ratio", "radius"), RATIO),
+        errata("by", {}, "decided_by", METHODS),
+        errata("right", {}, "correction", CORRECTION),
     ),
     is_numbered=True,
 )
@@ -324,7 +331,6 @@ ERRATA_CELLS = Cells(
 #: Moments of inertia, in units of mr², as the manuscript names them; one half is a solid disc.
 INERTIAS = {"one": 1.0, "half": 0.5, "quarter": 0.25, "tenth": 0.1}
 FARTHEST, NEAREST = ("largest", "distance"), ("smallest", "distance")
-POWER_OF_TWO = Format(lambda x: Printed(x, f"$2^({round(math.log2(x))})$"))
 FILES = {"scene": MAIN, "discs": Other(2), "method": "states"}
 LATTICE = {"method": "lattice"}
 
@@ -338,64 +344,58 @@ def _near(quantity, inertia=None, **more):
 def _ends(name, where, column=ESTIMATE, form=WITH_ERROR, suffix=""):
     """Return the numbers at the largest distance from the threshold and at the smallest one."""
     return (
-        Number(f"{name}_first{suffix}", "passages", where, column, form, FARTHEST),
-        Number(f"{name}_last{suffix}", "passages", where, column, form, NEAREST),
+        passages(f"{name}_first{suffix}", where, column, form, FARTHEST),
+        passages(f"{name}_last{suffix}", where, column, form, NEAREST),
     )
 
 
 RING = {"method": "hops", "discs": 2}
 KAPPA = _near("coefficient")
 PASSAGES = (
-    Number("passages", "passages", {}, "z", COUNTED),
-    Number("passages_largest", "passages", {}, "z", largest()),
+    passages("passages", {}, "z", COUNTED),
+    passages("passages_largest", {}, "z", largest()),
     *_ends("passages", KAPPA, "distance", POWER_OF_TWO, "_distance"),
     *_ends("passages", KAPPA),
-    Number("passages_exponent", "passages", _near("last_exponent"), ESTIMATE, WITH_ERROR),
+    passages("passages_exponent", _near("last_exponent"), ESTIMATE, WITH_ERROR),
     *(
-        Number(f"passages_rough_{name}", "passages", _near("last_exponent", i), ESTIMATE, WITH_ERROR)
+        passages(f"passages_rough_{name}", _near("last_exponent", i), ESTIMATE, WITH_ERROR)
         for name, i in INERTIAS.items()
     ),
-    Number(
-        "passages_rough_distance", "passages", _near("coefficient", ...), "distance", POWER_OF_TWO,
-        NEAREST,
+    passages(
+        "passages_rough_distance", _near("coefficient", ...), "distance", POWER_OF_TWO, NEAREST
     ),
-    Number(
-        "passages_rough_half_power", "passages", _near("passage_exponent", INERTIAS["half"]),
-        ESTIMATE, WITH_ERROR,
+    passages(
+        "passages_rough_half_power",
+        _near("passage_exponent", INERTIAS["half"]),
+        ESTIMATE,
+        WITH_ERROR,
     ),
     *_ends("passages_ring_smooth", _near("diffusion", **RING)),
     *_ends("passages_ring", _near("diffusion", **RING), "distance", POWER_OF_TWO, "_distance"),
     *_ends("passages_ring_rough", _near("diffusion", INERTIAS["half"], **RING)),
-    Number("passages_files", "passages", FILES | {"quantity": "diffusion"}, "estimate", RANGE),
-    Number("passages_files_error", "passages", FILES | {"quantity": "diffusion"}, "stderr", largest(1)),
-    Number("passages_files_discs", "passages", FILES | {"quantity": "diffusion"}, "discs", NUMBER_WORDS),
-    Number("passages_files_rates", "passages", FILES | {"quantity": "rate"}, "estimate", QUOTIENT),
-    Number(
-        "passages_single_file", "passages", LATTICE | {"quantity": "single_file"}, ESTIMATE,
-        WITH_ERROR,
-    ),
+    passages("passages_files", FILES | {"quantity": "diffusion"}, "estimate", RANGE),
+    passages("passages_files_error", FILES | {"quantity": "diffusion"}, "stderr", largest(1)),
+    passages("passages_files_discs", FILES | {"quantity": "diffusion"}, "discs", NUMBER_WORDS),
+    passages("passages_files_rates", FILES | {"quantity": "rate"}, "estimate", QUOTIENT),
+    passages("passages_single_file", LATTICE | {"quantity": "single_file"}, ESTIMATE, WITH_ERROR),
     *(
-        Number(f"passages_lattice_{name}", "passages", LATTICE | {"quantity": "diffusion"}, c, form, pick)
+        passages(f"passages_lattice_{name}", LATTICE | {"quantity": "diffusion"}, c, form, pick)
         for name, c, form, pick in (
             ("first", ESTIMATE, WITH_ERROR, ("largest", "swap")),
             ("last", ESTIMATE, WITH_ERROR, ("smallest", "swap")),
             ("swap", "swap", digits(2), ("smallest", "swap")),
         )
     ),
-)  # fmt: skip
+)
 
 JUDGED = {"z": ...}
 MORE_DISCS = (
-    Number("more_discs", "more_discs", {}, "z", COUNTED),
-    Number(
-        "more_discs_exact", "more_discs", {"exact": ..., "event": Other("virial")}, "z", COUNTED
-    ),
-    Number("more_discs_sums", "more_discs", {"event": "virial"}, "z", COUNTED),
-    Number("more_discs_largest", "more_discs", {}, "z", largest()),
-    Number("more_discs_most", "more_discs", JUDGED, "discs", WHOLE, ("largest", "discs")),
-    Number(
-        "more_discs_width", "more_discs", JUDGED, "width/discs", digits(3), ("largest", "discs")
-    ),
+    more_discs("more_discs", {}, "z", COUNTED),
+    more_discs("more_discs_exact", {"exact": ..., "event": Other("virial")}, "z", COUNTED),
+    more_discs("more_discs_sums", {"event": "virial"}, "z", COUNTED),
+    more_discs("more_discs_largest", {}, "z", largest()),
+    more_discs("more_discs_most", JUDGED, "discs", WHOLE, ("largest", "discs")),
+    more_discs("more_discs_width", JUDGED, "width/discs", digits(3), ("largest", "discs")),
 )
 
 MORE_DISCS_CELLS = Cells(
@@ -404,22 +404,21 @@ MORE_DISCS_CELLS = Cells(
     {},
     ("radius", "discs"),
     (
-        Number("radius", "more_discs", {}, "radius", digits(3), FIRST),
-        Number("discs", "more_discs", {}, "discs", WHOLE, FIRST),
-        Number("theory", "more_discs", {}, "theory", THEORY, FIRST),
+        more_discs("radius", {}, "radius", digits(3), FIRST),
+        more_discs("discs", {}, "discs", WHOLE, FIRST),
+        more_discs("theory", {}, "theory", THEORY, FIRST),
         *(
-            Number(
-                event, "more_discs", {"event": event}, ("dynamics", "dynamics_stderr", "exact"),
-                EXACT_OR_MEASURED,
+            more_discs(
+                event, {"event": event}, ("dynamics", "dynamics_stderr", "exact"), EXACT_OR_MEASURED
             )
             for event in EVENTS
             if event != "any_wall"
         ),
-        Number("largest", "more_discs", {}, "z", largest()),
+        more_discs("largest", {}, "z", largest()),
     ),
     is_sorted=True,
     is_numbered=True,
-)  # fmt: skip
+)
 
 # What a digit costs, and where arithmetic has it hard ---------------------------------------------
 
@@ -439,35 +438,33 @@ THICKEST = ("largest", "setting")
 
 COSTS = (
     *(
-        Number(name, "accuracy_cost", dict(zip(("part", "method", "quantity"), of, strict=True)), FITTED,
-               WITH_ERROR, FIRST)
+        accuracy_cost(
+            name,
+            dict(zip(("part", "method", "quantity"), of, strict=True)),
+            FITTED,
+            WITH_ERROR,
+            FIRST,
+        )
         for name, of in PRICES.items()
     ),
-    Number("shell_floor", "accuracy_cost", SHELLS, "error", digits(2), THICKEST),
-    Number("shell_epsilon", "accuracy_cost", SHELLS, "setting", digits(2), THICKEST),
-    Number("step_floors", "accuracy_cost", STEPS, ("setting", "error"), STEP_FLOORS),
-    Number(
-        "evaluation_seconds", "accuracy_cost", {"method": "exact"}, "seconds", digits(1),
-        ("largest", "seconds"),
+    accuracy_cost("shell_floor", SHELLS, "error", digits(2), THICKEST),
+    accuracy_cost("shell_epsilon", SHELLS, "setting", digits(2), THICKEST),
+    accuracy_cost("step_floors", STEPS, ("setting", "error"), STEP_FLOORS),
+    accuracy_cost(
+        "evaluation_seconds", {"method": "exact"}, "seconds", digits(1), ("largest", "seconds")
     ),
     *(
-        Number(name, "accuracy_cost", {"part": "speed", "method": method}, "setting", decimals(1))
+        accuracy_cost(name, {"part": "speed", "method": method}, "setting", decimals(1))
         for name, method in (("lockstep_faster", "lockstep"), ("single_faster", "single_precision"))
     ),
-    Number(
-        "price_error", "accuracy_cost", {"part": "radius"}, "error", digits(1),
-        ("smallest", "error"),
-    ),
-    Number(
-        "strip_seconds", "accuracy_cost", {"part": "radius", "method": "strip"}, "seconds",
-        largest(1),
-    ),
-)  # fmt: skip
+    accuracy_cost("price_error", {"part": "radius"}, "error", digits(1), ("smallest", "error")),
+    accuracy_cost("strip_seconds", {"part": "radius", "method": "strip"}, "seconds", largest(1)),
+)
 
 
 def _stability(name, part, quantity, form, **more):
     where = {"part": part} | ({"quantity": quantity} if quantity else {}) | more
-    return Number(name, "stability", where, "value", form)
+    return stability(name, where, "value", form)
 
 
 EXACT_VALUES = ("volume", "areas", "mean_times")
@@ -476,11 +473,9 @@ STABILITY = (
     _stability(
         "accepted_least", "sampling", "accepted_share", smallest(3, 100), method="conditioned"
     ),
-    Number(
-        "longest_run", "stability", {"part": "dynamics"}, "count", digits(2), ("largest", "count")
-    ),
+    stability("longest_run", {"part": "dynamics"}, "count", digits(2), ("largest", "count")),
     _stability("energy_error", "dynamics", "energy_error", largest()),
-    _stability("overlap", "dynamics", "smallest_gap", several(lambda gaps: at_most([-min(gaps)]))),
+    _stability("overlap", "dynamics", "smallest_gap", OVERLAP),
     _stability("contact_time", "times", "contact_time", largest()),
     _stability("coverage_least", "coverage", None, smallest(3, 100)),
     _stability("coverage_most", "coverage", None, largest(3, 100)),

@@ -1,4 +1,4 @@
-"""What a number of the manuscript is: rows of a table, found by a filter, a column, and a format."""
+"""What a number of the manuscript is: a table, a filter for its rows, a column, and a format."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -150,7 +150,7 @@ def matches(row, where):
 
 
 def value_of(row, column):
-    """Return the value of a column in a ``row``, or of "one/other" or "one*other"; None if empty."""
+    """Return the value of a column in a ``row``, of "one/other" or "one*other"; None if empty."""
     for sign in "/*":
         if sign in column:
             one, other = (row[name] for name in column.split(sign))

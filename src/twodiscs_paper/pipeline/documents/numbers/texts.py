@@ -1,10 +1,12 @@
-"""The formats of the manuscript that are of one number or column: lists of cases, and corrections."""
+"""Formats that one number or one column of a table needs: lists of cases, and corrections."""
 
+import math
 import re
 
 from twodiscs_paper.pipeline.documents.numbers.rounding import (
     Format,
     Printed,
+    at_most,
     in_words,
     plain,
     several,
@@ -71,6 +73,10 @@ EXACT_OR_MEASURED = Format(_exact_or_measured, takes_empty=True)
 FIRST_LETTER = words(lambda event: event[0])
 SHORT_EVENT = words(lambda event: " ".join(SHORT.get(word, word) for word in event.split("_")))
 THEORY = words(lambda theory: theory.replace("none", "--"))
+#: The largest size of all but one of several values; a depth, where the least value is negative.
+OTHERS = several(lambda z: at_most(sorted(map(abs, z))[:-1]) if len(z) > 1 else None)
+OVERLAP = several(lambda gaps: at_most([-min(gaps)]))
+POWER_OF_TWO = Format(lambda x: Printed(x, f"$2^({round(math.log2(x))})$"))
 FAILED = several(lambda passed: Printed(n := passed.count(False), str(n)))
 
 # Corrections --------------------------------------------------------------------------------------
