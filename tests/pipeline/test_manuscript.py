@@ -11,7 +11,7 @@ from twodiscs.figures.kit import style
 from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents import manuscript
-from twodiscs_paper.pipeline.documents.numbers.rounding import Number
+from twodiscs_paper.pipeline.documents.numbers.rounding import Printed
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -95,8 +95,8 @@ def test_figures_are_only_spoken_of_where_they_are():
 
 NAMES = re.findall(r'#?(?:number|has)\("(\w+)"\)', SOURCE)
 CELLS = {"agreement": 7, "rates": 9, "powers": 6, "errata": 7}
-NUMBERS = {name: Number(7.5, "$7.5$") for name in NAMES} | {
-    f"{table}/scene0/{i}": Number(None, f"cell {i}") for table, n in CELLS.items() for i in range(n)
+NUMBERS = {name: Printed(7.5, "$7.5$") for name in NAMES} | {
+    f"{table}/scene0/{i}": Printed(None, f"cell {i}") for table, n in CELLS.items() for i in range(n)
 }
 NUMBERS |= {f"agreement/scene{i}/box": NUMBERS["agreement/scene0/0"] for i in range(1, 7)}
 
@@ -166,7 +166,7 @@ def test_it_is_the_same_bytes_again_and_has_no_date(paper, unchanged):
 
 @pytest.mark.parametrize("name", ["tests_largest", "rates/scene0/3", "agreement/scene0/0"])
 def test_a_number_is_printed_as_its_text_says(paper, unchanged, name):
-    assert paper(NUMBERS | {name: Number(7.5, "$8.5$")}) != unchanged
+    assert paper(NUMBERS | {name: Printed(7.5, "$8.5$")}) != unchanged
 
 
 @pytest.mark.parametrize("start", [0, 1])
