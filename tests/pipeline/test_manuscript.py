@@ -32,7 +32,7 @@ DEFINED = r"\b[Dd]isc\s[12]\b|\bnominal 95 per cent\b"
 def typed_numbers(source):
     """Return the numbers of Typst markup that ought to have been printed by their names.
 
-    In the text these are all digits but those that are ``DEFINED``; in formulas decimals, powers
+    In the text these are all digits except the ``DEFINED`` ones; in formulas decimals, powers
     of numbers, and integers too large for a coefficient.
     """
     formulas = " ".join(re.findall(r"\$([^$]*)\$", source))
@@ -247,9 +247,9 @@ def test_figures_and_tables_are_those_of_scenes_and_those_of_all():
 
 @pytest.mark.parametrize("text", ["1.5", "1.5x", "1x2x3", "axb"])
 def test_a_box_that_is_none_is_one_sentence(text):
-    assert manuscript.sides("1.5x1.0") == (1.5, 1.0)
+    assert manuscript.box_sides("1.5x1.0") == (1.5, 1.0)
     with pytest.raises(InputError, match=r"must be as 1\.5x1\.0, not '"):
-        manuscript.sides(text)
+        manuscript.box_sides(text)
 
 
 def test_what_captions_explain_alike_is_split_off(tmp_path):

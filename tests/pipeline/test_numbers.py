@@ -95,7 +95,7 @@ ROWS = {
 }
 HOP, WALL = {"event": "hop"}, {"event": "wall"}
 make = partial(Number, "n", "tails")
-FIRST = make({"law": 3.0}, "time", rounding.WHOLE)
+FIRST = make({"law": 3.0}, "time", rounding.INTEGER)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ FIRST = make({"law": 3.0}, "time", rounding.WHOLE)
         (make({"law": None}, "estimate", rounding.digits(2)), "$5$"),
         (make({"event": Other("hop")}, "estimate", rounding.digits(2)), "$8$"),
         (make({"event": Other(MAIN)}, "estimate", rounding.largest()), "$8$"),
-        (make({"event": MAIN, "law": ...}, "time", rounding.WHOLE), "2"),  # MAIN is the hop here
+        (make({"event": MAIN, "law": ...}, "time", rounding.INTEGER), "2"),  # MAIN is the hop here
         (make({"time": (2.0, 4.0)}, "estimate", rounding.COUNTED), "3"),
         (make({}, "event", rounding.DISTINCT_IN_WORDS), "two"),
         (make({}, "estimate", rounding.total(2)), "$7$"),
@@ -123,7 +123,7 @@ FIRST = make({"law": 3.0}, "time", rounding.WHOLE)
             make(WALL, "estimate", rounding.digits(1), same=(FIRST, "time")),
             "$8$",
         ),
-        (make({}, ("estimate", "event"), rounding.several(lambda x: rounding.whole(len(x)))), "3"),
+        (make({}, ("estimate", "event"), rounding.COUNTED), "3"),
     ],
 )  # fmt: skip
 def test_a_number_takes_its_rows(one, text):
@@ -158,14 +158,14 @@ def test_a_number_without_a_row_is_left_out_and_named(monkeypatch, capsys):
     monkeypatch.setattr(
         table,
         "NUMBERS",
-        (make(HOP, "law", rounding.WHOLE), make({"law": 9.0}, "law", rounding.WHOLE)),
+        (make(HOP, "law", rounding.INTEGER), make({"law": 9.0}, "law", rounding.INTEGER)),
     )
     monkeypatch.setattr(table, "CELLS", ())
     assert table.printed(ROWS, SCENES) == {"n": rounding.Printed(3.0, "3")}
     assert capsys.readouterr().err.startswith(
         "the number n must have one row of tails.csv with law"
     )
-    monkeypatch.setattr(table, "NUMBERS", (make({}, "estimate", rounding.WHOLE),))
+    monkeypatch.setattr(table, "NUMBERS", (make({}, "estimate", rounding.INTEGER),))
     with pytest.raises(InputError, match="but there are 3"):
         table.printed(ROWS, SCENES)
 
@@ -173,13 +173,13 @@ def test_a_number_without_a_row_is_left_out_and_named(monkeypatch, capsys):
 def test_cells_are_those_of_lines():
     cells = (
         make(HOP, "estimate", rounding.digits(1), ("first",)),
-        Number("seconds", "cost", {}, "seconds", rounding.WHOLE),
+        Number("seconds", "cost", {}, "seconds", rounding.INTEGER),
     )
     lines = Cells("t", "tails", {}, ("event",), cells)
     assert {name: one.text for name, one in lines.printed(ROWS, GIVEN).items()} == {
         "t/hop/n": "$-6$", "t/hop/seconds": "--", "t/wall/n": "--", "t/wall/seconds": "7",
     }  # fmt: skip
-    (one,) = [make({}, "time", rounding.WHOLE)]
+    (one,) = [make({}, "time", rounding.INTEGER)]
     lines = Cells("t", "tails", {"law": ...}, ("time", "event"), (one,), True, True)
     assert {name: one.text for name, one in lines.printed(ROWS, GIVEN).items()} == {
         "t/01/n": "2", "t/02/n": "2",

@@ -10,11 +10,11 @@ from twodiscs_paper.pipeline.documents.numbers.rounding import (
     COUNTED,
     COUNTED_IN_WORDS,
     DISTINCT_IN_WORDS,
+    INTEGER,
     NAME,
     RANGE,
     RANGE_OF_THREE,
     SIDES,
-    WHOLE,
     WITH_ERROR,
     decimals,
     digits,
@@ -84,7 +84,7 @@ AGREEMENT = (
     check("sum_rule_largest", COMPARED | {"comparison": "sum_rule"}, "z", largest()),
     check("mean_time_largest", COMPARED | {"comparison": "mean_time"}, "z", largest()),
     check("monte_carlo_largest", {"method": ("monte_carlo", "conditioned")}, "z", largest()),
-    agreement("dynamics_tests", {"quantity": "mean_square"}, "count", WHOLE),
+    agreement("dynamics_tests", {"quantity": "mean_square"}, "count", INTEGER),
     agreement("dynamics_mean_square", {"quantity": "mean_square"}, "estimate", digits(2)),
     agreement("dynamics_spread", {"quantity": "mean_square"}, "stderr", digits(1)),
     *(
@@ -200,7 +200,7 @@ DISTRIBUTIONS = (
     tails("decay_first", DECAY, "time/exact_mean", digits(2)),
     tails("decay_last", DECAY, "until/exact_mean", digits(2)),
     tails("decay_chi2", {"quantity": "chi2"}, "estimate", digits(3)),
-    tails("decay_degrees", {"quantity": "degrees"}, "estimate", WHOLE),
+    tails("decay_degrees", {"quantity": "degrees"}, "estimate", INTEGER),
     tails("decay_chance", {"quantity": "chance"}, "estimate", digits(2)),
     distributions("hazards", _hazards("rate"), "estimate", COUNTED),
     distributions("plateaus", _hazards("plateau"), "estimate", COUNTED),
@@ -270,7 +270,7 @@ POWERS = (
             ("reach", "farthest/limit_radius", digits(2, 100)),
         )
     ),
-    agreement("effects", {"quantity": "effects"}, "count", WHOLE),
+    agreement("effects", {"quantity": "effects"}, "count", INTEGER),
     effects("effect_scenes", {"quantity": Other("never_met_share")}, "scene", DISTINCT_IN_WORDS),
     agreement("effects_largest", {"quantity": "effects"}, "estimate", largest()),
     NEVER_MET,
@@ -296,7 +296,7 @@ POWERS_CELLS = Cells(
     ("event",),
     (
         thresholds("event", PLAIN_EXPONENT, "event", SHORT_EVENT),
-        thresholds("points", PLAIN_EXPONENT, "points", WHOLE),
+        thresholds("points", PLAIN_EXPONENT, "points", INTEGER),
         thresholds("plain", PLAIN_EXPONENT, ESTIMATE, WITH_ERROR),
         thresholds("curve", PLAIN_EXPONENT, "curve", digits(5)),
         thresholds("reduced", REDUCED | {"parameter": "exponent"}, ESTIMATE, WITH_ERROR),
@@ -394,7 +394,7 @@ MORE_DISCS = (
     more_discs("more_discs_exact", {"exact": ..., "event": Other("virial")}, "z", COUNTED),
     more_discs("more_discs_sums", {"event": "virial"}, "z", COUNTED),
     more_discs("more_discs_largest", {}, "z", largest()),
-    more_discs("more_discs_most", JUDGED, "discs", WHOLE, ("largest", "discs")),
+    more_discs("more_discs_most", JUDGED, "discs", INTEGER, ("largest", "discs")),
     more_discs("more_discs_width", JUDGED, "width/discs", digits(3), ("largest", "discs")),
 )
 
@@ -405,7 +405,7 @@ MORE_DISCS_CELLS = Cells(
     ("radius", "discs"),
     (
         more_discs("radius", {}, "radius", digits(3), FIRST),
-        more_discs("discs", {}, "discs", WHOLE, FIRST),
+        more_discs("discs", {}, "discs", INTEGER, FIRST),
         more_discs("theory", {}, "theory", THEORY, FIRST),
         *(
             more_discs(

@@ -62,8 +62,9 @@ class Number:
         if self.pick and rows:
             rows = [picked(rows, *self.pick)]
         if not rows or (len(rows) > 1 and not self.format.is_of_several):
+            rows_wanted = "a row" if self.format.is_of_several else "one row"
             raise (InputError if rows else NoRow)(
-                f"the number {self.name} must have one row of {self.table}.csv with "
+                f"the number {self.name} must have {rows_wanted} of {self.table}.csv with "
                 f"{as_words(where)}, but there are {len(rows)}"
             )
         return rows

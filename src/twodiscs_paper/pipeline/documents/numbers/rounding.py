@@ -22,7 +22,7 @@ class Printed(NamedTuple):
 
 
 def rounded(x, n, rounding=ROUND_HALF_UP):
-    """Return ``x`` as a ``Decimal`` of ``n`` digits that count, n ≥ 1; noise of doubles is none."""
+    """Return ``x`` as a ``Decimal`` of ``n`` ≥ 1 significant digits, after rounding to twelve."""
     return Context(prec=n, rounding=rounding).create_decimal(f"{x:.12g}").normalize()
 
 
@@ -46,7 +46,7 @@ def formula(x):
 
 
 def significant(x, n):
-    """Return the number ``x`` to ``n`` digits that count."""
+    """Return the number ``x`` to ``n`` significant digits."""
     return Printed(x, f"${formula(rounded(x, n))}$")
 
 
@@ -80,7 +80,7 @@ def with_error(value, error):
     return Printed(value, f"${value:.{places}f} ({error * 10.0**places:.0f})$")
 
 
-def whole(n):
+def integer(n):
     """Return an integer in figures."""
     return Printed(n, f"{n:.0f}")
 
@@ -125,7 +125,7 @@ def several(write):
 
 
 def digits(n, scale=1):
-    """Return the format of a value to ``n`` digits that count, times ``scale``."""
+    """Return the format of a value times ``scale``, to ``n`` significant digits."""
     return Format(lambda x: significant(scale * x, n))
 
 
@@ -154,10 +154,10 @@ def words(write):
     return Format(lambda *values: Printed(None, write(*values)))
 
 
-WHOLE, IN_WORDS, WITH_ERROR, SIDES = map(Format, (whole, in_words, with_error, sides))
+INTEGER, IN_WORDS, WITH_ERROR, SIDES = map(Format, (integer, in_words, with_error, sides))
 AS_TYPED = Format(lambda x: Printed(x, repr(x)))
 NAME = words(lambda name: name.replace("_", " "))
-COUNTED = several(lambda values: whole(len(values)))
+COUNTED = several(lambda values: integer(len(values)))
 COUNTED_IN_WORDS = several(lambda values: in_words(len(values)))
 DISTINCT_IN_WORDS = several(lambda values: in_words(len({*values})))
 RANGE, RANGE_OF_THREE = several(span), several(lambda values: span(values, 3))
