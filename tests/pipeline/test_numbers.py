@@ -124,6 +124,7 @@ FIRST = make({"law": 3.0}, "time", rounding.INTEGER)
             "$8$",
         ),
         (make({}, ("estimate", "event"), rounding.COUNTED), "3"),
+        (make(HOP, ("estimate", "law"), rounding.WITH_ERROR), "$-6 (3)$"),
     ],
 )  # fmt: skip
 def test_a_number_takes_its_rows(one, text):

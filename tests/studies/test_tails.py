@@ -227,5 +227,7 @@ def test_one_hazard_at_all_times_is_tested_by_chi_square():
     chi2 = (hazards[0] - hazards[1]) ** 2 / (errors[0] ** 2 + errors[1] ** 2)
     chance = math.erfc(math.sqrt(chi2 / 2))
     assert found == pytest.approx({"chi2": chi2, "degrees": 1, "chance": chance})
+    slower = [one | {"time": 2 * one["time"]} for one in survival(hazards, n)]
+    assert fits.constant_hazard(slower) == (pytest.approx(chi2), 1)
     assert fits.constant_hazard(survival((0.8, 0.8, 0.8), n)) == (pytest.approx(0, abs=1e-12), 2)
     assert fits.constant_hazard(survival((0.8,), n)) is None

@@ -113,7 +113,7 @@ class Cells:
         for number, key in enumerate(sorted(lines) if self.is_sorted else lines):
             own = [row for row in lines[key] if matches(row, where)]
             line = f"{number:02}" if self.is_numbered else "_".join(map(str, key))
-            same = dict(zip(self.key, key, strict=bool(self.key)))
+            same = dict(zip(self.key, key, strict=False))  # without a key, none
             for cell in self.cells if own else ():
                 rows = own if cell.table == self.table else tables[cell.table]
                 rows = {cell.table: [row for row in rows if matches(row, same)]}
