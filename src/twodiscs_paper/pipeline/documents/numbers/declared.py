@@ -3,7 +3,7 @@
 Nothing is computed here: what needs a fit, a correlation or a χ² is a row of the table of a study.
 """
 
-from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.events import HOPS, SHELLS
 from twodiscs_paper.pipeline.documents.numbers.number import FIRST_HOP, MAIN, Cells, Number, Other
 from twodiscs_paper.pipeline.documents.numbers.rounding import (
     AS_TYPED,
@@ -411,8 +411,7 @@ MORE_DISCS_CELLS = Cells(
             more_discs(
                 event, {"event": event}, ("dynamics", "dynamics_stderr", "exact"), EXACT_OR_MEASURED
             )
-            for event in EVENTS
-            if event != "any_wall"
+            for event in SHELLS
         ),
         more_discs("largest", {}, "z", largest()),
     ),
