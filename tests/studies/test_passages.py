@@ -15,8 +15,8 @@ from scipy.stats import chi2
 from twodiscs.comparison.estimates import mean_of
 from twodiscs.comparison.measured.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
+from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
