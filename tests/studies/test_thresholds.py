@@ -61,7 +61,8 @@ def fitted(rows, box=PAPER, passages=()):
 
 def test_exact_times_have_the_exact_power():
     found = fitted(times_of("horizontal_hop", RADII))
-    assert len(found) == 4
+    assert len(found) == 5
+    assert found["mean_time", "plain", "strips"]["estimate"] == 0
     exponent = found["mean_time", "reduced", "exponent"]
     assert exponent["estimate"] == pytest.approx(-2, abs=1e-10)
     assert exponent["chi2"] < 1e-12
