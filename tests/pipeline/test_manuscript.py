@@ -63,7 +63,7 @@ def test_every_number_is_printed_by_its_name():
 
 #: Words that state a size, with up to two words before them.
 SIZE = re.compile(
-    r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand|million\w*|thirteen|octaves|one third"
+    r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand\w*|million\w*|thirteen|octaves|one third"
     r"|fifths|per cent|eight times|such times)\b"
 )
 #: Results of runs that no build makes: they are to become numbers of a long run.
@@ -74,6 +74,7 @@ TYPED_SIZES = {
     "last two fifths": "which bins are late, by definition",
     "it to thirteen": "the tolerance of a test",
     "after six such times": BY_HAND,
+    "of a thousandth": BY_HAND,
     "out to eight times": BY_HAND,
     "of a hundred": "two digits at the power one half",
     "of a hundred times": BY_HAND,
