@@ -63,8 +63,8 @@ def test_every_number_is_printed_by_its_name():
 
 #: Words that state a size, with up to two words before them.
 SIZE = re.compile(
-    r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand\w*|million\w*|thirteen|octaves|one third"
-    r"|fifths|per cent|eight times|such times)\b"
+    r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand\w*|million\w*|thirteen|octaves"
+    r"|one third|fifths|per cent|eight times|such times)\b"
 )
 #: Results of runs that no build makes: they are to become numbers of a long run.
 BY_HAND = "a result typed by hand"
