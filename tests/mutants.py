@@ -103,6 +103,17 @@ MUTANTS = [
     ("studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
     ("studies/passages/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs", "per_disc = scene.width / 2"),
+    ("studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * half.stderr", "math.hypot(half.stderr"),
+    ("studies/passages/fits.py", "fit to all distances", '-row["distance"])[-LAST:]', '-row["distance"])'),
+    ("studies/passages/fits.py", "error of a logarithm", '[row["stderr"] / value for row', '[row["stderr"] for row'),
+    ("studies/tails/fits.py", "sum of variances in place of their difference", "relative[0] - relative[1]", "relative[0] + relative[1]"),
+    ("studies/tails/fits.py", "degrees of freedom", "return chi2, len(hazards) - 1", "return chi2, len(hazards)"),
+    ("studies/distributions/shape.py", "swapped axis of a drift", 'row["height"] if row["event"] == "vertical_hop"', 'row["width"] if row["event"] == "vertical_hop"'),
+    ("studies/distributions/shape.py", "one of two tests of a plateau", "min(tests) > LEVEL", "max(tests) > LEVEL"),
+    ("studies/agreement/measure.py", "error of a mean square", "math.sqrt(2 / len(tests))", "math.sqrt(1 / len(tests))"),
+    ("studies/agreement/measure.py", "independent counts of a bin", "fraction * (1 - fraction)", "fraction"),
+    ("pipeline/documents/numbers/number.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
+    ("pipeline/documents/numbers/number.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
     ("pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
 ]
 # fmt: on

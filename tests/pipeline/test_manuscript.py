@@ -11,7 +11,7 @@ from twodiscs.figures.kit import style
 from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents import manuscript
-from twodiscs_paper.pipeline.documents.numbers.rounding import Number
+from twodiscs_paper.pipeline.documents.numbers.rounding import Printed
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -32,12 +32,12 @@ DEFINED = r"\b[Dd]isc\s[12]\b|\bnominal 95 per cent\b"
 def typed_numbers(source):
     """Return the numbers of Typst markup that ought to have been printed by their names.
 
-    In the text these are all digits but those that are ``DEFINED``; in formulas decimals, powers
-    of ten, and integers too large for a coefficient.
+    In the text these are all digits except the ``DEFINED`` ones; in formulas decimals, powers
+    of numbers, and integers too large for a coefficient.
     """
     formulas = " ".join(re.findall(r"\$([^$]*)\$", source))
     text = re.sub(DEFINED, "", CODE.sub(" ", re.sub(r"\$[^$]*\$", " ", source)))
-    found = re.findall(r"\d+\.\d+|\b10\^\S+|\d{3,}", formulas)
+    found = re.findall(r"\d+\.\d+|\b\d+\^(?:\(-?\d+\)|\d{2,})|\b10\^\S+|\d{3,}", formulas)
     return re.findall(r"\S*\d\S*", text) + found
 
 
@@ -57,7 +57,47 @@ def test_typed_numbers_are_found(markup, found):
 
 
 def test_every_number_is_printed_by_its_name():
-    assert typed_numbers(SOURCE[SOURCE.index("= Introduction") :]) == []
+    """2^22 hops is how long a run was that no build makes."""
+    assert typed_numbers(SOURCE[SOURCE.index("= Introduction") :]) == ["2^22"]
+
+
+#: Words that state a size, with up to two words before them.
+SIZE = re.compile(
+    r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand\w*|million\w*|thirteen|octaves"
+    r"|one third|fifths|per cent|eight times|such times)\b"
+)
+#: Results of runs that no build makes: they are to become numbers of a long run.
+BY_HAND = "a result typed by hand"
+#: The sizes that are typed, and why.
+TYPED_SIZES = {
+    "in a thousand": "the level of a test",
+    "last two fifths": "which bins are late, by definition",
+    "it to thirteen": "the tolerance of a test",
+    "after six such times": BY_HAND,
+    "of a thousandth": BY_HAND,
+    "out to eight times": BY_HAND,
+    "of a hundred": "two digits at the power one half",
+    "of a hundred times": BY_HAND,
+    "nearly three per cent": BY_HAND,
+    "last four octaves": "which distances are fitted, by definition",
+    "the last octaves": "which distances are fitted, by definition",
+    "to a millionth": BY_HAND,
+    "have one third": BY_HAND,
+    "within three per cent": BY_HAND,
+    "a few per cent": BY_HAND,
+    "nominal 95 per cent": "the level of an interval",
+}
+
+
+def typed_sizes(source):
+    """Return the phrases of Typst markup that state a size in words."""
+    text = re.sub(r'#number\("\w+"\)', "#", re.sub(r"//.*", "", source))
+    return {match[0] for match in SIZE.finditer(re.sub(r"\s+", " ", text))}
+
+
+def test_sizes_in_words_have_a_reason():
+    found = typed_sizes(SOURCE[SOURCE.index("= Introduction") :])
+    assert found == {*TYPED_SIZES}
 
 
 def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():
@@ -95,8 +135,10 @@ def test_figures_are_only_spoken_of_where_they_are():
 
 NAMES = re.findall(r'#?(?:number|has)\("(\w+)"\)', SOURCE)
 CELLS = {"agreement": 7, "rates": 9, "powers": 6, "errata": 7}
-NUMBERS = {name: Number(7.5, "$7.5$") for name in NAMES} | {
-    f"{table}/scene0/{i}": Number(None, f"cell {i}") for table, n in CELLS.items() for i in range(n)
+NUMBERS = {name: Printed(7.5, "$7.5$") for name in NAMES} | {
+    f"{table}/scene0/{i}": Printed(None, f"cell {i}")
+    for table, n in CELLS.items()
+    for i in range(n)
 }
 NUMBERS |= {f"agreement/scene{i}/box": NUMBERS["agreement/scene0/0"] for i in range(1, 7)}
 
@@ -166,7 +208,7 @@ def test_it_is_the_same_bytes_again_and_has_no_date(paper, unchanged):
 
 @pytest.mark.parametrize("name", ["tests_largest", "rates/scene0/3", "agreement/scene0/0"])
 def test_a_number_is_printed_as_its_text_says(paper, unchanged, name):
-    assert paper(NUMBERS | {name: Number(7.5, "$8.5$")}) != unchanged
+    assert paper(NUMBERS | {name: Printed(7.5, "$8.5$")}) != unchanged
 
 
 @pytest.mark.parametrize("start", [0, 1])
@@ -206,9 +248,9 @@ def test_figures_and_tables_are_those_of_scenes_and_those_of_all():
 
 @pytest.mark.parametrize("text", ["1.5", "1.5x", "1x2x3", "axb"])
 def test_a_box_that_is_none_is_one_sentence(text):
-    assert manuscript.sides("1.5x1.0") == (1.5, 1.0)
+    assert manuscript.box_sides("1.5x1.0") == (1.5, 1.0)
     with pytest.raises(InputError, match=r"must be as 1\.5x1\.0, not '"):
-        manuscript.sides(text)
+        manuscript.box_sides(text)
 
 
 def test_what_captions_explain_alike_is_split_off(tmp_path):

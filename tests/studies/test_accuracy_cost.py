@@ -152,6 +152,18 @@ def test_the_table_takes_them(rows, tmp_path):
     assert AccuracyCost.read(tmp_path / "accuracy_cost.csv") == rows
 
 
+def test_the_speed_is_that_of_the_median_run():
+    def runs(method, *speeds):
+        return [{"part": "time", "method": method, "work": n, "seconds": 1.0} for n in speeds]
+
+    found = accuracy_cost.speeds(
+        [*runs("scalar", 2, 9, 1), *runs("lockstep", 16, 12), *runs("single_precision", 40)]
+    )
+    assert [(row["method"], row["setting"]) for row in found] == [
+        ("lockstep", 8.0), ("single_precision", 2.5),
+    ]  # fmt: skip
+
+
 def test_exact_evaluation_is_exact(rows):
     for row in of(rows, method="exact"):
         assert row["error"] < 1e-15

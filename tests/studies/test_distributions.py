@@ -19,7 +19,7 @@ from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory import tails
-from twodiscs_paper.studies.distributions import figure
+from twodiscs_paper.studies.distributions import figure, shape
 from twodiscs_paper.studies.distributions import measure as distributions
 from twodiscs_paper.studies.distributions.table import Distributions
 from twodiscs_paper.studies.tails.measure import tail
@@ -262,3 +262,56 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path):
     assert any(line.get_ydata()[0] == pytest.approx(zero, rel=1e-12) for line in rates.lines)
     names = passages.get_legend_handles_labels()[1]
     assert {"vertical hops", "horizontal hops"} <= set(names)
+
+
+def case(event, radius, p, trend, counts=(), mean=0.5):
+    """Return the rows of one hop: a rate fitted over 20 mean times, bins of 2 mean times."""
+    start = {"scene": "main", "width": 3.0, "height": 1.0, "event": event, "radius": radius}
+    start |= {"exact_mean": mean}
+    rows = [
+        {"quantity": "rate", "last": 20 * mean, "estimate": 0.8 / mean, "p": p}
+        | {"first": 4 * mean, "stderr": 0.02, "count": 9},
+        {"quantity": "trend", "p": trend},
+        *(
+            {"quantity": "hazard", "first": 2 * i * mean, "last": 2 * (i + 1) * mean}
+            | {"count": count, "estimate": rate}
+            for i, (count, rate) in enumerate(counts)
+        ),
+    ]
+    return [Distributions.empty(**start | row) for row in rows]
+
+
+FALLING = [(9999, 9.0)] * 6 + [(100, 2.0), (50, 1.0), (25, 0.5), (0, 0.0)]
+
+
+@pytest.mark.parametrize(
+    ("event", "radius", "p", "trend", "counts", "quantities"),
+    [
+        ("vertical_hop", 0.1, 0.5, 0.25, (), ["plateau"]),
+        ("vertical_hop", 0.1, 1e-6, 0.25, (), ["falling"]),
+        ("vertical_hop", 0.1, 0.5, 1e-6, (), ["falling"]),
+        ("vertical_hop", 0.3, 0.5, 1e-6, (), ["falling_without_drift"]),
+        ("horizontal_hop", 0.3, 0.5, 1e-6, (), ["falling"]),
+        ("vertical_hop", 0.1, 1e-6, 0.5, FALLING, ["over_cubic", "falling"]),
+        ("vertical_hop", 0.1, 1e-6, 0.5, [(100, 1.3)] * 9, ["falling"]),
+        ("vertical_hop", 0.1, 0.5, 0.5, FALLING, ["plateau"]),
+    ],
+)
+def test_hazards_are_sorted_by_whether_they_are_constant(
+    event, radius, p, trend, counts, quantities
+):
+    rows = case(event, radius, p, trend, counts)
+    assert [row["quantity"] for row in shape.shapes(rows)] == quantities
+    assert not [*shape.shapes(rows[1:])]
+
+
+def test_late_hazards_are_hops_over_their_time_at_risk():
+    """Late bins are those from 12 mean times on; the risk of a bin is hops over hazard."""
+    cubic, falling = shape.shapes(case("vertical_hop", 0.1, 1e-6, 0.5, FALLING))
+    hops, risk, middles = 175, 150.0, np.array([6.5, 7.5, 8.5])  # the mean is ½
+    assert (falling["first"], falling["last"], falling["count"]) == (6.0, 9.0, hops)
+    assert falling["estimate"] == pytest.approx(hops / risk)
+    assert falling["stderr"] == pytest.approx(math.sqrt(hops) / risk)
+    assert cubic["estimate"] == pytest.approx(hops / (3 / middles * 50.0).sum())
+    (plateau,) = shape.shapes(case("vertical_hop", 0.1, 0.5, 0.5, FALLING))
+    assert (plateau["estimate"], plateau["last"]) == (1.6, 10.0)

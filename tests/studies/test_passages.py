@@ -10,18 +10,19 @@ import numba
 import numpy as np
 import pytest
 from fabricated import written
+from scipy.stats import chi2
 
 from twodiscs.comparison.estimates import mean_of
 from twodiscs.comparison.measured.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import time_to_next
 from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
+from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
-from twodiscs_paper.studies.passages import exclusion, figure, file, measure
+from twodiscs_paper.studies.passages import exclusion, figure, file, fits, measure
 from twodiscs_paper.studies.passages.table import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
@@ -40,6 +41,59 @@ def test_the_slope_at_zero_is_exact(hop, halvings):
     assert row["reference_stderr"] is None
     assert abs(row["z"]) <= 5
     assert row["stderr"] < 0.15 * row["reference"]
+
+
+def test_errors_of_the_slope_are_those_of_its_spread():
+    """Scores of 64 seeds have the mean square 1, by the law of χ² within a false alarm of 1e-6."""
+    scene = BOX.scene(measure.radius_at(0.25, 4))
+    hop = measure._Hop("paper", scene, HOP, 4, 0)
+    scores = []
+    for hop.seed in range(64):
+        (row,) = hop.slope(64)
+        scores.append(row["z"])
+    square = sum(z**2 for z in scores)
+    assert chi2.sf(square, len(scores)) > 5e-7
+    assert chi2.cdf(square, len(scores)) > 5e-7
+
+
+def power_rows(power, sizes, inertia=None, seed=None):
+    """Return rows of κ or 1 − κ that fall as a power of the distance, with noise from a seed."""
+    rng, rows = np.random.default_rng(seed), []
+    for n, size in sizes.items():
+        value = 2.0 ** (-n * power)
+        error = size * value
+        noise = 0.0 if seed is None else error * rng.standard_normal()
+        kappa = value + noise if inertia else 1 - value - noise
+        row = {"quantity": "coefficient", "distance": 2.0**-n, "estimate": kappa, "stderr": error}
+        row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
+        rows.append(Passages.empty(**row))
+    return rows
+
+
+def test_a_power_is_fitted_to_the_last_octaves():
+    far = power_rows(0.9, {3: 0.01})  # not among the last five
+    smooth = power_rows(1 / 3, dict.fromkeys(range(4, 9), 0.01))
+    rough = power_rows(0.5, {4: 0.01, 3: 0.02}, inertia=0.5)
+    alone = power_rows(0.5, {4: 0.01}, inertia=1.0)
+    beyond = [row | {"estimate": 1.01, "event": "vertical_hop"} for row in smooth]
+    first, second = fits.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
+    assert first["estimate"] == pytest.approx(1 / 3)
+    assert (first["distance"], first["replicas"]) == (2.0**-8, 5)
+    # Five equal errors at distances of one octave: Σ(x − x̄)² is 10 (ln 2)².
+    assert first["stderr"] == pytest.approx(0.01 / math.sqrt(10) / math.log(2))
+    assert second["estimate"] == pytest.approx(0.5)
+    assert second["stderr"] == pytest.approx(math.hypot(0.01, 0.02) / math.log(2))
+    assert (second["moment_of_inertia"], second["quantity"]) == (0.5, "last_exponent")
+
+
+def test_errors_of_the_fitted_power_are_those_of_its_spread():
+    sizes, scores = {4: 0.01, 5: 0.03, 6: 0.01, 7: 0.02, 8: 0.04}, []
+    for seed in range(200):
+        (row,) = fits.fits(power_rows(0.38, sizes, seed=seed))
+        scores.append((row["estimate"] - 0.38) / row["stderr"])
+    square = sum(z**2 for z in scores)
+    assert chi2.sf(square, len(scores)) > 5e-7
+    assert chi2.cdf(square, len(scores)) > 5e-7
 
 
 @numba.njit
@@ -195,7 +249,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     by_quantity = {row["quantity"] for row in rows}
     assert by_quantity == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
-        "passage_exponent", "rate", "diffusion", "single_file",
+        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file",
     }  # fmt: skip
     # Nothing but the passages tells time between passages from time between hops.
     times = [row for row in rows if row["quantity"] == "passage_time"]
@@ -239,4 +293,5 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     assert events == {"vertical_hop", "swap"}
     with style.context():
         assert figure.draw(Box(1.0, 4.0), {"passages": rows})
-        assert figure.draw(Box(1.0, 4.0), {"passages": rows[-3:]})
+        lattice = [row for row in rows if row["event"] == "swap"]
+        assert figure.draw(Box(1.0, 4.0), {"passages": lattice})

@@ -6,6 +6,7 @@ seeds; with some 40 comparisons a false alarm comes in fewer than 2e-4 of them.
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 from twodiscs.theory.tails import tail_constant
-from twodiscs_paper.studies.tails import figure
+from twodiscs_paper.studies.tails import figure, fits
 from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.table import Tails
 
@@ -177,3 +178,56 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, monkeypatch):
     names = [text.get_text() for text in alone.get_legend().get_texts()]
     assert any("fit, rate" in name for name in names)
     assert len(ratio.containers) == 4
+
+
+def row(**values):
+    return (
+        Tails.empty(event="vertical_hop", radius=0.1, exact_mean=2.0, quantity="survival") | values
+    )
+
+
+def test_the_last_ratio_is_the_last_one_that_is_measured_well():
+    """An error of a fifth is too large; the approach is (ratio − 1) √(t/τ)."""
+    weighted = {"method": "weighted", "law": 1e-5}
+    rows = [
+        row(**weighted, time=40.0, estimate=2e-5, stderr=1e-6),
+        row(**weighted, time=60.0, estimate=1.1e-5, stderr=3e-7),
+        row(**weighted, time=80.0, estimate=1e-5, stderr=4e-6),
+        row(**weighted, time=90.0, estimate=1e-5),
+        row(method="counted", time=90.0, estimate=1e-5, stderr=1e-9, law=1e-5),
+    ]
+    ratio, approach = fits.fits(rows)
+    assert (ratio["quantity"], ratio["time"], ratio["radius"]) == ("last_ratio", 60.0, 0.1)
+    assert (ratio["estimate"], ratio["stderr"]) == pytest.approx((1.1, 0.03))
+    assert approach["quantity"] == "approach"
+    expected = 0.1 * math.sqrt(30), 0.03 * math.sqrt(30)
+    assert (approach["estimate"], approach["stderr"]) == pytest.approx(expected)
+    (only,) = fits.fits([one | {"event": "disc_collision"} for one in rows])
+    assert only["quantity"] == "last_ratio"
+
+
+def survival(hazards, n):
+    """Return rows of P(T > t) after 1, 2, … of n intervals with binomial errors."""
+    p = np.exp(-np.cumsum([1.0, *hazards]))
+    return [
+        row(method="counted", time=t, estimate=x, stderr=math.sqrt(x * (1 - x) / n))
+        for t, x in enumerate(map(float, p), start=1)
+    ]
+
+
+def test_one_hazard_at_all_times_is_tested_by_chi_square():
+    """For two hazards χ² is the square of their difference over its error."""
+    n, hazards = 10**6, (0.8, 0.79)
+    rows = survival((*hazards, 5.0), n)
+    rate = row(quantity="rate", method="counted", time=1.0, until=3.0, estimate=0.8)
+    others = [one | {"radius": 0.3} for one in rows]
+    found = {one["quantity"]: one["estimate"] for one in fits.fits([*others, *rows, rate])}
+    p = np.exp(-np.cumsum([1.0, *hazards]))
+    errors = [math.sqrt((1 / later - 1 / before) / n) for before, later in pairwise(p)]
+    chi2 = (hazards[0] - hazards[1]) ** 2 / (errors[0] ** 2 + errors[1] ** 2)
+    chance = math.erfc(math.sqrt(chi2 / 2))
+    assert found == pytest.approx({"chi2": chi2, "degrees": 1, "chance": chance})
+    slower = [one | {"time": 2 * one["time"]} for one in survival(hazards, n)]
+    assert fits.constant_hazard(slower) == (pytest.approx(chi2), 1)
+    assert fits.constant_hazard(survival((0.8, 0.8, 0.8), n)) == (pytest.approx(0, abs=1e-12), 2)
+    assert fits.constant_hazard(survival((0.8,), n)) is None

@@ -61,7 +61,8 @@ def fitted(rows, box=PAPER, passages=()):
 
 def test_exact_times_have_the_exact_power():
     found = fitted(times_of("horizontal_hop", RADII))
-    assert len(found) == 4
+    assert len(found) == 5
+    assert found["mean_time", "plain", "strips"]["estimate"] == 0
     exponent = found["mean_time", "reduced", "exponent"]
     assert exponent["estimate"] == pytest.approx(-2, abs=1e-10)
     assert exponent["chi2"] < 1e-12
@@ -178,3 +179,13 @@ def test_without_times_there_are_first_passages(box, read, tmp_path):
     assert {row["quantity"] for row in found} == {"first_passage"}
     with style.context():
         figure.draw(box, passages | {"thresholds": found}).draw_without_rendering()
+
+
+def test_the_share_of_mean_times_from_strips_is_told():
+    fit = {"event": "vertical_hop", "points": 4, "parameter": "exponent", "z": 3.0}
+    fit = Thresholds.empty(**fit)
+    times = [{"starts": starts} for starts in ("strip", "invariant", "strip", "strip")]
+    row = thresholds.strips(fit, times)
+    assert row.keys() == fit.keys()
+    assert (row["parameter"], row["estimate"], row["z"]) == ("strips", 0.75, None)
+    assert (row["event"], row["points"]) == ("vertical_hop", 4)

@@ -5,21 +5,25 @@ import os
 from pathlib import Path
 
 from twodiscs.arguments import Parser, named, run
+from twodiscs.comparison.measured.transmission import QUIET
 from twodiscs.dynamics.intervals import RETURNS
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import said
-from twodiscs_paper.pipeline.documents.numbers.rounding import whole
-from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, numbers, read, table_rows
+from twodiscs_paper.pipeline.documents.numbers.rounding import integer
+from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, printed, read, table_rows
 from twodiscs_paper.pipeline.results.provenance import commit, versions
+
+#: Numbers of the methods; they are in no table.
+CONSTANTS = {"dearer": COST_RATIO, "intervals": RETURNS, "passages_pause": QUIET}
 
 
 def captions(results, scene):
-    """Return {figure: (its own caption, what others explain alike or "", which of the ``NOTES``)}.
+    """Return {figure: (its own caption, the sentences that it shares or "", its key in ``NOTES``)}.
 
-    ``scene`` is the one that the manuscript is about; see ``captions.said``.
+    ``scene`` is the scene that the manuscript is about; see ``captions.said``.
     """
     return {
         name: (*said(entry, results, scene), entry.note)
@@ -27,23 +31,23 @@ def captions(results, scene):
     }
 
 
-def printed(contents):
-    """Return {name: ``Number``} of all that the manuscript prints, see ``typeset``."""
+def numbers_of(contents):
+    """Return {name: ``Printed``} of every number of the manuscript; see ``typeset``."""
     scenes = contents["scenes"]
-    values = numbers(read(contents["results"], scenes, contents["long_run"]), scenes)
-    constants = {"dearer": COST_RATIO, "intervals": RETURNS, "seed": contents["seed"]}
-    return values | {name: whole(value) for name, value in constants.items()}
+    constants = CONSTANTS | {"seed": contents["seed"]}
+    values = printed(read(contents["results"], scenes, contents["long_run"]), scenes)
+    return values | {name: integer(value) for name, value in constants.items()}
 
 
 def typeset(template, output, contents, values):
     """Compile the Typst file ``template`` to the PDF file ``output``.
 
     ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
-    "seed"; ``values`` is {name: ``Number``}. The template finds them under ``sys.inputs.contents``,
-    as JSON: the texts of ``numbers``, the ``captions`` of all figures, the ``commit`` of the
-    template, the ``versions``, and ``results``, their folder, as a path from the root that results
-    and the project have in common. The same inputs at the same commit give the same bytes on every
-    machine: fonts are those that come with Typst.
+    "seed"; ``values`` is {name: ``Printed``}. The template finds them as JSON under
+    ``sys.inputs.contents``: the texts of ``numbers``, the ``captions`` of all figures, the
+    ``commit`` of the template, the ``versions``, and ``results``, their folder, as a path from the
+    root that results and the project have in common. The same inputs at the same commit give the
+    same bytes on every machine: fonts are those that come with Typst.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
@@ -71,11 +75,11 @@ def typeset(template, output, contents, values):
 
 
 def contents_of(files, boxes, output):
-    """Return what is there for the manuscript ``output``, a path in the folder of all results.
+    """Return the figures and tables for the manuscript ``output``, a path in the folder of results.
 
-    ``files`` are the paths of figures and tables; ``boxes`` is {scene: (width, height)}, of which
-    the first is what the manuscript is about. {"results": folder, "figures": those of no scene,
-    "scenes": [{"name", "width", "height", "figures", "tables"}]}.
+    ``files`` are the paths of figures and tables. ``boxes`` is {scene: (width, height)}; the
+    manuscript is about the first scene. The result is {"results": folder, "figures": those that
+    belong to no scene, "scenes": [{"name", "width", "height", "figures", "tables"}]}.
     """
     figures, tables = {None: []}, {None: []}
     for path in map(Path, files):
@@ -91,8 +95,8 @@ def contents_of(files, boxes, output):
     return {"results": str(Path(output).parent), "figures": figures[None], "scenes": scenes}
 
 
-def sides(text):
-    """Return (width, height) of a box that is given as 1.5x1.0."""
+def box_sides(text):
+    """Return (width, height) of a box in the form 1.5x1.0."""
     try:
         width, height = map(float, text.split("x"))
     except ValueError:
@@ -117,11 +121,11 @@ def main():
     parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of numbers")
     parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
     options = parser.parse_args()
-    boxes = {scene: sides(box) for scene, box in named(options.boxes, "boxes").items()}
+    boxes = {scene: box_sides(box) for scene, box in named(options.boxes, "boxes").items()}
     contents = contents_of(options.files, boxes, options.output)
     contents |= {"configuration": options.configuration, "seed": options.seed}
     contents |= {"long_run": options.long_run}
-    values = printed(contents)
+    values = numbers_of(contents)
     PaperNumbers.write(options.numbers, table_rows(values))
     typeset(options.template, options.output, contents, values)
 

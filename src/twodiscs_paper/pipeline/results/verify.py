@@ -33,8 +33,8 @@ SCORE = RELATIVE / 1e-4
 #: The columns whose text names a row; every other one holds a result.
 NAMING = ("comparison", "part", "quantity", "event", "bins", "method", "case", "label", "place")
 
-#: The rows on all radii that are made of scores.
-OF_SCORES = ("z_mean", "z_spread")
+#: The rows of check.csv and of agreement.csv whose estimates are made of scores.
+OF_SCORES = {"z_mean", "z_spread", "mean_square", "correlation", "effects"}
 
 #: The parts of stability.csv whose values are rounding errors; there the verdicts are compared.
 OF_ROUNDINGS = ("theory", "times")
@@ -85,7 +85,9 @@ def _tolerance(column, row):
         return 0.0
     if column == "value" and row.get("part") in OF_ROUNDINGS:
         return math.inf
-    if column in ("z", "p") or (column == "estimate" and row.get("comparison") in OF_SCORES):
+    if column in ("z", "p"):
+        return SCORE
+    if column == "estimate" and OF_SCORES & {row.get("comparison"), row.get("quantity")}:
         return SCORE
     if column == "chi2":
         return SCORE * max(1.0, row[column])

@@ -17,7 +17,7 @@ The rows of accuracy_cost.csv have six parts:
 import math
 import time
 from functools import cache, partial
-from statistics import fmean, median, pstdev
+from statistics import fmean, median, median_high, pstdev
 from typing import NamedTuple
 
 import numpy as np
@@ -602,6 +602,23 @@ def where_single_fails(scale):
         )  # fmt: skip
 
 
+def speeds(rows):
+    """Yield the rows of the part speed: how much faster an engine is than another one.
+
+    ``rows`` are those of the part time. The speed of an engine is that of its median run.
+    """
+    runs = {}
+    for run in rows:
+        if run["part"] == "time":
+            runs.setdefault(run["method"], []).append(run)
+    for method, other in (("lockstep", "scalar"), ("single_precision", "lockstep")):
+        own, slower = (
+            median_high(run["work"] / run["seconds"] for run in runs[name])
+            for name in (method, other)
+        )
+        yield row("speed", "events", SCENE.radius, method, setting=own / slower)
+
+
 def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time.
 
@@ -612,4 +629,4 @@ def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     repetitions = check_integer("repetitions", repetitions, 2)
     all_series = series(scale)
     work_rows = work_precision(all_series, measure(all_series, repetitions))
-    return [*work_rows, *by_radius(scale), *where_single_fails(scale)]
+    return [*work_rows, *speeds(work_rows), *by_radius(scale), *where_single_fails(scale)]

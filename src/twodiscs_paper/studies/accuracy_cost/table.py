@@ -12,7 +12,8 @@ class AccuracyCost(Table):
     part: TEXT
     """
     volume, area, time: work and precision; floor: the error that no work removes; radius: the price
-    of a relative error, radius by radius; precision: where single precision fails
+    of a relative error, radius by radius; precision: where single precision fails; speed: of the
+    engines, by their median runs of the part time
     """
     quantity: TEXT
     """volume, <event>_area, <event>_time or energy"""
@@ -29,7 +30,8 @@ class AccuracyCost(Table):
     setting: Column(float, "see method")
     """
     ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, and for the
-    energy the events of a trajectory
+    energy the events of a trajectory. speed: events a second over those of scalar, for
+    single_precision over those of lockstep
     """
     work: COUNT
     """samples, points, nodes, wall and disc events, or time steps"""

@@ -20,7 +20,7 @@ from twodiscs.comparison.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import time_to_next
+from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS

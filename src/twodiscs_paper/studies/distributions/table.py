@@ -27,7 +27,11 @@ class Distributions(Table):
     density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: rate of hops when there
     was none since the last one, ln[P(T > first)/P(T > last)]/(last − first); rate: one hazard
     fitted by maximum likelihood to all bins from four mean times on, what is longer censored;
-    trend: β of a hazard ∝ t^β there
+    trend: β of a hazard ∝ t^β there; plateau: the rate again, where it is constant for all that the
+    data show; falling, falling_without_drift: where it is not, the hazard in the last two fifths of
+    the time that the data reach, if discs that drift past each other avoid the hop and if not;
+    over_cubic: hops there over those of the hazard 3/t of a cubic tail, where the hazard has fallen
+    below three quarters of the rate
     """
     first: TIME
     """where the bin or the fit begins"""
@@ -65,6 +69,7 @@ class Distributions(Table):
     @classmethod
     def rows(cls, scenes, seed, events):
         """Return the rows of ``scenes`` (see ``measure.rows``)."""
-        from twodiscs_paper.studies.distributions import measure
+        from twodiscs_paper.studies.distributions import measure, shape
 
-        return [cls.empty(**row) for row in measure.rows(scenes, seed, events)]
+        rows = [cls.empty(**row) for row in measure.rows(scenes, seed, events)]
+        return rows + [cls.empty(**row) for row in shape.shapes(rows)]

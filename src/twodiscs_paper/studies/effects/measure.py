@@ -11,7 +11,7 @@ import numpy as np
 from twodiscs.comparison import estimates
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import time_to_next
+from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.model.radii import key, stream_seed

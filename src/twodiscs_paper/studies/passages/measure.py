@@ -247,8 +247,8 @@ def on_ring(name, box, inertia, events, seed):
 def in_file(name, box, discs, events, seed):
     """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
     for n in RING:
-        scene = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
-        scene = Scene(box.width * discs / 2, box.height, scene.radius, discs=discs, periodic="x")
+        pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
+        scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
         row = {
             "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
             "event": "horizontal_hop", "discs": discs, "radius": scene.radius,
@@ -258,7 +258,7 @@ def in_file(name, box, discs, events, seed):
         sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
         # A power of two: a time of its own would be rounded by the last digits of the rate.
         time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
-        price = 2 * time * exact.event_rate(scene) * (discs / 2) ** 0.5
+        price = 2 * time * exact.event_rate(pair) * (discs / 2) ** 0.5
         replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
         moved, hops = file.diffusion(scene, time, replicas, streams[1])
         z = (hops.value - sampled.value) / math.hypot(hops.stderr, sampled.stderr)

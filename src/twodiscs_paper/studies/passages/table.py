@@ -38,7 +38,8 @@ class Passages(Table):
     coefficient κ(t); slope: −dκ/dt at 0⁺; coefficient: the fraction κ of hops that are passages, by
     clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
     1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
-    the one before; passage_exponent: of the time between passages, over all distances; rate:
+    the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
+    of the time between passages, over all distances; rate:
     of hops of two discs, or of each of more; diffusion: D/(ν ℓ²) with ν hops of a disc per time in
     either direction, each by ℓ; single_file: F of the mean square displacement F √t
     """
@@ -69,7 +70,8 @@ class Passages(Table):
 
     @staticmethod
     def rows(scenes, events, seed):
-        """Yield the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
-        from twodiscs_paper.studies.passages import measure
+        """Return the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
+        from twodiscs_paper.studies.passages import fits, measure
 
-        yield from (Passages.empty(**row) for row in measure.rows(scenes, events, seed))
+        rows = [Passages.empty(**row) for row in measure.rows(scenes, events, seed)]
+        return rows + [Passages.empty(**row) for row in fits.fits(rows)]

@@ -16,11 +16,16 @@ class Tails(Table):
     exact_mean: TIME
     """exact mean interval"""
     quantity: TEXT
-    """survival: P(T > t); rate: of the decay of P(T > t)"""
+    """
+    survival: P(T > t); rate: of the decay of P(T > t); last_ratio: of P(T > t) to its law, at the
+    last time with an error below a fifth; approach: c of that ratio, if it is 1 + c (t/τ)^(−1/2);
+    chi2, degrees, chance: χ² of one rate at all times of the fit, its degrees of freedom, and the
+    probability of a larger one
+    """
     method: TEXT
     """
     counted: intervals that begin within a window; weighted: those met by starts that are drawn near
-    the motions that last, with exact weights
+    the motions that last, with exact weights; fit: follows from the rows before
     """
     time: TIME
     """t; for a rate, where the fit begins"""
@@ -39,6 +44,7 @@ class Tails(Table):
     @staticmethod
     def rows(box, samples, replicas, seed):
         """Return the rows for a ``Box`` (see ``measure.rows``)."""
-        from twodiscs_paper.studies.tails import measure
+        from twodiscs_paper.studies.tails import fits, measure
 
-        return list(measure.rows(box, samples, replicas, seed))
+        rows = list(measure.rows(box, samples, replicas, seed))
+        return [*rows, *fits.fits(rows)]

@@ -102,6 +102,14 @@ def passages(distributions, name, event):
     ]
 
 
+def strips(fit, times):
+    """Return the row on the share of the mean times of a ``fit``, a row, that come from strips."""
+    share = sum(row["starts"] == "strip" for row in times) / len(times)
+    names = "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points"
+    kept = {name: fit[name] for name in (*names, "nearest", "farthest")}
+    return dict.fromkeys(fit) | kept | {"parameter": "strips", "estimate": share}
+
+
 def rows(tables, scenes):
     """Yield the rows of thresholds.csv.
 
@@ -125,5 +133,7 @@ def rows(tables, scenes):
             for quantity, seen in measured.items():
                 kept = near(box, law, seen)
                 values = [[row[c] for row in kept] for c in COLUMNS]
-                for row in fits(law, quantity, *values):
-                    yield start | {"event": event} | row
+                fitted = [start | {"event": event} | row for row in fits(law, quantity, *values)]
+                yield from fitted
+                if fitted and quantity == "mean_time":
+                    yield strips(fitted[0], kept)

@@ -32,7 +32,10 @@ class Thresholds(Table):
     farthest: LENGTH
     """largest δ of the fit"""
     parameter: TEXT
-    """exponent p, or coefficient C at the exact exponent"""
+    """
+    exponent p, or coefficient C at the exact exponent; strips: the share of the fitted mean times
+    that come from starts in strips
+    """
     estimate: Column(float, "of C: time/length^p")
     """fitted value"""
     stderr: AS_ESTIMATE

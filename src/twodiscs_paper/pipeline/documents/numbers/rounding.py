@@ -1,27 +1,28 @@
 """How results are rounded and written: the one rule of the manuscript.
 
-An estimate with its error has the digits that the error leaves. What is said to be the largest is
-rounded up, the smallest down, so that the sentence is true. Texts of a ``Number`` are markup of
+An estimate with its error has the digits that the error leaves. The largest of several values is
+rounded up and the smallest down, so that the sentence about them is true. Texts are markup of
 Typst, with mathematics between dollars.
 """
 
 import math
 import re
+from collections.abc import Callable
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Context
 from typing import NamedTuple
 
 WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
-class Number(NamedTuple):
-    """A number of the manuscript: its ``value``, None if it is several, and the ``text`` of it."""
+class Printed(NamedTuple):
+    """What is printed of a number: its ``value``, None for several values or words, and a text."""
 
     value: float | None
     text: str
 
 
 def rounded(x, n, rounding=ROUND_HALF_UP):
-    """Return ``x`` as a ``Decimal`` of ``n`` digits that count, n ≥ 1; noise of doubles is none."""
+    """Return ``x`` as a ``Decimal`` of ``n`` ≥ 1 significant digits, after rounding to twelve."""
     return Context(prec=n, rounding=rounding).create_decimal(f"{x:.12g}").normalize()
 
 
@@ -45,38 +46,26 @@ def formula(x):
 
 
 def significant(x, n):
-    """Return the number ``x`` to ``n`` digits that count."""
-    return Number(x, f"${formula(rounded(x, n))}$")
+    """Return the number ``x`` to ``n`` significant digits."""
+    return Printed(x, f"${formula(rounded(x, n))}$")
 
 
 def at_most(values, n=2):
-    """Return the largest of ``values``, rounded up to ``n`` digits; None if there are none."""
-    return Number(x := max(values), f"${formula(rounded_up(x, n))}$") if values else None
+    """Return the largest of ``values``, rounded up to ``n`` digits."""
+    return Printed(x := max(values), f"${formula(rounded_up(x, n))}$")
 
 
 def at_least(values, n=2):
-    """Return the smallest of ``values``, rounded down to ``n`` digits; None if there are none."""
-    return Number(x := min(values), f"${formula(rounded_down(x, n))}$") if values else None
-
-
-def percent_at_least(fractions):
-    """Return the smallest of ``fractions`` in per cent, rounded down; None if there are none."""
-    return at_least([100 * fraction for fraction in fractions], 3)
-
-
-def percent_at_most(fractions):
-    """Return the largest of ``fractions`` in per cent, rounded up; None if there are none."""
-    return at_most([100 * fraction for fraction in fractions], 3)
+    """Return the smallest of ``values``, rounded down to ``n`` digits."""
+    return Printed(x := min(values), f"${formula(rounded_down(x, n))}$")
 
 
 def span(values, n=2):
-    """Return from where to where ``values`` go, to ``n`` digits; None if there are none."""
-    if not values:
-        return None
+    """Return the smallest and the largest of ``values`` to ``n`` digits."""
     least, most = min(values), max(values)
     if least == most:
         return significant(least, n)
-    return Number(None, f"{significant(least, n).text} to {significant(most, n).text}")
+    return Printed(None, f"{significant(least, n).text} to {significant(most, n).text}")
 
 
 def with_error(value, error):
@@ -88,17 +77,17 @@ def with_error(value, error):
     if error * 10.0**places < 1.95:
         places += 1
     places = max(places, 0)
-    return Number(value, f"${value:.{places}f} ({error * 10.0**places:.0f})$")
+    return Printed(value, f"${value:.{places}f} ({error * 10.0**places:.0f})$")
 
 
-def whole(n):
+def integer(n):
     """Return an integer in figures."""
-    return Number(n, str(n))
+    return Printed(n, f"{n:.0f}")
 
 
 def in_words(n):
     """Return an integer in words, as far as ten."""
-    return Number(n, WORDS[n] if n < len(WORDS) else str(n))
+    return Printed(n, WORDS[n] if n < len(WORDS) else str(n))
 
 
 def plain(text):
@@ -110,4 +99,65 @@ def sides(width, height):
     """Return the box of these sides."""
     texts = [formula(rounded(side, 6)) for side in (width, height)]
     texts = [f"({text})" if "times" in text else text for text in texts]
-    return Number(None, f"${' times '.join(texts)}$")
+    return Printed(None, f"${' times '.join(texts)}$")
+
+
+# Formats ------------------------------------------------------------------------------------------
+
+
+class Format(NamedTuple):
+    """How the values of a number are written.
+
+    ``write`` takes the values of the columns of one row; if it ``is_of_several`` rows, a list of
+    them, of tuples for several columns. A format that ``takes_empty`` cells writes a row whose
+    first column alone is not empty. A cell of a table without a row prints ``empty``.
+    """
+
+    write: Callable
+    is_of_several: bool = False
+    takes_empty: bool = False
+    empty: str = "--"
+
+
+def several(write):
+    """Return the format of several rows."""
+    return Format(write, is_of_several=True)
+
+
+def digits(n, scale=1):
+    """Return the format of a value times ``scale``, to ``n`` significant digits."""
+    return Format(lambda x: significant(scale * x, n))
+
+
+def decimals(n):
+    """Return the format of a value with ``n`` digits after the point."""
+    return Format(lambda x: Printed(x, f"${x:.{n}f}$"))
+
+
+def largest(n=2, scale=1):
+    """Return the format of the largest size of several values, rounded up to ``n`` digits."""
+    return several(lambda values: at_most([scale * abs(x) for x in values], n))
+
+
+def smallest(n=2, scale=1):
+    """Return the format of the smallest size of several values, rounded down to ``n`` digits."""
+    return several(lambda values: at_least([scale * abs(x) for x in values], n))
+
+
+def total(n):
+    """Return the format of the sum of several values to ``n`` digits."""
+    return several(lambda values: significant(sum(values), n))
+
+
+def words(write):
+    """Return the format of one row as the text that the function ``write`` returns."""
+    return Format(lambda *values: Printed(None, write(*values)))
+
+
+INTEGER, IN_WORDS, WITH_ERROR, SIDES = map(Format, (integer, in_words, with_error, sides))
+AS_TYPED = Format(lambda x: Printed(x, repr(x)))
+NAME = words(lambda name: name.replace("_", " "))
+COUNTED = several(lambda values: integer(len(values)))
+COUNTED_IN_WORDS = several(lambda values: in_words(len(values)))
+DISTINCT_IN_WORDS = several(lambda values: in_words(len({*values})))
+RANGE, RANGE_OF_THREE = several(span), several(lambda values: span(values, 3))

@@ -1,33 +1,18 @@
-"""The table of all numbers that the manuscript prints."""
+"""The table of all numbers that the manuscript prints, and the tables that they are taken from."""
 
+import sys
 from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.base import NUMBER, TEXT, Table
 from twodiscs_paper.catalogue import STUDY_TABLES
-from twodiscs_paper.pipeline.documents.numbers import (
-    agreement,
-    costs,
-    distributions,
-    laws,
-    more_discs,
-    passages,
-)
-from twodiscs_paper.pipeline.documents.numbers.rounding import Number
+from twodiscs_paper.pipeline.documents.numbers.declared import CELLS, NUMBERS
+from twodiscs_paper.pipeline.documents.numbers.number import FIRST_HOP, MAIN, NoRow
 
-#: The tables that numbers are taken from: those of scenes, and those of studies.
-OF_SCENES = ("grid", "volume", "areas", "mean_times", "hop_histogram", "check", "cost")
-OF_STUDIES = (
-    "errata",
-    "accuracy_cost",
-    "stability",
-    "tails",
-    "distributions",
-    "thresholds",
-    "effects",
-    "passages",
-    "more_discs",
-)
+#: The tables of scenes and of studies that numbers are taken from.
+READ = {number.table for number in (*NUMBERS, *(cell for table in CELLS for cell in table.cells))}
+OF_SCENES = sorted(READ & SCENE_TABLES.keys())
+OF_STUDIES = sorted(READ & STUDY_TABLES.keys())
 
 
 class PaperNumbers(Table):
@@ -45,58 +30,41 @@ def read(results, scenes, long_run=None):
     """Return {name: rows} of the tables in the folder ``results`` that numbers are taken from.
 
     ``long_run`` is the mean_times.csv of the long run, which no build makes. ``scenes`` have a
-    "name" each and the names of their "tables"; rows of a scene get a "scene". Raises ``OSError``
-    for a table that is missing, ``InputError`` for a file that is none.
+    "name", "width" and "height" each, which are added to the rows of a scene, and the names of
+    their "tables". Raises ``OSError`` for a table that is missing, ``InputError`` for a file that
+    is no table.
     """
     tables = {name: [] for name in (*OF_SCENES, *OF_STUDIES)}
     for scene in scenes:
+        start = {"scene": scene["name"], "width": scene["width"], "height": scene["height"]}
         for name in set(OF_SCENES).intersection(scene["tables"]):
             path = Path(results, scene["name"], f"{name}.csv")
-            for row in SCENE_TABLES[name].read(path):
-                tables[name].append({"scene": scene["name"], **row})
+            tables[name] += [start | row for row in SCENE_TABLES[name].read(path)]
     for name in OF_STUDIES:
         tables[name] = STUDY_TABLES[name].read(Path(results, f"{name}.csv"))
     tables["long_run"] = SCENE_TABLES["mean_times"].read(long_run) if long_run else []
     return tables
 
 
-def numbers(tables, scenes):
-    """Return {name: ``Number``} of all that the manuscript prints, as far as tables have rows.
+def printed(tables, scenes):
+    """Return {name: ``Printed``} of all that the manuscript prints.
 
-    ``tables`` are as ``read`` returns them; ``scenes`` have a "name", "width" and "height", and the
-    first one is what the manuscript is about.
+    ``tables`` are as ``read`` returns them; the first of the ``scenes`` is the one that the
+    manuscript is about. A number without a row is left out, for a configuration may have less; its
+    sentence goes to the standard error. Raises ``InputError`` for a number with several rows in
+    place of one.
     """
-    main = scenes[0]["name"]
-    prose = {
-        **agreement.agreement(tables, scenes),
-        **agreement.correlations(tables["check"]),
-        **agreement.mean_scores(tables["check"], scenes),
-        **agreement.effort(tables),
-        **agreement.long_run(tables["long_run"]),
-        **distributions.chains(tables["hop_histogram"]),
-        **distributions.densities(tables["distributions"], tables["hop_histogram"]),
-        **distributions.tails(tables["tails"]),
-        **distributions.hazards(tables["distributions"], main),
-        **laws.powers(tables["thresholds"], main, tables["mean_times"]),
-        **laws.effects(tables["effects"]),
-        **laws.errata(tables["errata"]),
-        **passages.passages(tables["passages"], main),
-        **more_discs.more_discs(tables["more_discs"]),
-        **costs.accuracy_cost(tables["accuracy_cost"]),
-        **costs.stability(tables["stability"]),
-    }
-    cells = {
-        "agreement": agreement.agreement_table(tables, scenes),
-        "rates": distributions.rates_table(tables["distributions"], main),
-        "powers": laws.powers_table(tables["thresholds"], main, tables["check"]),
-        "errata": laws.errata_table(tables["errata"]),
-        "more": more_discs.more_discs_table(tables["more_discs"]),
-    }
-    for table, rows in cells.items():
-        for row, columns in rows.items():
-            for column, cell in columns.items():
-                prose[f"{table}/{row}/{column}"] = cell or Number(None, "--")
-    return {name: number for name, number in prose.items() if number is not None}
+    main = scenes[0]
+    hop = "horizontal_hop" if main["width"] > main["height"] else "vertical_hop"
+    given, found = {MAIN: main["name"], FIRST_HOP: hop}, {}
+    for number in NUMBERS:
+        try:
+            found[number.name] = number.printed(tables, given)
+        except NoRow as error:
+            print(error, file=sys.stderr)
+    for cells in CELLS:
+        found |= cells.printed(tables, given)
+    return {name: number for name, number in found.items() if number is not None}
 
 
 def table_rows(values):

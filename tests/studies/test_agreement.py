@@ -1,0 +1,118 @@
+"""What the comparisons of all scenes have in common: few scores, and their results by hand."""
+
+import math
+
+import pytest
+from fabricated import written
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs_paper.studies.agreement import measure
+from twodiscs_paper.studies.agreement.table import Agreement
+from twodiscs_paper.studies.effects.table import Effects
+
+#: Scores at four radii.
+SCORES = {
+    "right_wall": (1.0, -1.0, 2.0, 0.0),
+    "top_wall": (-2.0, 2.0, -4.0, 0.0),
+    "vertical_hop": (1.0, 0.0, -1.0, 0.0),
+    "disc_collision": (0.0, 1.0, 0.0, -1.0),
+}
+TEST = {"comparison": "mean_time", "method": "dynamics", "test": "normal"}
+TEST |= {"passed": True, "independent": True, "bound": 4.25}
+
+
+def check_rows():
+    """Return tests at four radii, and rows that are no tests with a normal law."""
+    start = TEST | {"quantity": "any_wall_time", "radius": 0.1, "z": 9.0}
+    rows = [
+        TEST | {"quantity": f"{event}_time", "radius": 0.1 * (i + 1), "z": value}
+        for event, values in SCORES.items()
+        for i, value in enumerate(values)
+    ]
+    for other in (
+        {"independent": False}, {"test": "exact-tail"}, {"method": "monte_carlo"},
+        {"comparison": "flux"}, {"passed": None},
+    ):  # fmt: skip
+        rows.append(start | other)
+    return [SCENE_TABLES["check"].empty(**row) for row in rows]
+
+
+def histogram_rows():
+    """Return bins of half of all intervals whose errors are 3 times those of independent counts."""
+    n, width = 40_000, 0.25
+    error = 0.5 / math.sqrt(n) / width
+    bins = {"left": 1.0, "right": 1.0 + width, "intervals": n, "event": "vertical_hop"}
+    bins |= {"radius": 0.4}
+    return [
+        SCENE_TABLES["hop_histogram"].empty(**bins | row)
+        for row in (
+            {"bins": "wide", "count": n // 2, "stderr": 3 * error, "density": 9.0},
+            {"bins": "equal", "count": 10, "stderr": 100 * error, "density": 1.3},
+            {"bins": "equal", "count": 9, "stderr": 10 * error, "density": 1.0},
+            {"bins": "equal", "count": 9, "stderr": error, "density": 9.0},
+            {"bins": "equal", "count": 9, "stderr": error, "density": 9.0, "radius": 0.5},
+        )
+    ]
+
+
+def effect_rows():
+    start = {"scene": "channel", "radius": 0.1, "status": "reached", "starts": "invariant"}
+    return [
+        Effects.empty(**start | row)
+        for row in (
+            {"quantity": "top_wall_time", "z": 1.0, "count": 4000},
+            {"quantity": "any_wall_time", "z": -5.0, "count": 4000},
+            {"radius": 0.2, "quantity": "any_wall_time", "z": -1.5, "count": 4000},
+            {"radius": 0.3, "quantity": "any_wall_time", "z": 0.0, "status": "impossible"},
+            {"quantity": "never_met_share", "estimate": 0.2},
+        )
+    ]
+
+
+@pytest.fixture
+def rows():
+    """Return the rows of two scenes that have the same tests, as the table has them."""
+    tables = {
+        "a/check": check_rows(),
+        "a/hop_histogram": histogram_rows(),
+        "effects": effect_rows(),
+    }
+    return Agreement.rows(tables | {"b/check": check_rows()})
+
+
+def one(rows, **where):
+    (row,) = [row for row in rows if where.items() <= row.items()]
+    return row["count"], row["estimate"], row["stderr"]
+
+
+def test_the_mean_square_is_that_of_independent_tests_with_a_normal_law(rows):
+    squares = sum(z**2 for values in SCORES.values() for z in values)
+    expected = 32, squares / 16, math.sqrt(2 / 32)
+    assert one(rows, quantity="mean_square") == pytest.approx(expected)
+
+
+def test_correlations_are_those_at_the_same_radii(rows):
+    assert one(rows, event="right_wall") == (8, pytest.approx(-1), None)
+    assert one(rows, event="vertical_hop", other="disc_collision") == (8, pytest.approx(0), None)
+
+
+def test_errors_of_chains_are_compared_with_those_of_counts(rows):
+    """A bin of half of all intervals has the error √(n/4)/n/width if they are independent."""
+    assert one(rows, quantity="error_ratio") == (1, pytest.approx(3), None)
+    assert measure.error_ratio([])["estimate"] == 1
+
+
+def test_the_density_at_zero_is_that_of_a_parabola(rows):
+    """The parabola p − at² whose means over (0, 1) and (1, 2) are 1.3 and 1 begins at 1.35."""
+    error = math.hypot(7 * 100, 10) / 6 * 0.5 / math.sqrt(40_000) / 0.25
+    assert one(rows, quantity="density_at_zero", scene="a") == pytest.approx((2, 1.35, error))
+
+
+def test_effects_whose_count_is_a_sum_of_others_are_no_tests(rows):
+    assert one(rows, quantity="effects") == (2, 1.5, None)
+    assert measure.tests_of_effects([]) is None
+
+
+def test_without_comparisons_there_is_little_to_say(tmp_path):
+    rows = written(tmp_path, Agreement, tables={"effects": []})
+    assert [row["quantity"] for row in rows] == ["error_ratio"]
