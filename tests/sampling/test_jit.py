@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import twodiscs
-from twodiscs.model.sources import fingerprint
-from twodiscs.sampling import jit
+from twodiscs.model.sources import ROOT, fingerprint, imported
+from twodiscs.sampling import jit, streams
 
 SCRIPT = """
 import numpy as np
@@ -90,8 +90,72 @@ from twodiscs.sampling.streams import uniform
 print(uniform._cache._cache_file._data_name(1))
 """
     first, second = (finished(environment, script).stdout for _ in range(2))
-    assert first.startswith("uniform.")
+    assert first.startswith("streams.uniform")
     assert first != second
+
+
+DAMAGES = {
+    "empty": lambda content: b"",
+    "cut short": lambda content: content[: len(content) // 2],
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_damaged_file_costs_a_line_and_a_compilation(kept_splitmix, ending, damage):
+    """A power cut or a full disk leaves such files, and no job may stop because of them."""
+    environment, before = kept_splitmix
+    files = [*Path(environment["NUMBA_CACHE_DIR"]).glob(f"kernels-*/*splitmix*.{ending}")]
+    assert files
+    for file in files:
+        file.write_bytes(DAMAGES[damage](file.read_bytes()))
+    done = finished(environment, SPLITMIX)
+    assert done.stdout == before
+    assert done.stderr.endswith(".nbi is damaged; the kernel is compiled again\n")
+    assert done.stderr.count("\n") == 1
+    again = finished(environment, SPLITMIX)  # from what was kept in its place
+    assert (again.stdout, again.stderr) == (before, "")
+
+
+def test_a_kernel_that_cannot_be_kept_is_used(package):
+    _, environment = package
+    full = "import errno\ndef full(*_): raise OSError(errno.ENOSPC, 'No space left on device')\n"
+    full += "from twodiscs.sampling import jit\njit.caching.IndexDataCacheFile.save = full\n"
+    done = finished(environment, full + SPLITMIX)
+    assert done.stdout == finished(environment, SPLITMIX).stdout
+    assert done.stderr.endswith(".nbi cannot be kept: No space left on device\n")
+    assert done.stderr.count("\n") == 1
+
+
+SPLITMIX = "import numpy as np; from twodiscs.sampling import streams\n"
+SPLITMIX += "print(hex(streams.splitmix(np.uint64(0x9E3779B97F4A7C15))))"
+
+
+@pytest.fixture(scope="module")
+def kept_splitmix(tmp_path_factory):
+    """An environment with one kernel in its cache, and what that prints."""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path_factory.mktemp("cache"))}
+    return environment, finished(environment, SPLITMIX).stdout
+
+
+#: The modules of the kernels whose time counts, and what they are made of.
+KERNELS = {
+    "dynamics.counting": ("dynamics.law", "sampling.prism", "sampling.streams", "model.events"),
+    "dynamics.strip": ("dynamics.law", "sampling.prism", "sampling.streams"),
+    "dynamics.passages": ("dynamics.law", "sampling.streams"),
+    "dynamics.many": ("dynamics.law", "sampling.streams"),
+    "dynamics.law": (),
+    "sampling.montecarlo": ("sampling.streams",),
+}
+
+
+@pytest.mark.parametrize("module", KERNELS)
+def test_kernels_are_kept_by_all_that_is_compiled_into_them(module):
+    """Otherwise an edit of the event law would leave the old kernels in use."""
+    files = {path.relative_to(ROOT).as_posix() for path in imported(f"twodiscs.{module}")}
+    for part in (module, *KERNELS[module], "sampling.jit"):
+        assert f"twodiscs/{part.replace('.', '/')}.py" in files
+    assert jit.cache_folder(f"twodiscs.{module}").name.endswith(fingerprint(f"twodiscs.{module}"))
 
 
 def test_old_caches_of_this_package_go_and_nothing_else(package):
@@ -145,11 +209,20 @@ def test_a_users_choice_of_processor_wins(package):
     assert done.stdout.strip() == "+sse2"
 
 
-def test_without_a_compiler_a_kernel_is_its_function(package):
-    _, environment = package
-    script = "from twodiscs.sampling.jit import compiled; print(compiled(lambda x: x + 1)(2))"
-    done = finished(environment | {"NUMBA_DISABLE_JIT": "1"}, script)
-    assert done.stdout == "3\n"
+def test_without_a_compiler_there_are_no_kernels_and_a_sentence_says_so():
+    words = ["twodiscs.cli", "simulate", "--width=1.5", "--height=1", "--radius=.2", "--error=.1"]
+    done = subprocess.run(
+        [sys.executable, "-m", *words], env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        text=True, capture_output=True,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("error: NUMBA_DISABLE_JIT must not be set: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_one_kernel_runs_in_python_for_who_steps_through_it():
+    state = streams.open_stream(np.uint64(1), 0)
+    assert streams.uniform.py_func(state.copy()) == streams.uniform(state)
 
 
 def test_kernels_start_without_linear_algebra_which_is_there_for_others():

@@ -21,6 +21,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from twodiscs.model.checks import InputError
 from twodiscs.model.sources import PACKAGES, fingerprint
 
 
@@ -58,6 +59,12 @@ if (blas := "scipy.linalg.cython_blas") not in sys.modules:
 gc.freeze()
 if collecting:
     gc.enable()
+
+if numba.config.DISABLE_JIT:
+    raise InputError(
+        "NUMBA_DISABLE_JIT must not be set: in Python integers do not wrap around and the root of "
+        "a negative number is an error; to step through one kernel, call its attribute py_func"
+    )
 
 # Threads that nobody waits for end with the process, but in the midst of a compilation it crashes.
 atexit.register(global_compiler_lock.acquire)
@@ -135,6 +142,32 @@ class BySources(caching.UserProvidedCacheLocator):
         return cls(function, file)
 
 
+class CacheFile(caching.IndexDataCacheFile):
+    """Numba's files of one function; a damaged one, or a full disk, costs a compilation."""
+
+    def load(self, key):
+        """Return what is kept for ``key``, None if there is nothing or a file is damaged."""
+        try:
+            return super().load(key)
+        except OSError:
+            raise
+        except Exception:  # which one depends on the byte at which a pickle ends
+            print(f"{self._index_path} is damaged; the kernel is compiled again", file=sys.stderr)
+            with suppress(OSError):
+                os.unlink(self._index_path)
+
+    def save(self, key, data):
+        """Keep ``data``, a compiled kernel, for ``key``, if the disk has room."""
+        try:
+            super().save(key, data)
+        except OSError as error:
+            print(f"{self._index_path} cannot be kept: {error.strerror}", file=sys.stderr)
+
+    def _data_name(self, number):
+        # Numba numbers its files: two processes that save together would use a number twice.
+        return f"{Path(self._index_name).stem}.{uuid.uuid4().hex}.nbc"
+
+
 def compiled(function):
     """Compile ``function`` with the house settings; what a kernel calls is compiled into it.
 
@@ -148,11 +181,7 @@ def compiled(function):
         kept = numba.njit(function, cache=True, **OPTIONS)
     finally:
         numba.config.CACHE_LOCATOR_CLASSES = usual
-    if not numba.config.DISABLE_JIT:  # else it is the function itself
-        # Numba numbers its files: two processes that save together would use a number twice.
-        kept._cache._cache_file._data_name_pattern = (
-            f"{function.__name__}.{uuid.uuid4().hex}.{{number:d}}.nbc"
-        )
+    kept._cache._cache_file.__class__ = CacheFile
     return kept
 
 
