@@ -65,7 +65,8 @@ rule check:
         f"{RESULTS}/benchmarks/check.tsv"
     localrule: True
     params:
+        configuration=json.dumps(config, sort_keys=True),
         code=code("twodiscs_paper.pipeline.results.verdict"),
     shell:
         "python -m twodiscs_paper.pipeline.results.verdict {input.tables} --studies {input.studies}"
-        " --output {output.passed} > {log} 2>&1"
+        " --configuration {params.configuration:q} --output {output.passed} > {log} 2>&1"

@@ -1,34 +1,55 @@
-"""What the check tables of all scenes say together, and the scores z in the tables of studies.
+"""Whether the check tables of all scenes, and the scores z of studies, show a disagreement.
 
-python -m twodiscs_paper.pipeline.results.verdict results/paper/check.csv … --output check.passed
+    python -m twodiscs_paper.pipeline.results.verdict results/paper/check.csv … \\
+        --studies results/passages.csv … --configuration @results/configuration.json \\
+        --output check.passed
+
+The verdict does not believe a table. It counts the comparisons and computes the bound from their
+number, compares z with the bound and with the deviation of the estimate in standard errors,
+computes the statements on all radii, and asks for every comparison of the configuration. Without an
+error bar (few events, or none) z is taken from the table; so are the rows of a study.
 """
 
+import math
 import sys
+from collections import Counter
 from pathlib import Path
 
-from twodiscs.arguments import Parser, run
+from twodiscs.arguments import Parser, parameters, run
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs.model.checks import InputError
+from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
+from twodiscs_paper.pipeline.configuration.load import load
 
 #: What names a row of a study, as far as its table has these columns.
 NAMES = (
     "scene", "discs", "event", "quantity", "method", "moment_of_inertia", "swap", "radius", "time",
 )  # fmt: skip
 
+#: The columns of an estimate and its error, and those of what it is compared with: the first pair
+#: that a row has.
+ESTIMATES = ("estimate", "stderr"), ("dynamics", "dynamics_stderr")
+REFERENCES = ("exact", ""), ("reference", "reference_stderr"), ("monte_carlo", "monte_carlo_stderr")
 
-def failure(scene, row):
-    """Return the sentence on a comparison that failed, naming quantity and radius."""
+#: The comparisons that are made of the scores of others.
+OF_SCORES = ("z_mean", "z_spread")
+
+
+def named(row):
+    """Return what a comparison of a scene is called in a sentence."""
     where = "over all radii" if row["radius"] is None else f"at radius {row['radius']!r}"
-    return (
-        f"{scene}: {row['comparison']} of {row['quantity']} {where} by {row['method']} has "
-        f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
-    )
+    return f"{row['comparison']} of {row['quantity']} {where} by {row['method']}"
+
+
+def named_of_study(row):
+    """Return what a row of a study is called in a sentence."""
+    return ", ".join(f"{name} {row[name]}" for name in NAMES if row.get(name) is not None)
 
 
 def summary(scene, rows):
     """Return the sentence on a scene that passed, with how much of it says little."""
-    tested = [row for row in rows if row["passed"] is not None]
-    tests = sum(row["independent"] for row in tested)
+    tested = [row for row in rows if row["z"] is not None]
+    tests = sum(bool(row["independent"]) for row in tested)
     few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
     largest = max((abs(row["z"]) for row in tested), default=0.0)
     return (
@@ -38,38 +59,164 @@ def summary(scene, rows):
     )
 
 
-def study_failure(study, row):
-    """Return the sentence on a comparison of a study that failed, naming its row."""
-    named = ", ".join(f"{name} {row[name]}" for name in NAMES if row.get(name) is not None)
-    return f"{study}: {named} has z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
-
-
 def study_summary(study, rows):
     """Return the sentence on a study that passed."""
     tested = [abs(row["z"]) for row in rows if row["z"] is not None]
-    largest = max(tested, default=0.0)
-    return f"{study}: {len(tested)} comparisons passed, largest |z| {largest:.3g}"
+    return f"{study}: {len(tested)} comparisons passed, largest |z| {max(tested):.3g}"
 
 
-def verdict(tables, studies):
+def deviation(row):
+    """Return how many standard errors the estimate of a row is off; None without an error bar."""
+    (value, error), (reference, spread) = (
+        next(
+            ((row[value], row.get(error)) for value, error in pairs if row.get(value) is not None),
+            (None, None),
+        )
+        for pairs in (ESTIMATES, REFERENCES)
+    )
+    if value is None or reference is None or not error:
+        return None
+    return (value - reference) / math.hypot(error, spread or 0.0)
+
+
+def agrees(z, off, test):
+    """Say whether a score z can be that of an estimate that is ``off`` by so many errors.
+
+    z has the error of the exact value, not of the estimate, and Student's law. With the 100 events
+    that an error bar needs, and the 1000 of a normal test, they differ by less than this. A z by
+    Chernoff's bound is on the safe side, which may be far below.
+    """
+    least = min(abs(z), abs(off))
+    room = 0.2 + least**2 / 10 + least**3 / 300
+    if test == "cluster-bound":
+        return abs(z) <= abs(off) + room and (z == 0 or (z > 0) == (off > 0))
+    return abs(z - off) <= room
+
+
+def judged(rows, alarm, name):
+    """Yield a sentence on each of the comparisons ``rows`` that fails, or is not as it should be.
+
+    By Bonferroni's bound one of them fails with the probability ``alarm`` at most if all is right.
+    ``name`` is a function: what a row is called.
+    """
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+
+    tested = [row for row in rows if row["z"] is not None]
+    common = scores.bonferroni_bound(len(tested), alarm) if tested else None
+    for row in rows:
+        z, off = row["z"], deviation(row)
+        bound, passed = (None, None) if z is None else (common, abs(z) <= common)
+        if passed is False:
+            yield f"{name(row)} has z = {z:.3g}, beyond the bound {bound:.3g}"
+        elif row.get("passed", passed) is not passed:
+            wrong, right = (
+                {True: "passed", False: "not passed", None: "not compared"}[said]
+                for said in (row["passed"], passed)
+            )
+            yield f"{name(row)} must be {right}, but the table says {wrong}"
+        elif not _is_near(row.get("bound", bound), bound):
+            few = f"of {len(tested)} comparisons it is {bound}"
+            yield f"{name(row)} has the bound {row['bound']}, but {few}"
+        elif z is not None and off is not None and not agrees(z, off, row.get("test")):
+            yield f"{name(row)} has z = {z:.3g}, but its estimate is {off:.3g} standard errors off"
+
+
+def _is_near(value, other):
+    """Say whether two numbers, or None, are the same up to the last digits."""
+    return value == other or (None not in (value, other) and math.isclose(value, other))
+
+
+def due(scene):
+    """Yield (comparison, quantity, radius) of all that a ``SceneRequest`` asks to be compared."""
+    from twodiscs.comparison.check import SUM_RULE
+    from twodiscs.theory import virial
+
+    quantities = scene.quantities
+    for radius in scene.radii:
+        if quantities.volume:
+            yield "volume", "volume", radius
+        yield from (("area", f"{event}_area", radius) for event in quantities.areas)
+        yield from (("mean_time", f"{event}_time", radius) for event in quantities.mean_times)
+        if {*SUM_RULE} <= {*quantities.mean_times} and virial.weights(scene.box.scene(radius)):
+            yield "sum_rule", "mean_times", radius
+    for radius in quantities.hop_histogram:
+        yield "hop_interval", f"{scene.histogram['event']}_interval", radius
+
+
+def scene_failures(rows, scene=None):
+    """Yield a sentence on all that is wrong with the ``rows`` of check.csv of a ``SceneRequest``.
+
+    Without a ``scene`` nothing is known of the rows that there must be.
+    """
+    from twodiscs.comparison import check, scores
+
+    found = Counter((r["comparison"], r["quantity"], r["radius"], r["method"]) for r in rows)
+    yield from _some("is there twice", (key for key, n in found.items() if n > 1))
+    there = {key[:3] for key in found if key[0] not in (*OF_SCORES, "flux")}
+    asked = {*due(scene)} if scene else there
+    # A hop with a strip is compared with and without it.
+    seen = {(*key[:3], "dynamics") for key in found if key[3] == "strip" and key[2] is not None}
+    yield from _some("is missing", [*(asked - there), *(seen - found.keys())])
+    yield from _some("is not asked for", there - asked)
+
+    local = [row for row in rows if row["comparison"] not in OF_SCORES]
+    tested = [row for row in local if row["z"] is not None]
+    over_radii = [row for row in rows if row["comparison"] in OF_SCORES]
+    if not tested:
+        yield "nothing is compared"
+    yield from judged(local, scores.FALSE_ALARM / 2, named)
+    yield from judged(over_radii, scores.FALSE_ALARM / 2, named)
+    finite = [row for row in tested if math.isfinite(row["z"])]
+    mine = {named(row): row["z"] for row in check.distributions(finite)}
+    theirs = {named(row): row["z"] for row in over_radii}
+    for name in {**mine, **theirs}:
+        if not _is_near(mine.get(name), theirs.get(name)):
+            yield f"{name} has z = {theirs.get(name)}, but by the other rows it is {mine.get(name)}"
+
+
+def _some(what, keys):
+    """Yield one sentence on ``keys`` of rows, none if there are none: the first, and how many."""
+    if keys := sorted(keys, key=str):
+        comparison, quantity, radius, *methods = keys[0]
+        by = "".join(f" by {method}" for method in methods)
+        more = f", and so are {len(keys) - 1} more" if len(keys) > 1 else ""
+        yield f"{comparison} of {quantity} at radius {radius}{by} {what}{more}"
+
+
+def study_failures(rows):
+    """Yield a sentence on all that is wrong with the scores in the ``rows`` of a study."""
+    from twodiscs.comparison import scores
+
+    found = Counter(tuple(row.items()) for row in rows if row["z"] is not None)
+    if not found:
+        yield "nothing is compared"
+    for row, n in found.items():
+        if n > 1:
+            yield f"{named_of_study(dict(row))} is there twice"
+    yield from judged(rows, scores.FALSE_ALARM, named_of_study)
+
+
+def verdict(tables, studies, scenes=None):
     """Return (failures, text that sums up) of tables, each {name: rows}.
 
-    ``tables`` are the check tables of scenes. ``studies`` have scores z without verdicts: each
-    study fails by chance as seldom as a scene does, by Bonferroni's bound.
+    ``tables`` are the check tables of scenes, and ``scenes`` the ``SceneRequest`` of each by its
+    name. ``studies`` have scores z without verdicts: each study fails by chance as seldom as a
+    scene does, by Bonferroni's bound.
     """
-    from twodiscs.comparison import check, scores  # which need numpy and scipy
-
-    studies = {name: check.judged(rows, scores.FALSE_ALARM) for name, rows in studies.items()}
     failures = [
-        sentence(name, row)
-        for sentence, judgements in ((failure, tables), (study_failure, studies))
-        for name, rows in judgements.items()
-        for row in rows
-        if row.get("passed") is False
+        f"{name}: {sentence}"
+        for name, rows in tables.items()
+        for sentence in scene_failures(rows, scenes and scenes[name])
     ]
+    failures += [
+        f"{name}: {sentence}" for name, rows in studies.items() for sentence in study_failures(rows)
+    ]
+    if failures:
+        return failures, ""
     lines = [summary(scene, rows) for scene, rows in tables.items()]
     lines += [study_summary(study, rows) for study, rows in studies.items()]
-    return failures, "".join(f"{line}\n" for line in lines)
+    lines = lines or ["nothing is compared, for the configuration asks for no measurement"]
+    return [], "".join(f"{line}\n" for line in lines)
 
 
 def main():
@@ -78,11 +225,19 @@ def main():
     parser.add_argument(
         "--studies", nargs="*", default=[], type=Path, metavar="CSV", help="tables with scores z"
     )
+    parser.add_argument("--configuration", required=True, metavar="JSON", help="JSON or @path")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE")
     options = parser.parse_args()
+    options.output.unlink(missing_ok=True)  # whatever happens, an old one says nothing of these
+    configuration = load(parameters(options.configuration))
+    scenes = {scene.name: scene for scene in configuration.scenes if "check" in scene.tables}
     tables = {path.parent.name: SCENE_TABLES["check"].read(path) for path in options.tables}
     studies = {path.stem: STUDY_TABLES[path.stem].read(path) for path in options.studies}
-    failures, text = verdict(tables, studies)
+    wanted = [name for name in configuration.shared if name in STUDIES and STUDIES[name].checked]
+    wanted = {*scenes, *(STUDIES[name].tables[0].name() for name in wanted)}
+    if odd := sorted(wanted ^ {*tables, *studies}):
+        raise InputError(f"tables must be given of {sorted(wanted)}, but see {', '.join(odd)}")
+    failures, text = verdict(tables, studies, scenes)
     if failures:
         print("\n".join(failures), file=sys.stderr)
         return 1
