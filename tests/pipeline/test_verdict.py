@@ -70,9 +70,9 @@ def is_mean(row):
 (COLLISIONS,) = filter(collides, PAPER)
 BOUND = COLLISIONS["bound"]
 DAMAGES = {
-    "no answer": (changed(lambda row: True, passed=None), "must be passed, but the table says not"),
+    "no answer": (changed(lambda row: True, passed=None), "the table says not compared; so it is"),
     "one answer": (changed(collides, passed=False), "the table says not passed"),
-    "no score": (changed(collides, z=None), "must be not compared, but the table says passed"),
+    "no score": (changed(collides, z=None), "is not compared, but the table says passed"),
     "no score, no answer": (
         changed(collides, z=None, passed=None, bound=None), f"has the bound {BOUND}, but of ",
     ),

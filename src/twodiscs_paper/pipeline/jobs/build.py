@@ -4,6 +4,7 @@ Quick to import: the Snakefile reads this.
 """
 
 import shlex
+import shutil
 import signal
 import sys
 from datetime import datetime
@@ -24,6 +25,9 @@ TARGETS = (
     "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
     "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
 )  # fmt: skip
+
+#: Bytes: a disk with less room than this may be what a build failed for.
+ROOM = 10**8
 
 #: Where a wheel puts the workflow, below the folder that is installed to.
 SHARED = "share/twodiscs/Snakefile"
@@ -151,3 +155,18 @@ def closing(results):
     if report.exists():
         said += [f"The report is {report.resolve()}"]
     return "".join(f"{line}\n" for line in said)
+
+
+def failing(results):
+    """Return what else there is to say of a build that failed: that its disk is full.
+
+    The verdict on what was there before is removed, for it says nothing of what is there now.
+    """
+    folder = Path(results)
+    (folder / "check.passed").unlink(missing_ok=True)
+    free = shutil.disk_usage(folder).free if folder.is_dir() else ROOM
+    if free >= ROOM:
+        return ""
+    return (
+        f"{results} has only {free / 1e6:.3g} MB left on its disk; a full one leaves empty logs\n"
+    )
