@@ -167,6 +167,4 @@ def failing(results):
     free = shutil.disk_usage(folder).free if folder.is_dir() else ROOM
     if free >= ROOM:
         return ""
-    return (
-        f"{results} has only {free / 1e6:.3g} MB left on its disk; a full one leaves empty logs\n"
-    )
+    return f"The disk of {results} has {free / 1e6:.3g} MB left; if it is full, logs are empty\n"
