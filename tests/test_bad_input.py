@@ -1,10 +1,12 @@
 """What makes no sense is refused: by every public function, in one sentence that says why."""
 
 import math
+import os
 import re
 import subprocess
 import sys
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -205,6 +207,23 @@ def test_exact_numbers_of_nonsense_are_refused():
     assert (run.returncode, run.stdout) == (2, "")
     assert run.stderr.startswith("error: ")
     assert run.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("wrong", ["optimized", "another file of the name"])
+def test_what_the_workflow_cannot_run_with_is_one_sentence(tmp_path, wrong):
+    sources = str(Path(checks.__file__).parents[2])
+    environment = os.environ | {"PYTHONPATH": sources, "PYTHONOPTIMIZE": "2"}
+    said = "PYTHONOPTIMIZE=2 must not be set: it removes docstrings, which the pages show\n"
+    if wrong != "optimized":
+        (tmp_path / "twodiscs.py").write_text("raise SystemExit('imported by mistake')\n")
+        path = os.pathsep.join((str(tmp_path), sources))
+        environment = os.environ | {"PYTHONPATH": path}
+        said = (
+            f"{tmp_path / 'twodiscs.py'} hides the package twodiscs: give this file another name\n"
+        )
+    program = [sys.executable, "-c", "import twodiscs_paper.pipeline.cost"]
+    run = subprocess.run(program, capture_output=True, text=True, env=environment, cwd=tmp_path)
+    assert (run.returncode, run.stdout, run.stderr) == (1, "", said)
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyError, TypeError, ZeroDivisionError])
