@@ -1,5 +1,6 @@
 """What makes no sense is refused: by every public function, in one sentence that says why."""
 
+import itertools
 import math
 import os
 import re
@@ -13,8 +14,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import twodiscs as td
 from twodiscs import arguments
 from twodiscs.comparison import estimates, scores
+from twodiscs.comparison.digests import read_json
 from twodiscs.dynamics import counting, intervals, trajectory
 from twodiscs.model import checks, effects, radii
 from twodiscs.model.box import Box
@@ -23,7 +26,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact, laws, tails
-from twodiscs_paper.pipeline.configuration import load
+from twodiscs_paper.pipeline.configuration import load, reading
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
@@ -195,6 +198,96 @@ def test_beyond_the_largest_radius_there_is_no_scene(sides):
 def test_a_configuration_that_makes_no_sense(mapping):
     with pytest.raises(InputError, match=r"\w"):
         load.load(mapping)
+
+
+@pytest.mark.parametrize(
+    ("line", "where", "text", "read"),
+    [
+        ("seed: 010", "seed", "010", 8),
+        ("seed: 1:30", "seed", "1:30", 90),
+        ("seed: 0b11", "seed", "0b11", 3),
+        ("seed: -1_5", "seed", "-1_5", -15),
+        ("seed: 0x1F", "seed", "0x1F", 31),
+        ("accuracy: 1:30.5", "accuracy", "1:30.5", 90.5),
+        ("scenes: [{radii: [0.1, 1_0.5]}]", "scenes[0].radii[1]", "1_0.5", 10.5),
+        ("scenes: [{name: 0o1, box: {width: 1:30}}]", "scenes[0].box.width", "1:30", 90),
+        ("010: 1", "the file", "010", 8),
+    ],
+)
+def test_numbers_that_yaml_reads_as_others_are_refused(tmp_path, line, where, text, read):
+    path = tmp_path / "a.yaml"
+    path.write_text(f"results: a\n{line}\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        reading.read(path)
+    asked = "must be a decimal number, or text in quotes, not"
+    assert str(caught.value) == f"{path}, line 2: {where} {asked} {text}: YAML reads {read}"
+
+
+@pytest.mark.parametrize(
+    "text", ["0", "-7", "+.5", "1.", "1e6", "2.5E-01", "1.e+3", ".inf", "'010'"]
+)
+def test_numbers_that_everyone_reads_in_one_way_are_taken(tmp_path, text):
+    (tmp_path / "a.yaml").write_text(f"a: [{text}]\n", encoding="utf-8")
+    (value,) = reading.read(tmp_path / "a.yaml")["a"]
+    assert float(value) == float(text.strip("'").replace(".inf", "inf"))
+
+
+# The face ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize(("time", "replica"), [(0.25, 3), (1.5, 4099)])
+def test_what_a_function_returns_is_finite_or_its_time_and_replica_are_named(value, time, replica):
+    calls = itertools.count()
+
+    def seen(start, now):
+        block, step = divmod(next(calls), 2)
+        values = np.stack([now["x1"], now["x2"]], axis=1)
+        if (block, (0.25, 1.5)[step]) == (replica // len(now), time):
+            values[replica % len(now), 1] = value
+        return values
+
+    asked = f"function must return finite numbers, not {value} at the time {time} of the replica"
+    with pytest.raises(InputError, match=f"^{re.escape(f'{asked} {replica}')}$"):
+        td.observe(PAPER, seen, [0.25, 1.5], replicas=5000)
+
+
+@pytest.mark.parametrize("events", [{"vertical_hop": 1e-9}, {}, "vertical_hop", 5])
+def test_events_with_numbers_are_refused(events):
+    """The relative errors of events are a mapping; ``events`` would ignore the numbers of one."""
+    with pytest.raises(InputError, match=r"^events must be a list of some of vertical_hop, "):
+        td.simulate(PAPER, error=0.5, events=events)
+    with pytest.raises(InputError, match=r"^quantities must be a list of some of volume, "):
+        td.sample(PAPER, 10, quantities=events)
+
+
+def test_errors_of_events_are_a_mapping():
+    found = td.simulate(PAPER, error={"any_wall": 0.5}, events=None, budget=1)
+    assert [*found.settings["events"]] == ["any_wall"]
+
+
+def test_a_null_character_makes_no_path(tmp_path):
+    with pytest.raises(InputError, match=r"^path must be that of a file, not '\\x00'$"):
+        td.load_result("\0")
+    with pytest.raises(
+        InputError, match=r"^path must be a file to write, not '\\x00': it has a null"
+    ):
+        td.sample(PAPER, 1).save("\0")
+
+
+@pytest.mark.parametrize("name", ["discs", "width", "radius", "field", "periodic"])
+def test_arrays_are_no_numbers(name):
+    with pytest.raises(InputError, match=rf"^{name} must be .*, not array\(\[0\.1, 0\.2\]\)$"):
+        td.Scene(**{"width": 1.5, "height": 1.0, "radius": 0.2} | {name: np.array([0.1, 0.2])})
+
+
+def test_a_result_as_deep_as_no_result_is_refused(tmp_path):
+    path = tmp_path / "deep.json"
+    path.write_text("[" * 10**5, encoding="utf-8")
+    with pytest.raises(InputError, match="path must be a file that save"):
+        td.load_result(path)
+    with pytest.raises(InputError, match="is not what its job wrote"):
+        read_json(path)
 
 
 # Jobs -------------------------------------------------------------------------------------------

@@ -5,13 +5,16 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib import import_module
+from inspect import iscode
 from pathlib import Path
+from types import FunctionType
 
 import numpy as np
 import pytest
 
 import twodiscs
-from twodiscs.model.sources import ROOT, fingerprint, imported
+from twodiscs.model.sources import fingerprint, imported, imports_of, modules
 from twodiscs.sampling import jit, streams
 
 SCRIPT = """
@@ -138,24 +141,43 @@ def kept_splitmix(tmp_path_factory):
     return environment, finished(environment, SPLITMIX).stdout
 
 
-#: The modules of the kernels whose time counts, and what they are made of.
-KERNELS = {
-    "dynamics.counting": ("dynamics.law", "sampling.prism", "sampling.streams", "model.events"),
-    "dynamics.strip": ("dynamics.law", "sampling.prism", "sampling.streams"),
-    "dynamics.passages": ("dynamics.law", "sampling.streams"),
-    "dynamics.many": ("dynamics.law", "sampling.streams"),
-    "dynamics.law": (),
-    "sampling.montecarlo": ("sampling.streams",),
-}
+def kernels():
+    """Return {name: function} of all functions of the library that are compiled and kept."""
+    found = {}
+    for parts in modules():
+        if parts[0] == "twodiscs" and ("twodiscs", "sampling", "jit") in imports_of(parts):
+            for value in vars(import_module(".".join(parts))).values():
+                if getattr(value, "_cache", None) and value.__module__ == ".".join(parts):
+                    found[f"{value.__module__}.{value.__name__}"] = value.py_func
+    return found
 
 
-@pytest.mark.parametrize("module", KERNELS)
-def test_kernels_are_kept_by_all_that_is_compiled_into_them(module):
-    """Otherwise an edit of the event law would leave the old kernels in use."""
-    files = {path.relative_to(ROOT).as_posix() for path in imported(f"twodiscs.{module}")}
-    for part in (module, *KERNELS[module], "sampling.jit"):
-        assert f"twodiscs/{part.replace('.', '/')}.py" in files
-    assert jit.cache_folder(f"twodiscs.{module}").name.endswith(fingerprint(f"twodiscs.{module}"))
+def modules_in(function):
+    """Return the modules of all functions that are compiled into a ``function``, at any depth."""
+    known, queue = set(), [function]
+    while queue:
+        function = queue.pop()
+        if function not in known and isinstance(function, FunctionType):
+            known.add(function)
+            codes = [function.__code__, *filter(iscode, function.__code__.co_consts)]
+            named = (function.__globals__.get(name) for code in codes for name in code.co_names)
+            within = (cell.cell_contents for cell in function.__closure__ or ())
+            queue += [getattr(part, "py_func", part) for part in (*named, *within)]
+    return {part.__module__ for part in known if part.__module__.startswith("twodiscs.")}
+
+
+def test_a_kernel_is_kept_by_all_that_is_compiled_into_it():
+    """Otherwise an edit of the event law would leave old kernels in use."""
+    with_law = 0
+    for name, function in kernels().items():
+        within = modules_in(function)
+        with_law += "twodiscs.dynamics.law" in within
+        files = {*imported(function.__module__)}
+        for module in within:
+            assert {*imported(module)} <= files, f"{name} has {module} in it"
+        folder = jit.cache_folder(function.__module__).name
+        assert folder == f"kernels-{fingerprint(function.__module__)}", name
+    assert with_law >= 6
 
 
 def test_old_caches_of_this_package_go_and_nothing_else(package):

@@ -29,7 +29,7 @@ def read_json(path):
     try:
         content = json.loads(Path(path).read_bytes())
         written = content.pop(KEY) == _digest_of(content)
-    except (ValueError, TypeError, KeyError, AttributeError):
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         written = False
     if not written:
         raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")

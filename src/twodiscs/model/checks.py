@@ -51,6 +51,10 @@ def quote(value):
 @contextmanager
 def writing_to(path):
     """Raise ``InputError`` where ``path`` turns out to be nothing that can be written to."""
+    if "\0" in str(path):
+        raise InputError(
+            f"path must be a file to write, not {str(path)!r}: it has a null character"
+        )
     try:
         yield
     except (OSError, TypeError) as error:

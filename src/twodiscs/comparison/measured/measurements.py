@@ -310,7 +310,8 @@ def _named(key, what, names, allowed):
     """Return some of the texts ``allowed``, in their order, or all of them for None."""
     if names is None:
         return list(allowed)
-    if isinstance(names, str | bytes) or not isinstance(names, Iterable) or not (names := [*names]):
+    single = isinstance(names, str | bytes | Mapping) or not isinstance(names, Iterable)
+    if single or not (names := [*names]):
         raise InputError(f"{key} must be a list of some of {', '.join(allowed)}, not {names!r}")
     for name in names:
         check_choice(what, name, allowed)
@@ -325,7 +326,7 @@ def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, k
     if not isinstance(error, Mapping):
         errors = dict.fromkeys(possible, error)
     elif events is None:
-        errors = events = error
+        errors, events = error, [*error]
     else:
         errors = error
     tracked = _named("events", "event", events, possible)

@@ -114,6 +114,17 @@ def _seen(function, start, now):
     return seen.astype(float)
 
 
+def _check_finite(seen, times, done):
+    """Raise ``InputError`` for NaN and infinity in what was ``seen`` of block ``done``."""
+    if not np.isfinite(seen).all():
+        replica, time, *_ = np.argwhere(~np.isfinite(seen))[0]
+        value = seen[replica, time][~np.isfinite(seen[replica, time])].flat[0]
+        raise InputError(
+            f"function must return finite numbers, not {value} at the time {times[time]:g} of the "
+            f"replica {(done - 1) * BLOCK + replica}"
+        )
+
+
 def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
     """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
     stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
@@ -143,6 +154,7 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
         every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
         for done, (start, *later) in enumerate(every, 1):
             seen = np.stack([_seen(function, start, now) for now in later], axis=1)
+            _check_finite(seen, times, done)
             own, spread = seen.mean(axis=0), ((seen - seen.mean(axis=0)) ** 2).sum(axis=0)
             if mean is None:
                 total, mean, square = BLOCK, own, spread

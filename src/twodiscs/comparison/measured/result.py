@@ -135,14 +135,17 @@ def from_dict(content):
 
 def load_result(path):
     """Return the result in a file that its ``save`` wrote (see the face)."""
-    if not isinstance(path, str | PathLike):
+    if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise InputError(f"path must be that of a file, not {quote(path)}")
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         if not isinstance(content, Mapping):
             raise TypeError
         return from_dict(content)
-    except (KeyError, TypeError, AttributeError, json.JSONDecodeError, UnicodeDecodeError):
+    except (
+        *(KeyError, TypeError, AttributeError, RecursionError),
+        *(json.JSONDecodeError, UnicodeDecodeError),
+    ):
         raise InputError(f"path must be a file that save() wrote, not {str(path)!r}") from None
     except OSError as error:
         raise InputError(

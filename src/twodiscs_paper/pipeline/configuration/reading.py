@@ -3,6 +3,7 @@
 The Snakefile calls ``read`` before its own ``configfile:``.
 """
 
+import re
 import sys
 
 import yaml
@@ -14,6 +15,13 @@ from twodiscs_paper.pipeline.configuration.schema import schema
 #: Far beyond any configuration: bytes of a file, letters of one value, blocks within blocks, and
 #: values once every alias is written out.
 BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
+
+#: What YAML takes for a number, and numbers as everyone reads them: YAML 1.1 has octal, binary and
+#: sexagesimal ones too, so that 010 is 8 and 1:30 is 90.
+NUMBERS = {f"tag:yaml.org,2002:{kind}" for kind in ("int", "float")}
+PLAIN = re.compile(
+    r"[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)([eE][-+]?\d+)?|[-+]?\.(inf|nan)", re.IGNORECASE
+)
 
 
 class ConfigError(InputError):
@@ -63,6 +71,13 @@ def shown(value):
     return "empty" if value is None else checks.quote(value)
 
 
+def _step(index):
+    """Return how a path goes on to what is at an ``index``: a key, or a number in a list."""
+    if isinstance(index, yaml.ScalarNode):
+        return f".{index.value}"
+    return "" if index is None else f"[{index}]"
+
+
 def _mistake(problem, node):
     return yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
 
@@ -72,7 +87,7 @@ class _StrictLoader(yaml.SafeLoader):
 
     def __init__(self, stream):
         super().__init__(stream)
-        self.path, self.sizes, self.total = [], {}, 0
+        self.path, self.names, self.sizes, self.total = [], [], {}, 0
 
     def compose_node(self, parent, index):
         # Values are counted where they are composed: an alias stands for as many as its anchor.
@@ -84,10 +99,16 @@ class _StrictLoader(yaml.SafeLoader):
                 raise _mistake("an alias must not stand within what it stands for", node)
         else:
             self.path.append(0)
+            self.names.append(_step(index))
             node = super().compose_node(parent, index)
+            self.names.pop()
             self.sizes[node] = self.path.pop() + 1
         if isinstance(node, yaml.ScalarNode) and len(node.value) > LETTERS:
             raise _mistake(f"a value must have at most {LETTERS} letters", node)
+        if node.tag in NUMBERS and not PLAIN.fullmatch(node.value):
+            where = "".join([*self.names, _step(index)]).lstrip(".") or "the file"
+            asked = f"{where} must be a decimal number, or text in quotes, not {node.value:.40}"
+            raise _mistake(f"{asked}: YAML reads {self.construct_object(node)!r}", node)
         if self.path:
             self.path[-1] += self.sizes[node]
         self.total += 1
