@@ -1,6 +1,7 @@
 """Rare hops from starts next to their surface: the exact share, the exact rates, honest errors."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -260,3 +261,21 @@ def test_a_budget_is_shared_and_spent():
 def test_bad_distances_are_refused(hop, distance):
     with pytest.raises(ValueError, match="must"):
         exact.fraction_near(PAPER, hop, distance)
+
+
+def test_every_rare_hop_has_random_numbers_of_its_own(monkeypatch):
+    """In a square both hops are rare together, and the same numbers would give the same counts."""
+    streams = {}
+
+    def recorded(scene, hop, band, seed, first, stop):
+        streams[scene.radius, hop, root] = seed
+        return np.zeros(2), 0
+
+    monkeypatch.setattr(strip, "run_blocks", recorded)
+    for radius, root in product((0.2499, 0.24999), (1, 2)):
+        target = dict.fromkeys(HOPS, 0.1)
+        run = counting.CountingRun(Scene(1.0, 1.0, radius), target, 10**6, root)
+        assert {*HOPS} < {*run.parts}
+        for hop in HOPS:
+            run.parts[hop].work(0, 1)
+    assert len({*streams.values(), 1, 2}) == len(streams) + 2 == 10

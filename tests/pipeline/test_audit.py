@@ -91,10 +91,11 @@ def test_damage_is_named(results, monkeypatch, capsys, name, harm):
     assert last.startswith(f"{said.count(str(results))} of ")
 
 
+@pytest.mark.parametrize("name", ["volume", "check"])
 def test_a_table_that_was_edited_before_the_manifest_was_written_is_named(
-    results, monkeypatch, capsys
+    results, monkeypatch, capsys, name
 ):
-    path = results / "small" / "volume.csv"
+    path = results / "small" / f"{name}.csv"
     lines = path.read_text().splitlines()
     lines[1] = lines[1].replace("sampled", "too-few")
     path.write_text("\n".join(lines) + "\n")

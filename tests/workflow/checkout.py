@@ -65,7 +65,7 @@ def forked(arguments, folder, sources):
                 sys.stdout, sys.stderr = (os.fdopen(os.dup(fd), "w") for fd in (1, 2))
                 os.chdir(folder)
                 os.environ["PYTHONPATH"] = sources
-                for name in [name for name in sys.modules if name.partition(".")[0] == "twodiscs"]:
+                for name in [name for name in sys.modules if name.startswith("twodiscs")]:
                     del sys.modules[name]
                 sys.path.insert(0, sources)
                 status = snakemake_main(arguments)
