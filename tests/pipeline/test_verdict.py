@@ -227,7 +227,14 @@ def built(block):
     return scene, rows
 
 
-@pytest.mark.parametrize("name", BOXES)
+#: Those whose kernels this file alone would compile.
+OTHERS = ("rough", "on a ring", "in a field", "balls", "three", "four on a ring")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name in OTHERS)) for name in BOXES],
+)
 def test_all_that_a_scene_asks_for_is_due_and_nothing_else(name):
     scene, rows = built(BOXES[name])
     found = {(r["comparison"], r["quantity"], r["radius"]) for r in rows if r["radius"]}
