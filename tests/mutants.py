@@ -39,7 +39,7 @@ MUTANTS = [
     ("model/scene.py", "mirror images of the right wall", 'mirrored = declared.axis == "x" or not self.field', "mirrored = not self.field"),
     ("model/scene.py", "reach of the top", "self.field * (self.height - 2 * self.radius)", "self.field * (self.height - self.radius)"),
     ("model/box.py", "swapped axis of a threshold", 'self.width if AXIS[hop] == "y"', 'self.width if AXIS[hop] == "x"'),
-    ("model/radii.py", "one seed for all radii", 'one_of("method", method, METHODS), key)', 'one_of("method", method, METHODS))'),
+    ("model/radii.py", "one seed for all radii", 'check_choice("method", method, METHODS), key)', 'check_choice("method", method, METHODS))'),
     ("model/radii.py", "off by a half in the grid", "(j + 0.5) / n) ** 2", "(j + 1) / n) ** 2"),
     ("theory/plain.py", "factor of the contact area", "2 * math.sqrt(2) * disc", "math.sqrt(2) * disc"),
     ("theory/plain.py", "swapped axis of the arc", "self.square - min(range_y, sigma) ** 2", "self.square - min(range_x, sigma) ** 2"),
@@ -71,7 +71,7 @@ MUTANTS = [
     ("sampling/prism.py", "momentum not conserved", "= -relative * prism.fractions[1]\n            used", "= relative * prism.fractions[1]\n            used"),
     ("sampling/prism.py", "height of the wrong disc", "weights[1] * (y2 + half2)", "weights[1] * (y2 + half1)"),
     ("sampling/blocks/strata.py", "error of strata", "np.sum(shares**2 * variances)", "np.sum(shares * variances)"),
-    ("pipeline/jobs/point.py", "one seed for all shards", "work.parts[part].work(first, stop)", "work.parts[part].work(0, stop - first)"),
+    ("twodiscs_paper/pipeline/jobs/point.py", "one seed for all shards", "work.parts[part].work(first, stop)", "work.parts[part].work(0, stop - first)"),
     ("sampling/blocks/rounds.py", "a block left out", "for first in range(0, blocks, per_piece)", "for first in range(1, blocks, per_piece)"),
     ("sampling/montecarlo.py", "thickness of a hop's shell", "2.0 * (thick * thick)", "1.0 * (thick * thick)"),
     ("sampling/montecarlo.py", "number of walls", '"walls": 4 * len(scene.walled)', '"walls": 2 * len(scene.walled)'),
@@ -100,21 +100,21 @@ MUTANTS = [
     ("comparison/check.py", "half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
     ("comparison/measured/scan.py", "a budget is lost", "result.more(error, budget, None, cores, progress)", "result.more(error, None, None, cores, progress)"),
     ("comparison/measured/progress.py", "what is done counts again", "bar.update(done - bar.n)", "bar.update(done)"),
-    ("studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
-    ("studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
-    ("studies/passages/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs", "per_disc = scene.width / 2"),
-    ("studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * half.stderr", "math.hypot(half.stderr"),
-    ("studies/passages/fits.py", "fit to all distances", '-row["distance"])[-LAST:]', '-row["distance"])'),
-    ("studies/passages/fits.py", "error of a logarithm", '[row["stderr"] / value for row', '[row["stderr"] for row'),
-    ("studies/tails/fits.py", "sum of variances in place of their difference", "relative[0] - relative[1]", "relative[0] + relative[1]"),
-    ("studies/tails/fits.py", "degrees of freedom", "return chi2, len(hazards) - 1", "return chi2, len(hazards)"),
-    ("studies/distributions/shape.py", "swapped axis of a drift", 'row["height"] if row["event"] == "vertical_hop"', 'row["width"] if row["event"] == "vertical_hop"'),
-    ("studies/distributions/shape.py", "one of two tests of a plateau", "min(tests) > LEVEL", "max(tests) > LEVEL"),
-    ("studies/agreement/measure.py", "error of a mean square", "math.sqrt(2 / len(tests))", "math.sqrt(1 / len(tests))"),
-    ("studies/agreement/measure.py", "independent counts of a bin", "fraction * (1 - fraction)", "fraction"),
-    ("pipeline/documents/numbers/number.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
-    ("pipeline/documents/numbers/number.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
-    ("pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
+    ("twodiscs_paper/studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
+    ("twodiscs_paper/studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
+    ("twodiscs_paper/studies/passages/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs", "per_disc = scene.width / 2"),
+    ("twodiscs_paper/studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * half.stderr", "math.hypot(half.stderr"),
+    ("twodiscs_paper/studies/passages/fits.py", "fit to all distances", '-row["distance"])[-LAST:]', '-row["distance"])'),
+    ("twodiscs_paper/studies/passages/fits.py", "error of a logarithm", '[row["stderr"] / value for row', '[row["stderr"] for row'),
+    ("twodiscs_paper/studies/tails/fits.py", "sum of variances in place of their difference", "relative[0] - relative[1]", "relative[0] + relative[1]"),
+    ("twodiscs_paper/studies/tails/fits.py", "degrees of freedom", "return chi2, len(hazards) - 1", "return chi2, len(hazards)"),
+    ("twodiscs_paper/studies/distributions/shape.py", "swapped axis of a drift", 'row["height"] if row["event"] == "vertical_hop"', 'row["width"] if row["event"] == "vertical_hop"'),
+    ("twodiscs_paper/studies/distributions/shape.py", "one of two tests of a plateau", "min(tests) > LEVEL", "max(tests) > LEVEL"),
+    ("twodiscs_paper/studies/agreement/measure.py", "error of a mean square", "math.sqrt(2 / len(tests))", "math.sqrt(1 / len(tests))"),
+    ("twodiscs_paper/studies/agreement/measure.py", "independent counts of a bin", "fraction * (1 - fraction)", "fraction"),
+    ("twodiscs_paper/pipeline/documents/numbers/number.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
+    ("twodiscs_paper/pipeline/documents/numbers/number.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
+    ("twodiscs_paper/pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
 ]
 # fmt: on
 
@@ -134,15 +134,22 @@ def tests(package, *targets):
     return failed and failed[1]
 
 
+def source(file):
+    """Return the path of a ``file`` of the list below ``src``."""
+    return Path(file if file.startswith("twodiscs_paper/") else f"twodiscs/{file}")
+
+
 def tiers(file):
     """Yield the targets of pytest for a mutant of ``file``, those first that take least."""
-    path = Path("tests", file)
+    path = Path("tests", file.removeprefix("twodiscs_paper/"))
     own = {
         *path.parent.glob(f"test_{path.stem}*"),
         *path.parents[1].glob(f"test_{path.parent.name}*"),
     }
     yield sorted({*map(str, own), *filter(None, [ELSEWHERE.get(str(Path(file).parent))])})
     yield [f"tests/{path.parts[1]}"]
+    if path.parts[1] != "studies":  # which measure what engines and theory promise
+        yield ["tests/studies"]
 
 
 def main(words):
@@ -153,7 +160,7 @@ def main(words):
         package = Path(folder)
         shutil.copytree(REPOSITORY / "src", package, dirs_exist_ok=True)
         for file, what, old, new in wanted:
-            path, begun = package / "twodiscs" / file, time.monotonic()
+            path, begun = package / source(file), time.monotonic()
             text = path.read_text(encoding="utf-8") if path.exists() else ""
             if text.count(old) != 1:
                 survived += 1
