@@ -10,7 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import advance, follow
+from twodiscs.dynamics.trajectory import follow
+from twodiscs.dynamics.two.path import advance
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.law import law_of
-from twodiscs.dynamics.trajectory import advance, follow
+from twodiscs.dynamics.trajectory import follow
+from twodiscs.dynamics.two.path import advance
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.starts import state_in, states
 
