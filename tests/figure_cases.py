@@ -136,6 +136,30 @@ def trajectory(rng, unit, events=400):
     return rows
 
 
+# What is drawn ------------------------------------------------------------------------------------
+
+
+def points(axes, colour, marker):
+    """Return the set of all (x, y) of the symbols of one look."""
+    return {
+        (float(x), float(y))
+        for line in axes.lines
+        if (line.get_color(), line.get_marker()) == (colour, marker)
+        for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
+    }
+
+
+def bars(axes, colour, marker):
+    """Return (x, y, half of its bar) of all symbols of one look that have error bars, by x."""
+    found = []
+    for line, _, (bar, *_) in axes.containers:
+        if (line.get_color(), line.get_marker()) == (colour, marker):
+            ends = np.array(bar.get_segments())[:, :, 1]
+            half = (ends[:, 1] - ends[:, 0]) / 2
+            found += zip(line.get_xdata(), line.get_ydata(), half, strict=True)
+    return sorted(found)
+
+
 # Texts --------------------------------------------------------------------------------------------
 
 

@@ -23,7 +23,7 @@ from twodiscs_paper.pipeline.jobs.study import read_tables
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
-    "mean_hop_time": ("mean_hop_time", 1, "radius $r$"),
+    "mean_hop_time": ("mean_hop_time", 0, "radius $r$"),
     "tails": ("tails", 0, r"interval $t/\tau$"),
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),

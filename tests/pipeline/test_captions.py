@@ -5,7 +5,7 @@ import pytest
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
-from twodiscs_paper.pipeline.documents.captions import caption, said
+from twodiscs_paper.pipeline.documents.captions import caption, caption_parts
 
 ENTRIES, TABLES = FIGURES | STUDY_FIGURES, SCENE_TABLES | STUDY_TABLES
 SCENE = {"name": "one", "width": 1.5, "height": 1.0}
@@ -42,7 +42,7 @@ def test_the_box_and_the_effects_of_the_scene_are_those_of_the_figure(tmp_path):
     entry = FIGURES["mean_hop_time"]
     assert "In a square box" in caption(entry, tmp_path, SCENE | {"width": 1.0})
     assert "In a square box" not in caption(entry, tmp_path, SCENE)
-    own, alike = said(entry, tmp_path, SCENE | {"effects": {"field": 1.0}})
+    own, alike = caption_parts(entry, tmp_path, SCENE | {"effects": {"field": 1.0}})
     assert "Dashed" not in own
     assert "From r_t on" in alike
     assert "Hops are those of any pair" in caption(

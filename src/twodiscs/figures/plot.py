@@ -124,7 +124,7 @@ def _figures_of(rows):
     if "left" in rows[0]:
         return ["hop_histogram"]
     shown = {row.get("quantity") or f"{row['event']}_time" for row in rows}
-    over_radius = {n: e for n, e in FIGURES.items() if e.module == "twodiscs.figures.radius"}
+    over_radius = {n: e for n, e in FIGURES.items() if ".radius." in e.module}
     return [name for name, entry in over_radius.items() if entry.needs & shown]
 
 

@@ -67,8 +67,8 @@ def panels(box, label, beneath=0, judged=True):
     line = 0 if is_short(box) else LINE
     under = LOWER + GAP if judged else 0
     figure = new_figure(beneath + BOTTOM + under + MAIN + TOP + line + room(box))
-    lower = add_panel(figure, beneath + BOTTOM, LOWER) if judged else None
-    main = add_panel(figure, beneath + BOTTOM + under, MAIN)
+    main = add_panel(figure, beneath + BOTTOM + under, MAIN, name="main")
+    lower = add_panel(figure, beneath + BOTTOM, LOWER, name="residuals") if judged else None
     main.set_ylabel(label)
     (lower or main).set_xlabel("radius $r$")
     if judged:
@@ -99,10 +99,13 @@ def mark(panels, ends):
     name_limits(panels[0], ends)
 
 
-def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
-    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
+def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
+
+    ``name`` is their label, by which they are found among the axes of the figure.
+    """
     across, up = figure.get_size_inches()
-    axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up), label=name)
     # The power of ten of an ordinate stands beside what is written above.
     axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
     return axes

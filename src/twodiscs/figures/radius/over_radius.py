@@ -1,7 +1,4 @@
-"""Volume, areas and mean times over the radius: estimates against exact curves.
-
-One figure for all of them; the catalogue says which quantities each shows and how.
-"""
+"""Quantities over the radius: estimates against exact curves, for the figures in this folder."""
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -20,11 +17,18 @@ SMALL, LAST = 0.4, 0.1
 #: Inches: the height of a lower panel and of the room that it takes.
 APPROACH, ROOM = 1.4, 1.8
 
+#: The events of walls, and their names in a legend.
+WALLS = {
+    "right_wall": "disc 1, right wall",
+    "top_wall": "disc 1, top wall",
+    "any_wall": "any disc, any wall",
+}
+
 #: The lower panel begins this close to the end, relatively; its law is drawn from there on.
 CLOSEST, LAW = 1e-5, 0.3
 
 
-def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), approach=False):
+def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=(), approach=False):
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
@@ -43,7 +47,7 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     by_quantity = {
         quantity: panels.Series(name, shown, exact[quantity])
         for quantity, name in names.items()
-        if (shown := [_as_drawn(row) for row in rows if _quantity(row) == quantity])
+        if (shown := [row for row in rows if _quantity(row) == quantity])
     }
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
@@ -66,7 +70,8 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     panels.legend(main, box, series, loc, single=single, more=more)
     if approach:
         panels.letter(main, "a")
-        _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, by_quantity)
+        beneath = panels.add_panel(figure, panels.BOTTOM, APPROACH, name="approach")
+        _approach(beneath, box, by_quantity)
     return figure
 
 
@@ -76,13 +81,6 @@ def _root(values):
 
 def _quantity(row):
     return row["quantity"] if "quantity" in row else f"{row['event']}_time"
-
-
-def _as_drawn(row):
-    """Return a row; an area of zero is found where no sample fell into the shell."""
-    if row["exact"] == 0 and row.get("hits") == 0:
-        return row | {"estimate": 0.0, "stderr": 0.0}
-    return row
 
 
 def _laws(axes, box, event, laws):
