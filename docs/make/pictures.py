@@ -27,7 +27,7 @@ PANELS = {
     "tails": ("tails", 0, r"interval $t/\tau$"),
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
-    "price": ("accuracy_cost_by_radius", 0, ""),
+    "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
     "passages": ("passages", 1, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }

@@ -1,5 +1,7 @@
 """Quantities over the radius: estimates against exact curves, for the figures in this folder."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -32,12 +34,13 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
-    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
-    ``rooted``, as the square root; ``loc`` that of the legend, and ``single`` the method if there
-    is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
-    drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
-    radius of their end, unless no exact value is known. Residuals have a panel if there are any.
-    Raises ``InputError`` if the table has none of the quantities, and for no table or several.
+    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic; if ``rooted``,
+    square roots are drawn instead, from zero on. ``loc`` is the place of the legend, and ``single``
+    the name of the method if there is only one series. ``laws`` are "small" and "last": the
+    limiting laws of mean times that are drawn. With ``approach`` a panel beneath shows the times
+    over the distance from the radius of their end, unless no exact value is known. There is a panel
+    of residuals if there are any. Raises ``InputError`` if the table has none of the quantities,
+    and for no table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"
@@ -49,6 +52,8 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
         for quantity, name in names.items()
         if (shown := [row for row in rows if _quantity(row) == quantity])
     }
+    if rooted:
+        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
     series = list(by_quantity.values())
@@ -59,11 +64,7 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
     for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), laws)
     if rooted:
-        main.set_yscale("function", functions=(_root, np.square))
-        largest = [value for part in series for value in part.exact[np.isfinite(part.exact)]]
-        known = [row for part in series for row in part.rows if row["estimate"]]
-        largest += [row["estimate"] + (row["stderr"] or 0.0) for row in known]
-        main.set_ylim(0, 1.05 * max(largest, default=0.0) or 1.0)
+        main.set_ylim(0, None)
     else:
         panels.logarithmic(main, radii, series)
     more = [(panels.LAW_NAME, panels.LAW)] if laws and box.is_plain else []
@@ -75,8 +76,17 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
     return figure
 
 
-def _root(values):
-    return np.sqrt(np.maximum(values, 0))
+def _rooted(series):
+    """Return a ``Series`` of the square roots, with the standard errors of these."""
+
+    def root(row):
+        if not row["estimate"]:
+            return row
+        value = row["estimate"] ** 0.5
+        error = row["stderr"] and row["stderr"] / (2 * value)
+        return row | {"estimate": value, "stderr": error}
+
+    return replace(series, rows=[*map(root, series.rows)], exact=np.sqrt(series.exact))
 
 
 def _quantity(row):

@@ -26,6 +26,12 @@ STUDY = Study(
             "twodiscs_paper.studies.passages.figure",
             tables=("passages",),
         ),
+        "diffusion": Entry(
+            "Diffusion by hops",
+            DYNAMICS,
+            "twodiscs_paper.studies.passages.figure_diffusion",
+            tables=("passages",),
+        ),
     },
     parameters=_parameters,
     checked=True,

@@ -26,6 +26,12 @@ STUDY = Study(
             "twodiscs_paper.studies.stability.figure",
             tables=("stability",),
         ),
+        "stability_of_runs": Entry(
+            "Numerically hard cases of the dynamics",
+            "5 Numerical stability",
+            "twodiscs_paper.studies.stability.figure_runs",
+            tables=("stability",),
+        ),
     },
     parameters=_parameters(1),
 )

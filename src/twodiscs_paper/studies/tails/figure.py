@@ -54,12 +54,12 @@ def caption(shown):
     """Return the caption."""
     return """
     (a) Probability that the next event takes longer than t, in units of the exact mean time τ: by
-    starts drawn near the motions that last, with exact weights (open symbols), and by plain
+    initial states drawn near the motions that last, with exact weights (open symbols), and by plain
     counting (dots). Discs that move almost along an axis pass clear of each other for a time ∝
-    1/(their drift), so that the tail falls as C/t³, with the exact C (lines) and not exponentially
-    (dashed). (b) Their ratio to C/t³. (c) Beyond h/4 no such motion avoids vertical hops: the tail
-    looks exponential at first sight, but not with the rate 1/τ (dashed). Error bars are one
-    standard error.
+    1/(their drift). The tail therefore falls as C/t³, with the exact C (lines), and not
+    exponentially (dashed). (b) The same probabilities divided by C/t³. (c) Beyond h/4 no such
+    motion avoids vertical hops: the tail looks exponential, but its rate is not 1/τ (dashed). Error
+    bars are one standard error.
     """
 
 
