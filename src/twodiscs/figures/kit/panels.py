@@ -9,6 +9,7 @@ panels and named above.
 import math
 import re
 from dataclasses import dataclass
+from itertools import cycle
 
 import numpy as np
 from matplotlib import rcParams
@@ -46,11 +47,15 @@ GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
 
 @dataclass(frozen=True)
 class Series:
-    """One quantity: its name in the legend, rows of a table, exact values along the curve."""
+    """One quantity: its name in the legend, rows of a table, exact values along the curve.
+
+    ``look`` is (colour, marker), if they are not those of the place among other series.
+    """
 
     name: str
     rows: list
     exact: np.ndarray
+    look: tuple | None = None
 
     def is_seen(self):
         """Say whether there is a positive value to be drawn."""
@@ -240,12 +245,17 @@ def spread(wanted, widths, gap, most):
     return middles[::-1]
 
 
+def with_looks(series):
+    """Return ((colour, marker), ``Series``) for each of the ``series``."""
+    return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
+
+
 def draw_series(main, lower, radii, series, single=False):
     """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
 
     ``lower`` is None where there are no residuals.
     """
-    for (colour, marker), part in zip(SERIES, series, strict=False):
+    for (colour, marker), part in with_looks(series):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
         estimates(main, part.rows, colour, marker)
         if lower:
@@ -320,7 +330,7 @@ def legend(axes, box, series, loc, single=None, more=()):
     """
     loc = loc if box.is_plain else "best"
     handles, names = [], []
-    for (colour, marker), part in zip(SERIES, series, strict=False):
+    for (colour, marker), part in with_looks(series):
         style = open_symbol(colour, marker)
         if single and not np.any(np.isfinite(part.exact)):
             handles += axes.plot([], [], ls="", **style)

@@ -30,7 +30,18 @@ WALLS = {
 CLOSEST, LAW = 1e-5, 0.3
 
 
-def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=(), approach=False):
+def over_radius(
+    box,
+    tables,
+    names,
+    label,
+    loc,
+    single=None,
+    rooted=False,
+    laws=(),
+    approach=False,
+    looks=None,
+):
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
@@ -39,23 +50,18 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
     the name of the method if there is only one series. ``laws`` are "small" and "last": the
     limiting laws of mean times that are drawn. With ``approach`` a panel beneath shows the times
     over the distance from the radius of their end, unless no exact value is known. There is a panel
-    of residuals if there are any. Raises ``InputError`` if the table has none of the quantities,
-    and for no table or several.
+    of residuals if there are any. ``looks`` maps quantities to (colour, marker). Raises
+    ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"
         raise InputError(f"tables must be the one of {', '.join(names)}, not {named}")
     ((table, rows),) = tables.items()
-    radii, exact = curves.exact(box)
-    by_quantity = {
-        quantity: panels.Series(name, shown, exact[quantity])
-        for quantity, name in names.items()
-        if (shown := [row for row in rows if _quantity(row) == quantity])
-    }
-    if rooted:
-        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
+    radii, by_quantity = series_of(box, rows, names, looks or {})
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
+    if rooted:
+        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
     series = list(by_quantity.values())
     drawn = [row for part in series for row in part.rows]
     judged, approach = any(map(is_judged, drawn)), approach and not is_unknown(drawn)
@@ -68,12 +74,25 @@ def over_radius(box, tables, names, label, loc, single=None, rooted=False, laws=
     else:
         panels.logarithmic(main, radii, series)
     more = [(panels.LAW_NAME, panels.LAW)] if laws and box.is_plain else []
-    panels.legend(main, box, series, loc, single=single, more=more)
+    # The place is one for all of the quantities.
+    place = loc if len(series) == len(names) else "best"
+    panels.legend(main, box, series, place, single=single, more=more)
     if approach:
         panels.letter(main, "a")
         beneath = panels.add_panel(figure, panels.BOTTOM, APPROACH, name="approach")
         _approach(beneath, box, by_quantity)
     return figure
+
+
+def series_of(box, rows, names, looks):
+    """Return (radii of the curves, {quantity: ``Series``}) of the quantities that ``rows`` have."""
+    radii, exact = curves.exact(box)
+    found = {}
+    for quantity, name in names.items():
+        shown = [row for row in rows if quantity_of(row) == quantity]
+        if shown:
+            found[quantity] = panels.Series(name, shown, exact[quantity], looks.get(quantity))
+    return radii, found
 
 
 def _rooted(series):
@@ -89,7 +108,8 @@ def _rooted(series):
     return replace(series, rows=[*map(root, series.rows)], exact=np.sqrt(series.exact))
 
 
-def _quantity(row):
+def quantity_of(row):
+    """Return the quantity of a row of a table, as theory.csv names it."""
     return row["quantity"] if "quantity" in row else f"{row['event']}_time"
 
 
