@@ -153,7 +153,8 @@ def bars(axes, colour, marker):
     """Return (x, y, half of its bar) of all symbols of one look that have error bars, by x."""
     found = []
     for line, _, (bar, *_) in axes.containers:
-        if (line.get_color(), line.get_marker()) == (colour, marker):
+        own = (line.get_color(), line.get_marker()) == (colour, marker)
+        if own and bar.get_segments():
             ends = np.array(bar.get_segments())[:, :, 1]
             half = (ends[:, 1] - ends[:, 0]) / 2
             found += zip(line.get_xdata(), line.get_ydata(), half, strict=True)

@@ -23,7 +23,7 @@ def draw(box=None, *, tables):
     bottom, height = panels.BOTTOM, RATIOS + panels.GAP + TIMES
     figure = new_figure(bottom + height + panels.TOP, WIDTH)
     upper = bottom + RATIOS + panels.GAP
-    times = panels.add_panel(figure, upper, TIMES, width=ACROSS, name="times")
+    times = panels.add_panel(figure, upper, TIMES, width=ACROSS, name="times by radius")
     ratios = panels.add_panel(figure, bottom, RATIOS, width=ACROSS, name="ratios")
     _times(times, ratios, [row for row in rows if row["part"] == "radius"])
     left = WIDTH - panels.RIGHT - SINGLE
