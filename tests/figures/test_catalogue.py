@@ -254,7 +254,7 @@ def test_captions_speak_of_an_effect_where_it_is(effect, value, words):
         ("pressure", "In a square box", {(1, 1)}),
         ("mean_hop_time", "Arrows", set()),
         ("volume", "Crosses", set()),
-        ("stability", "Crosses", set()),
+        ("stability_of_runs", "Crosses", set()),
         ("stability", "not run.", {(1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5)}),
     ],
 )
