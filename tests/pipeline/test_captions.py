@@ -18,7 +18,8 @@ SCENE = {"name": "one", "width": 1.5, "height": 1.0}
          "Crosses are estimates"),
         ("mean_hop_time", "mean_times", {"event": "vertical_hop", "bound": 3.1},
          {"event": "top_wall"}, "Arrows start"),
-        ("stability_of_runs", "stability", {"part": "coverage"}, {"value": 0.0}, "Crosses are events"),
+        ("stability_of_runs", "stability", {"part": "coverage"}, {"value": 0.0},
+         "Crosses are events"),
     ],
 )  # fmt: skip
 def test_marks_are_explained_where_a_row_calls_for_them(
