@@ -122,16 +122,15 @@ def trajectory(rng, unit, events=400):
 
     Its lengths are below half a ``unit``, and so are its times apart.
     """
+    others = dict.fromkeys(("z1", "z2", "first", "second"))
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
     rows = []
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
         if i > 0 and side[i] != side[i - 1]:
             for event in ("horizontal_hop", "vertical_hop"):
                 place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
-                rows.append(
-                    {"time": unit * (i - 0.5), "event": event, **place, "z1": None, "z2": None}
-                )
-        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, "z1": None, "z2": None}
+                rows.append({"time": unit * (i - 0.5), "event": event, **place, **others})
+        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, **others}
         rows.append({"time": unit * i, "event": "wall_x1", **place})
     return rows
 
