@@ -36,7 +36,7 @@ for name, folder, entries in (
             radius=radius_of,
             tables=figure_tables,
             origin=origin,
-            caption=caption,
+            caption=Caption,
             options=lambda w: str(ENTRIES[w.figure].options),
             code=figure_code,
         shell:
@@ -69,7 +69,7 @@ rule animate:
         box=box,
         radius=radius_of,
         tables=figure_tables,
-        caption=caption,
+        caption=Caption,
         code=figure_code,
     shell:
         "python -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box} {params.radius}"

@@ -334,6 +334,35 @@ def animate(box, radius, rows, paths):
             first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
 
 
+def caption(shown):
+    """Return the caption."""
+    periodic = shown.effects.get("periodic")
+    if shown.many:
+        text = """
+        The discs as they move, coloured by their order along the longer side at the start. Traces
+        are the latest paths of the centres. Beneath are the positions along the longer side.
+        """
+    else:
+        text = """
+        The discs as they move. Traces are the latest paths of the centres. Beneath is the
+        separation of the discs against time.
+        """
+        if shown.any_row(lambda row: row["event"] in HOPS):
+            text += """
+            The picture stops at a hop, of the rarer kind if there are two, which changes the sign
+            of the separation.
+            """
+    if periodic:
+        text += "Discs that leave at a dotted end come in at the opposite one. "
+    if shown.many and periodic and many.along(shown.box) in periodic:
+        text += "Beneath, positions go on beyond the box. "
+    if shown.has("depth"):
+        text += "Balls are seen along z, so that they may cover each other. "
+    if shown.has("moment_of_inertia"):
+        text += "The spin of rough discs is not shown."
+    return text
+
+
 def _palette(image, kept):
     """Return an image whose palette are the colours ``kept`` and the most frequent other ones.
 
