@@ -193,7 +193,7 @@ def room(box, more=""):
 def effects(box):
     """Return how many discs a ``Box`` has, if not two, and its effects in symbols, texts."""
     texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
-    discs = [f"${box.discs}$ discs"] if box.discs > 2 else []
+    discs = [f"${box.discs}$ discs"] if "discs" in box.calls_for else []
     return [*discs, *(powers(EFFECTS[name].symbol.format(value)) for name, value in texts)]
 
 

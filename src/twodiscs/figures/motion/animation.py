@@ -93,7 +93,7 @@ class Stage:
         inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
-        up = 0 if panels.is_short(box, radius) or box.discs > 2 else SIGN
+        up = 0 if panels.is_short(box, radius) or box.family == "many" else SIGN
         room = LARGER * panels.room(box, more) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
         self.figure.set_dpi(DPI)
@@ -305,7 +305,7 @@ def animate(box, radius, rows, paths):
             raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise InputError("trajectory must have rows, not none")
-    stage = (Stage if box.discs == 2 else StageOfMany)(box, radius, rows)
+    stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():
         artist.set_animated(True)

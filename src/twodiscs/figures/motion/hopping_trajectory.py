@@ -23,7 +23,7 @@ def draw(box, tables, radius=None):
     through the rows are the trajectory itself. More than two discs are drawn by
     ``many.world_lines``.
     """
-    if box.discs > 2:
+    if box.family == "many":
         return many.world_lines(box, tables["trajectory"], radius)
     hop = shown_hop(box)
     axis = AXIS[hop]
