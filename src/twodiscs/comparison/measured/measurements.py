@@ -39,6 +39,11 @@ from twodiscs.theory import tails
 if TYPE_CHECKING:
     import pandas as pd
 
+#: Bins resolve how the density of intervals begins if a pair of discs has no more wall hits and
+#: collisions in one. At .23 to .39 of them, extrapolations deviate by less than 0.5 % from the
+#: exact density; at .43 to .77 by up to 3 %, at 1.6 by 3 %, at 4.2 by 35 %.
+RESOLVED_EVENTS = 0.4
+
 #: The columns that people read, and how wide they are.
 COLUMNS = {
     "quantity": 24, "estimate": 12, "± error": 10, "exact": 12, "unit": 9, "z": 7, "count": 12,
@@ -216,8 +221,10 @@ class Intervals(Result):
     and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
     ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
     estimate is a parabola through the first two bins, so it has no z. For more than two discs it is
-    a straight line, because another pair may hop next. Intervals of one chain are correlated, so
-    that all errors are those of the spread between chains.
+    a straight line, because another pair may hop next. Bins are a share of the mean interval. If
+    they are wider than ``RESOLVED_EVENTS`` events of the pair, as they are near a threshold,
+    ``at_zero`` has no value and the status "not-resolved". Intervals of one chain are correlated,
+    so that all errors are those of the spread between chains.
     """
 
     hop: str
@@ -253,6 +260,9 @@ class Intervals(Result):
         few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if not scene.is_plain else tails.density_at_zero(scene, self.hop)
         error, status = (None, "too-few") if few else (spread, "extrapolated")
+        if _events_of_pair(scene) * bins[0]["right"] > RESOLVED_EVENTS:
+            at_zero = error = None
+            status = "not-resolved"
         self.at_zero = Measurement(
             "density_at_zero",
             at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
@@ -285,6 +295,13 @@ class Intervals(Result):
         return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
 
     __repr__ = __str__
+
+
+def _events_of_pair(scene):
+    """Return the wall hits and collisions per time, as many as two of the discs have."""
+    from twodiscs.dynamics.counting import expected_event_rate
+
+    return expected_event_rate(scene) * 2 / scene.discs
 
 
 def _theory(scene):
