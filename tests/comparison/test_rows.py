@@ -10,6 +10,7 @@ from scipy.special import ndtri, stdtr
 import twodiscs as td
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.dynamics import many
 
 
 def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
@@ -74,9 +75,14 @@ DENSE = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("scene", "seed"), [DENSE[0], *(pytest.param(*d, marks=pytest.mark.slow) for d in DENSE[1:])]
-)
+@pytest.mark.parametrize(("scene", "seed"), DENSE)
+def test_rates_that_insertions_do_not_see_are_guessed(scene, seed):
+    assert 0 < many.expected_event_rate(scene) < math.inf
+    assert many.expected_rates(scene)["disc_collision"] > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "seed"), DENSE)
 def test_dense_discs_of_which_insertions_see_no_collision_are_followed(scene, seed):
     found = td.simulate(scene, error=3e-2, budget=1.5e6, seed=seed)
     assert all(row.count > 0 for row in found.values() if row.status != "impossible")
