@@ -64,9 +64,10 @@ class Measurement:
     such a deviation, often 0, and the ``test`` in ``frame()`` of the result says so. ``count`` is
     how many events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none
     was seen. ``status`` is as in the tables. It is "too-few" without an honest error. A mean time
-    needs 100 replicas and 100 effective events, of which a cluster counts once; anything else 100
-    hits and a volume, besides, 100 misses: where discs are so small that all of 1048576 draws are
-    hits it has no error.
+    needs 100 replicas and 100 effective events, of which a cluster counts once. Rough discs near a
+    threshold have events in crowds; there it also needs as many initial states as show them
+    (``theory.clusters``), which does not depend on the seed. Anything else needs 100 hits and 100
+    misses: if discs are so small that all of 1048576 draws are hits, the volume has no error.
     """
 
     quantity: str

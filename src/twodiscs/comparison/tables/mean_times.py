@@ -46,8 +46,8 @@ class MeanTimes(Table):
     status: TEXT
     """
     reached: the target; budget: stopped by the event budget; too-few: under 100 replicas or 100
-    effective events (clusters count once), no honest error; none-seen; impossible: blocked by
-    geometry
+    effective events (clusters count once), or too few initial states to show the crowds of events
+    of rough discs, no honest error; none-seen; impossible: blocked by geometry
     """
     bound: TIME
     """
