@@ -10,7 +10,7 @@ from scipy.special import ndtri, stdtr
 import twodiscs as td
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.dynamics import many
+from twodiscs.dynamics.many import lockstep as many
 
 
 def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():

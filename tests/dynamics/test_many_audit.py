@@ -113,7 +113,7 @@ def test_a_disc_at_rest_and_discs_that_touch():
 @pytest.mark.parametrize(("width", "discs"), [(1.0, 3), (3.0, 8)])
 def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
     """The largest relative speed is √2, and half the ring is the most between two looks."""
-    law = many.law_of(Gas(width, 1.0, 0.1, discs, periodic=True))
+    law = many.law_of(Scene(width, 1.0, 0.1, discs=discs, periodic="x"))
     fastest = math.sqrt(2)
     assert law.ring[2] * fastest == pytest.approx(width / 2, rel=1e-15)
     # Two discs side by side, in opposite directions: they look again, then meet the next image.

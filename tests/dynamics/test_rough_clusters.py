@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.theory.clusters import replicas_needed
+from twodiscs.theory.exact import replicas_needed
 
 #: On a ring of a narrow gap; the second one far narrower, seed 1380 of which was 13 errors off.
 RINGS = [

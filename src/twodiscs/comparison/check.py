@@ -30,7 +30,7 @@ from itertools import groupby
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.points import by_radius
 from twodiscs.theory import virial
-from twodiscs.theory.clusters import replicas_needed
+from twodiscs.theory.exact import replicas_needed
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 

@@ -17,6 +17,7 @@ from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.starts import require_room
+from twodiscs.theory.exact import replicas_needed
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
@@ -158,7 +159,6 @@ class CountingRun:
 
         block_events = REPLICAS * expected_event_rate(scene) * duration
         # Crowds that the budget has no chance to show are not waited for.
-        replicas_needed = of_family(scene, "theory", "replicas_needed")
         needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
         needed = needed / REPLICAS
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))

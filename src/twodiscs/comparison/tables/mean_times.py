@@ -104,7 +104,7 @@ def _row(scene, event, point, exact, strip=None):
     """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
     from twodiscs.comparison import estimates, scores  # which need numpy and scipy
     from twodiscs.sampling.blocks.strata import mean_of
-    from twodiscs.theory.clusters import replicas_needed
+    from twodiscs.theory.exact import replicas_needed
 
     mean, octaves, target = None, None, point["target"][event]
     if strip is None:
