@@ -66,8 +66,9 @@ class Measurement:
     was seen. ``status`` is as in the tables. It is "too-few" without an honest error. A mean time
     needs 100 replicas and 100 effective events, of which a cluster counts once. Rough discs near a
     threshold have events in crowds; there it also needs as many initial states as show them
-    (``theory.clusters``), which does not depend on the seed. Anything else needs 100 hits and 100
-    misses: if discs are so small that all of 1048576 draws are hits, the volume has no error.
+    (``theory.exact.replicas_needed``), which does not depend on the seed. Anything else needs 100
+    hits and 100 misses: if discs are so small that all of 1048576 draws are hits, the volume has no
+    error.
     """
 
     quantity: str
@@ -225,7 +226,10 @@ class Intervals(Result):
     a straight line, because another pair may hop next. Bins are a share of the mean interval. If
     they are wider than ``RESOLVED_EVENTS`` events of the pair, as they are near a threshold,
     ``at_zero`` has no value and the status "not-resolved". Intervals of one chain are correlated,
-    so that all errors are those of the spread between chains.
+    so that all errors are those of the spread between chains. If discs are tiny or hardly fit, few
+    long intervals make the errors skew. In four such scenes 65536 intervals gave scores with a mean
+    of -0.20 and -4.2 as the worst of 1200; 262144 gave -0.08, a mean square of 0.97, and -3.8 as
+    the worst of 800. Ask for that many there.
     """
 
     hop: str

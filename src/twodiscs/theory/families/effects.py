@@ -2,7 +2,7 @@
 
 from twodiscs.model.events import DECLARED
 from twodiscs.theory import weighted
-from twodiscs.theory.clusters import replicas_needed
+from twodiscs.theory.families.clusters import replicas_needed
 from twodiscs.theory.flux import constant
 from twodiscs.theory.weighted import shell_expectation
 
