@@ -273,8 +273,8 @@ def _levels(channel, kinds, vectors, logs):
 def measures(scene, hops=True, tail=TAIL):
     """Return the ``Measures`` of a ``Scene`` in an ordered channel.
 
-    Hops in x are impossible. Hops in y, of any pair, take the time of N matrix products for each
-    term; with ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer
+    Hops in x are impossible. Hops in y, of any pair, take about as long as all the rest; with
+    ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer
     than the discs in a row, some 1e-11 (``tail``) in others, and roundings over the room that is
     left where the discs hardly fit. Of two or three discs there are many terms in a short channel:
     they have methods of their own. Raises ``InputError`` where the channel is not ordered or the
