@@ -57,7 +57,8 @@ def rules(dot):
     names = dict(re.findall(r'(\d+)\[label = "(\w+)"', dot))
     feeds = {name: [] for name in sorted(names.values())}
     for source, target in sorted(re.findall(r"(\d+) -> (\d+)", dot)):
-        feeds[names[target]].append(names[source])
+        if source != target:  # a study that reads another one
+            feeds[names[target]].append(names[source])
     row = {}
     for name in TopologicalSorter(feeds).static_order():
         row[name] = max((row[source] + 1 for source in feeds[name]), default=0)
@@ -87,7 +88,16 @@ def picture(dot):
 
 def graph(folder=HOME):
     """Return what ``snakemake --rulegraph`` says in a ``folder``, of everything."""
-    words = [sys.executable, "-m", "snakemake", "--rulegraph", "dot", "--nolock", "--forceall"]
+    words = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--rulegraph",
+        "dot",
+        "--nolock",
+        "--forceall",
+        "all",
+    ]
     run = subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True)
     return run.stdout
 

@@ -7,6 +7,7 @@ import shlex
 import shutil
 import signal
 import sys
+from contextlib import suppress
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -105,6 +106,24 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *targets] if targets else words
+
+
+def report_of(words):
+    """Return where Snakemake's own report goes after the command ``words``; None if it has none.
+
+    It is about what is built, so only a build of everything that the configuration at hand asks
+    for has one. Files of configurations are read here as the Snakefile reads them.
+    """
+    from snakemake.cli import get_argument_parser
+
+    given, _ = get_argument_parser().parse_known_args(words)
+    if given.dryrun or given.touch or not {*given.targets} <= {"all"}:
+        return None
+    results = "results"
+    for path in ("config/config.yaml", *(given.configfile or ())):
+        with suppress(ConfigError):
+            results = read(path).get("results", results)
+    return f"{results}/report-workflow.html"
 
 
 def check_targets(path, targets, configuration):
