@@ -20,6 +20,7 @@ from twodiscs_paper.pipeline.configuration.files import (
 from twodiscs_paper.pipeline.configuration.request import STAGES
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
+from twodiscs_paper.studies.effects.study import boxes
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 

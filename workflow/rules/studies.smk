@@ -69,6 +69,31 @@ rule study_part:
         " --output {output.table:q} > {log:q} 2>&1"
 
 
+rule effects_curves:
+    """The exact curves of the study of effects."""
+    output:
+        table=report(
+            f"{RESULTS}/effects_curves.csv",
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels=says(STUDIES["effects"].tables[2]),
+        ),
+    log:
+        f"{RESULTS}/logs/effects_curves.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/effects_curves.tsv"
+    params:
+        parameters=json.dumps({"scenes": boxes(CONFIGURATION)}),
+        code=code(
+            "twodiscs_paper.pipeline.jobs.study",
+            "twodiscs_paper.studies.effects.curves",
+        ),
+    shell:
+        "{PYTHON} twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
 rule effects_cost:
     """What each effect costs, in seconds for an event: speed is measured, so it runs alone."""
     input:

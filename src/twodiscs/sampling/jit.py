@@ -198,10 +198,10 @@ def _compile_once(cache, name):
         found = load(signature, context)
         if found is None and not held:
             with suppress(OSError):  # a file system without locks: then both compile
-                held.append(open(Path(cache.cache_path, f"{name}.lock"), "w"))
+                held.append(os.open(Path(cache.cache_path, f"{name}.lock"), os.O_CREAT | os.O_RDWR))
                 fcntl.flock(held[0], fcntl.LOCK_EX)
             if (found := load(signature, context)) is not None and held:
-                held.pop().close()
+                os.close(held.pop())
         return found
 
     def save_and_unlock(signature, data):
@@ -209,7 +209,7 @@ def _compile_once(cache, name):
             save(signature, data)
         finally:
             if held:
-                held.pop().close()
+                os.close(held.pop())
 
     cache.load_overload, cache.save_overload = load_or_lock, save_and_unlock
 
