@@ -39,7 +39,9 @@ def source(path):
     In a checkout the path is relative: if that is moved, nothing runs again.
     """
     here = os.path.relpath(os.path.join(str(workflow.current_basedir), "../..", path))
-    return here if os.path.exists(here) else workflow.source_path(f"../../{path}")
+    if os.path.exists(here):
+        return local(here)  # not of a storage
+    return workflow.source_path(f"../../{path}")
 
 
 # The scenes of the configuration by their folders, and those of the study of effects.

@@ -9,7 +9,7 @@ rule table:
         monte_carlo=lambda w: FILES.points(w.scene, w.table, "monte_carlo"),
         dynamics=lambda w: FILES.points(w.scene, w.table, "dynamics"),
         intervals=lambda w: FILES.points(w.scene, w.table, "intervals"),
-        forecast=lambda w: FORECAST if w.table == "cost" and exists(FORECAST) else [],
+        forecast=lambda w: FORECAST if w.table == "cost" else [],
     output:
         table=report(
             f"{RESULTS}/{{scene}}/{{table}}.csv",

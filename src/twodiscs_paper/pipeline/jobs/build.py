@@ -116,7 +116,10 @@ def report_of(words):
     """
     from snakemake.cli import get_argument_parser
 
-    given, _ = get_argument_parser().parse_known_args(words)
+    name, *arguments = words
+    if Path(name).name not in ("snakemake", "__main__.py"):  # Snakemake as a library
+        return None
+    given, _ = get_argument_parser().parse_known_args(arguments)
     if given.dryrun or given.touch or not {*given.targets} <= {"all"}:
         return None
     results = "results"
