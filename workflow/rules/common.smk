@@ -1,6 +1,5 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
-import shlex
 import shutil
 import sys
 from dataclasses import replace
@@ -24,10 +23,13 @@ from twodiscs_paper.studies.effects.study import boxes
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 
-# The Python that runs Snakemake runs the jobs too; where it is the first on the path, as in an image, its name
-# will do. With -P, modules are not looked for in the folder of the run.
-FIRST = os.path.dirname(shutil.which("python") or "") == os.path.dirname(sys.executable)
-PYTHON = f"{'python' if FIRST else shlex.quote(sys.executable)} -P -m"
+# Jobs are started as `python`; with -P it does not look for modules in the folder of the run.
+found = shutil.which("python")
+if os.path.dirname(found or "") != os.path.dirname(sys.executable):
+    logger.warning(
+        f"Jobs start as python, which is {found} here, and not {sys.executable}, which"
+        " runs Snakemake: activate its environment if a job fails."
+    )
 
 # The threads of a job that measures how fast the machine is: it runs alone.
 ALONE = workflow.cores or 1

@@ -62,7 +62,7 @@ if MAIN:
             configuration=FILES.configuration_hash(),
             code=code("twodiscs_paper.pipeline.documents.manuscript"),
         shell:
-            "{PYTHON} twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
+            "python -P -m twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
             " {input.studied:q} --template {input.template:q} --boxes {params.boxes} --seed {params.seed}"
             " --long-run {input.long_run:q} --configuration {params.configuration} --numbers {output.numbers:q}"
             " --output {output.pdf:q} > {log:q} 2>&1"
@@ -102,7 +102,7 @@ rule report:
         scenes=json.dumps(FILES.report()),
         code=code("twodiscs_paper.pipeline.documents.report"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.documents.report {input.results:q} --template {input.front:q}"
+        "python -P -m twodiscs_paper.pipeline.documents.report {input.results:q} --template {input.front:q}"
         " --graph {input.graph:q} --scenes {params.scenes:q} --output {output.html:q} > {log:q} 2>&1"
 
 
@@ -120,7 +120,7 @@ rule manifest:
     params:
         code=code("twodiscs_paper.pipeline.results.manifest"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.results.manifest {input.files:q} --output {output.manifest:q} > {log:q} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.results.manifest {input.files:q} --output {output.manifest:q} > {log:q} 2>&1"
 
 
 rule provenance:
@@ -138,7 +138,7 @@ rule provenance:
         sources=os.path.dirname(source("CITATION.cff")) or ".",
         code=code("twodiscs_paper.pipeline.results.provenance"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.results.provenance {input.files:q} --sources {params.sources:q}"
+        "python -P -m twodiscs_paper.pipeline.results.provenance {input.files:q} --sources {params.sources:q}"
         " --output {output.json:q} > {log:q} 2>&1"
 
 
@@ -175,7 +175,7 @@ rule explorer:
         seed=CONFIGURATION.seed,
         code=code("twodiscs_paper.pipeline.documents.explorer"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.documents.explorer {input.tables:q} --parts {input.parts:q}"
+        "python -P -m twodiscs_paper.pipeline.documents.explorer {input.tables:q} --parts {input.parts:q}"
         " --scenes {params.scenes:q} --seed {params.seed} --output {output.html:q} > {log:q} 2>&1"
 
 
@@ -211,7 +211,7 @@ rule crate:
     params:
         code=code("twodiscs_paper.pipeline.documents.crate"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.documents.crate {input.files:q} {input.provenance:q}"
+        "python -P -m twodiscs_paper.pipeline.documents.crate {input.files:q} {input.provenance:q}"
         " --provenance {input.provenance:q} --citation {input.citation:q} --texts {input.texts:q}"
         " --output {output.json:q} > {log:q} 2>&1"
 
@@ -224,7 +224,7 @@ rule audit:
         f"{RESULTS}/logs/audit.log",
     localrule: True
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.results.audit --configuration {input.configuration:q} 2> {log:q}"
+        "python -P -m twodiscs_paper.pipeline.results.audit --configuration {input.configuration:q} 2> {log:q}"
 
 
 rule verify:
@@ -238,7 +238,7 @@ rule verify:
         # What is expected does not come with a wheel: there it says so.
         expected=os.path.join(os.path.dirname(source("paper/paper.typ")), "expected"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.results.verify --configuration {input.configuration:q}"
+        "python -P -m twodiscs_paper.pipeline.results.verify --configuration {input.configuration:q}"
         " --expected {params.expected:q} 2> {log:q}"
 
 
@@ -253,7 +253,7 @@ rule forecast:
     localrule: True
     threads: ALONE
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.forecast --configuration @{input.configuration:q} --cores {threads}"
+        "python -P -m twodiscs_paper.pipeline.forecast --configuration @{input.configuration:q} --cores {threads}"
         " --output {output.table:q} 2> {log:q}"
 
 
@@ -276,4 +276,4 @@ rule benchmark:
     params:
         code=code("twodiscs_paper.benchmark"),
     shell:
-        "{PYTHON} twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"
+        "python -P -m twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

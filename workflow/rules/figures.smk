@@ -31,7 +31,7 @@ rule figure:
         caption=caption,
         options=lambda w: str(ENTRIES[w.figure].options),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
         " --tables {params.tables:q} --origin {params.origin:q} --output {output:q} > {log:q} 2>&1"
 
 
@@ -62,7 +62,7 @@ rule shared_figure:
         caption=caption,
         options=lambda w: str(ENTRIES[w.figure].options),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q}"
+        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q}"
         " --tables {params.tables:q} --origin {params.origin:q} --output {output:q} > {log:q} 2>&1"
 
 
@@ -93,5 +93,5 @@ rule animate:
         caption=caption,
         code=figure_code,
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
         " --tables {params.tables:q} --output {output:q} > {log:q} 2>&1"

@@ -22,7 +22,7 @@ rule exact:
             *family_modules("theory", SCENES[w.scene]),
         ),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
+        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
         " --output {output.table:q} > {log:q} 2>&1"
 
 
@@ -44,7 +44,7 @@ rule monte_carlo:
         shards=lambda w, input: braced(input.shards),
         code=point_code("monte_carlo"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.point monte_carlo {params.box:q} --radius {wildcards.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.point monte_carlo {params.box:q} --radius {wildcards.radius}"
         " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
 
 
@@ -66,7 +66,7 @@ rule dynamics:
         shards=lambda w, input: braced(input.shards),
         code=point_code("dynamics"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.point dynamics {params.box:q} --radius {wildcards.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.point dynamics {params.box:q} --radius {wildcards.radius}"
         " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
 
 
@@ -88,7 +88,7 @@ rule intervals:
         shards=lambda w, input: braced(input.shards),
         code=point_code("intervals"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.point intervals {params.box:q} --radius {wildcards.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.point intervals {params.box:q} --radius {wildcards.radius}"
         " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
 
 
@@ -107,7 +107,7 @@ rule shard:
         work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
         code=point_code(),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box:q} --radius {wildcards.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box:q} --radius {wildcards.radius}"
         " {params.work:q} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
         " --output {output.shard:q} > {log:q} 2>&1"
 
@@ -130,5 +130,5 @@ rule trajectory:
             *family_modules("dynamics", SCENES[w.scene]),
         ),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"
+        "python -P -m twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"
         " --seed {params.seed} --output {output.table:q} > {log:q} 2>&1"

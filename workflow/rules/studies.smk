@@ -44,7 +44,7 @@ rule study_table:
         tables=lambda w, input: assigned(FILES.study_reads(of_study(w)), input.tables),
         code=study_code,
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.study {wildcards.study} --parameters {params.parameters:q}"
+        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --parameters {params.parameters:q}"
         " --tables {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
 
 
@@ -65,7 +65,7 @@ rule study_part:
         parameters=lambda w: json.dumps(PARTS[w.study][w.part]),
         code=study_code,
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.study {wildcards.study} --part --parameters {params.parameters:q}"
+        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --part --parameters {params.parameters:q}"
         " --output {output.table:q} > {log:q} 2>&1"
 
 
@@ -90,7 +90,7 @@ rule effects_curves:
             "twodiscs_paper.studies.effects.curves",
         ),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
+        "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
         " --output {output.table:q} > {log:q} 2>&1"
 
 
@@ -116,5 +116,5 @@ rule effects_cost:
     params:
         code=code("twodiscs_paper.benchmark"),
     shell:
-        "{PYTHON} twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
+        "python -P -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
         " --output {output.table:q} > {log:q} 2>&1"

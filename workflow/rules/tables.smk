@@ -37,7 +37,7 @@ rule table:
             *family_modules("theory", SCENES[w.scene]),
         ),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"
+        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"
         " --theory {input.theory:q} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
         " --intervals {params.intervals} --forecast {input.forecast:q} --output {output.table:q} > {log:q} 2>&1"
 
@@ -66,5 +66,5 @@ rule check:
     params:
         code=code("twodiscs_paper.pipeline.results.verdict"),
     shell:
-        "{PYTHON} twodiscs_paper.pipeline.results.verdict {input.tables:q} --studies {input.studies:q}"
+        "python -P -m twodiscs_paper.pipeline.results.verdict {input.tables:q} --studies {input.studies:q}"
         " --configuration @{input.configuration:q} --output {output.passed:q} > {log:q} 2>&1"

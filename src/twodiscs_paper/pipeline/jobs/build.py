@@ -3,6 +3,7 @@
 Quick to import: the Snakefile reads this.
 """
 
+import os
 import shlex
 import shutil
 import signal
@@ -158,6 +159,8 @@ def build(path, targets, cores=None, dry_run=False):
     # In this very process: what ends one of them ends both. Its profile looks at sys.argv.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = words
+    folders = [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
+    os.environ["PATH"] = os.pathsep.join(folders)  # of the python that jobs start as
     try:
         snakemake()
     except SystemExit as end:
