@@ -15,6 +15,8 @@ class Study:
     None, table)}. Other tables have rules of their own. If the table takes long it has ``parts``,
     {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
 
+    ``families`` are those of the scenes that it computes.
+
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
     tables hold seconds, so that they differ from run to run. One that is not ``shared`` is built
@@ -30,6 +32,7 @@ class Study:
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}
+    families: tuple = ("plain", "effects")
     parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()

@@ -13,6 +13,7 @@ from checkout import REPOSITORY
 
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model import sources
+from twodiscs.model.family import FAMILIES, module_of
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.request import STAGES
 
@@ -26,18 +27,28 @@ def not_computing():
     return tuple(re.findall(r'"([\w.]+)"', block))
 
 
+def of_families(floor, *families):
+    """Return what the rules name beside the modules whose imports they follow."""
+    floors = ("model", "theory", "sampling", "dynamics")
+    return [
+        module_of(one, family) for one in floors[: floors.index(floor) + 1] for family in families
+    ]
+
+
 def jobs():
     """Return {job: (its modules, those of them that are left out)} as the rules say."""
     pipeline = "twodiscs_paper.pipeline"
-    kinds = {
-        stage: ([f"{pipeline}.jobs.point"], {*STAGES.values()} - {own})
-        for stage, own in STAGES.items()
-    }
+    kinds = {}
+    for stage, own in STAGES.items():
+        for family in FAMILIES:
+            modules = [f"{pipeline}.jobs.point", *of_families(own.split(".")[1], family)]
+            kinds[f"{stage} of {family}"] = modules, {*STAGES.values()} - {own}
     table, study = f"{pipeline}.jobs.table", f"{pipeline}.jobs.study"
     for name in ("exact", "trajectory", "mean_times", "check"):
         kinds[f"table {name}"] = ([table, f"twodiscs.comparison.tables.{name}"], ())
     for name, one in STUDIES.items():
-        kinds[f"study {name}"] = ([study, one.tables[0].__module__], ())
+        modules = [study, one.tables[0].__module__, *of_families("dynamics", *one.families)]
+        kinds[f"study {name}"] = modules, ()
     draw = f"{pipeline}.jobs.figure", "twodiscs.figures.kit.style"
     for name in ("volume", "mean_hop_time"):
         kinds[f"figure {name}"] = ([*draw, FIGURES[name].module], ())
@@ -69,20 +80,28 @@ def test_what_computes_nothing_reruns_nothing(name):
     assert reruns()[name] == []
 
 
+def points(jobs):
+    """Return those of ``jobs`` that make points."""
+    return [job for job in jobs if job.partition(" ")[0] in STAGES]
+
+
 def test_each_stage_has_its_own_module():
     for stage, module in STAGES.items():
-        counted = [job for job in reruns()[module] if job in STAGES]
-        assert counted == [stage]
+        assert points(reruns()[module]) == [f"{stage} of {family}" for family in FAMILIES]
 
 
-def test_every_module_of_a_floor_that_computes_reruns_something():
-    """Nothing is left out that a job of points imports, except what computes nothing."""
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("floor", ["theory", "sampling", "dynamics"])
+def test_an_edit_for_one_family_reruns_its_points_alone(floor, family):
+    found = points(reruns()[module_of(floor, family)])
+    assert found
+    assert all(job.endswith(f" of {family}") for job in found)
+
+
+def test_a_module_that_all_points_share_reruns_all_of_them():
     found = reruns()
     for name in ("model.scene", "sampling.jit", "sampling.streams", "sampling.blocks.rounds"):
-        assert {*STAGES} <= {*found[f"twodiscs.{name}"]}
-    for name in ("dynamics.law", "dynamics.ensemble"):
-        assert {"dynamics", "intervals"} <= {*found[f"twodiscs.{name}"]}
-        assert "monte_carlo" not in found[f"twodiscs.{name}"]
+        assert len(points(found[f"twodiscs.{name}"])) == len(STAGES) * len(FAMILIES)
 
 
 def test_the_fingerprint_changes_with_every_module_that_is_imported(monkeypatch):

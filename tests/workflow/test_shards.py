@@ -7,8 +7,8 @@ import pytest
 import yaml
 from checkout import BELOW, Checkout, use
 
-from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs.comparison.digests import read_json
+from twodiscs_paper.pipeline.configuration.load import load
 
 TINY = {
     "shared": [],

@@ -8,6 +8,7 @@ from twodiscs.arguments import box_arguments, words
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
+from twodiscs.model.family import FAMILIES, module_of
 from twodiscs.model.sources import fingerprint
 from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs_paper.pipeline.configuration.files import (
@@ -79,6 +80,9 @@ wildcard_constraints:
     stop="[0-9]+",
 
 
+# The floors that have modules for families of scenes, from the lowest one up.
+FLOORS = ("model", "theory", "sampling", "dynamics")
+
 # Modules that compute nothing: a job uses the entry of a catalogue that its parameters name, and the
 # others refuse, read arguments, draw a bar or name sources.
 NOT_COMPUTING = (
@@ -98,12 +102,13 @@ def code(*modules, without=()):
     return fingerprint(*modules, without=(*NOT_COMPUTING, *without))
 
 
-def family_modules(floor, scene):
-    """Return the modules of the family of a scene on a floor: theory, sampling or dynamics.
+def family_modules(floor, *families):
+    """Return the modules of families of scenes on a floor and on those that it stands on.
 
-    They are imported by a computed name, which a fingerprint does not follow. There are none yet.
+    They are imported by a computed name, which a fingerprint does not follow.
     """
-    return ()
+    floors = FLOORS[: FLOORS.index(floor) + 1]
+    return [module_of(one, family) for one in floors for family in families]
 
 
 def box(w):
@@ -142,7 +147,7 @@ def point_code(stage=None):
     def of_job(w):
         run = STAGES[stage or w.stage]
         others = tuple({*STAGES.values()} - {run})
-        family = family_modules(run.split(".")[1], SCENES[w.scene])
+        family = family_modules(run.split(".")[1], SCENES[w.scene].box.family)
         return code("twodiscs_paper.pipeline.jobs.point", *family, without=others)
 
     return of_job
@@ -173,10 +178,14 @@ def radius_of(w):
 
 def figure_code(w):
     """Return the fingerprint of the code that draws a figure."""
+    scene = about(w)
     return code(
         "twodiscs_paper.pipeline.jobs.figure",
         "twodiscs.figures.kit.style",
         ENTRIES[w.figure].module,
+        *family_modules(
+            "theory", *sorted({"plain", scene.box.family if scene else "plain"})
+        ),
     )
 
 

@@ -274,6 +274,6 @@ rule benchmark:
     localrule: True
     threads: ALONE
     params:
-        code=code("twodiscs_paper.benchmark"),
+        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:
         "python -P -m twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

@@ -19,7 +19,7 @@ rule exact:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             "twodiscs.comparison.tables.exact",
-            *family_modules("theory", SCENES[w.scene]),
+            *family_modules("theory", SCENES[w.scene].box.family),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
@@ -127,7 +127,7 @@ rule trajectory:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             "twodiscs.comparison.tables.trajectory",
-            *family_modules("dynamics", SCENES[w.scene]),
+            *family_modules("dynamics", SCENES[w.scene].box.family),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"

@@ -15,7 +15,11 @@ def of_study(w):
 
 def study_code(w):
     """Return the fingerprint of the code that makes the table of a study, or a part of it."""
-    return code("twodiscs_paper.pipeline.jobs.study", of_study(w).tables[0].__module__)
+    return code(
+        "twodiscs_paper.pipeline.jobs.study",
+        of_study(w).tables[0].__module__,
+        *family_modules("dynamics", *of_study(w).families),
+    )
 
 
 rule study_table:
@@ -88,6 +92,7 @@ rule effects_curves:
         code=code(
             "twodiscs_paper.pipeline.jobs.study",
             "twodiscs_paper.studies.effects.curves",
+            *family_modules("theory", "plain", "effects"),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
@@ -114,7 +119,7 @@ rule effects_cost:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
     threads: ALONE
     params:
-        code=code("twodiscs_paper.benchmark"),
+        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:
         "python -P -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
         " --output {output.table:q} > {log:q} 2>&1"

@@ -24,6 +24,7 @@ def _parts(configuration):
 
 STUDY = Study(
     "passages",
+    families=("plain", "effects", "many"),
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
     seconds=60.0,
