@@ -15,8 +15,8 @@ FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}
 
 #: Rules for all scenes together, whatever else is built once.
-ALWAYS = {"check", "manifest", "provenance"}
-OF_REPORT = {"configuration", "report"}
+ALWAYS = {"check", "configuration", "manifest", "provenance"}
+OF_REPORT = {"report"}
 
 DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
 
