@@ -200,3 +200,29 @@ def caption(w):
     scene = about(w)
     shown = Shown(scene.box, scene.quantities.names) if scene else Shown()
     return ENTRIES[w.figure].full_caption(shown)
+
+
+# The studies that the scenes allow, and their parts.
+ALLOWED = {
+    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
+}
+PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
+
+
+def of_study(w):
+    """Return the study of a job."""
+    return ALLOWED[w.study]
+
+
+def study_code(w):
+    """Return the fingerprint of the code that makes the table of a study, or a part of it."""
+    return code(
+        "twodiscs_paper.pipeline.jobs.study",
+        of_study(w).tables[0].__module__,
+        *family_modules("dynamics", *of_study(w).families),
+    )
+
+
+def drawn(figure):
+    """Return the files of a figure in all scenes."""
+    return [FILES.figures(scene).get(figure, []) for scene in CONFIGURED]

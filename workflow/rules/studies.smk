@@ -1,26 +1,6 @@
 # The studies: the first table of each is made by one rule, of its parameters and of the tables that it reads.
 # A study that takes long has parts, which are jobs of their own; its table joins them.
 
-# Those that the scenes allow, and their parts.
-ALLOWED = {
-    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
-}
-PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
-
-
-def of_study(w):
-    """Return the study of a job."""
-    return ALLOWED[w.study]
-
-
-def study_code(w):
-    """Return the fingerprint of the code that makes the table of a study, or a part of it."""
-    return code(
-        "twodiscs_paper.pipeline.jobs.study",
-        of_study(w).tables[0].__module__,
-        *family_modules("dynamics", *of_study(w).families),
-    )
-
 
 rule study_table:
     """The table of a study."""

@@ -2,11 +2,6 @@
 # tables and figures.
 
 
-def drawn(figure):
-    """Return the files of a figure in all scenes."""
-    return [FILES.figures(scene).get(figure, []) for scene in CONFIGURED]
-
-
 rule animation:
     """The animations of all scenes that have a trajectory."""
     input:
