@@ -21,8 +21,6 @@ export PYTHONDONTWRITEBYTECODE =
 all: .venv/ready $(CONFIG)
 	$(IN_VENV) $(if $(CONFIG),twodiscs run --cores $(CORES) $(CONFIG),snakemake --cores $(CORES))
 
-OTHER = tests/workflow tests/figures tests/studies
-
 test-all: WHICH = -m "slow or not slow"
 test-all: test
 
@@ -30,10 +28,7 @@ test: .venv/ready
 	$(IN_VENV) ruff check src tests
 	$(IN_VENV) ruff format --check src tests
 	$(IN_VENV) snakefmt --check Snakefile workflow
-	@# Two halves of about the same length have a core each; what the other says follows when both are done.
-	$(IN_VENV) sh -c 'pytest $(WHICH) $(OTHER) > .other-tests.log 2>&1 & other=$$!; \
-	  pytest $(WHICH) $(OTHER:%=--ignore=%); status=$$?; \
-	  wait $$other || status=1; cat .other-tests.log; exit $$status'
+	$(IN_VENV) pytest -n $(CORES) $(WHICH)
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.

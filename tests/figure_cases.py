@@ -122,18 +122,51 @@ def trajectory(rng, unit, events=400):
 
     Its lengths are below half a ``unit``, and so are its times apart.
     """
+    others = dict.fromkeys(("z1", "z2", "first", "second"))
     side = np.where(np.arange(events) // 90 % 2, 1, -1)
     rows = []
     for i, x in enumerate(side * unit * rng.uniform(0.1, 0.4, events)):
         if i > 0 and side[i] != side[i - 1]:
             for event in ("horizontal_hop", "vertical_hop"):
                 place = dict.fromkeys(("x1", "y1", "x2", "y2"), 0)
-                rows.append(
-                    {"time": unit * (i - 0.5), "event": event, **place, "z1": None, "z2": None}
-                )
-        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, "z1": None, "z2": None}
+                rows.append({"time": unit * (i - 0.5), "event": event, **place, **others})
+        place = {"x1": -x, "y1": -x, "x2": x, "y2": x, **others}
         rows.append({"time": unit * i, "event": "wall_x1", **place})
     return rows
+
+
+# What is drawn ------------------------------------------------------------------------------------
+
+
+def points(axes, colour, marker):
+    """Return the set of all (x, y) of the symbols of one look."""
+    return {
+        (float(x), float(y))
+        for line in axes.lines
+        if (line.get_color(), line.get_marker()) == (colour, marker)
+        for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
+    }
+
+
+def bars(axes, colour, marker):
+    """Return (x, y, half of its bar) of all symbols of one look that have error bars, by x."""
+    found = []
+    for line, _, (bar, *_) in axes.containers:
+        own = (line.get_color(), line.get_marker()) == (colour, marker)
+        if own and bar.get_segments():
+            ends = np.array(bar.get_segments())[:, :, 1]
+            half = (ends[:, 1] - ends[:, 0]) / 2
+            found += zip(line.get_xdata(), line.get_ydata(), half, strict=True)
+    return sorted(found)
+
+
+def covered(axes):
+    """Return the lines with a vertex, or a piece between two, beneath the legend of ``axes``."""
+    axes.figure.draw_without_rendering()
+    extent = axes.get_legend().get_window_extent()
+    lines = [line for line in axes.lines if line.get_zorder() > 1]  # those behind mark limits
+    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in lines]
+    return [line for line, path in paths if path.intersects_bbox(extent, filled=False)]
 
 
 # Texts --------------------------------------------------------------------------------------------

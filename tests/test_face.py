@@ -370,7 +370,7 @@ def test_intervals_of_one_kind_of_hop_are_drawn_together():
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda some: td.plot(some, figure="volume"), "figure must be one of mean_hop_time, "),
+        (lambda some: td.plot(some, figure="volume"), "figure must be one of mean_times, "),
         (lambda some: td.plot([some, 1]), "result must be a scene, a trajectory, results"),
         (lambda some: td.plot(some, "a.txt"), "path must be a .pdf, .png or .svg file"),
         (

@@ -23,11 +23,11 @@ from twodiscs_paper.pipeline.jobs.study import read_tables
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
-    "mean_hop_time": ("mean_hop_time", 1, "radius $r$"),
+    "mean_hop_time": ("mean_hop_time", 0, "radius $r$"),
     "tails": ("tails", 0, r"interval $t/\tau$"),
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
-    "price": ("accuracy_cost_by_radius", 0, ""),
+    "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
     "passages": ("passages", 1, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }

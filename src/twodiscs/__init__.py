@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     import numpy as np
     import pandas as pd
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from twodiscs.comparison.measured.measurements import Intervals, Measurement, Measurements
@@ -360,16 +361,37 @@ def observe(
 
 
 def plot(
-    result: object, path: str | PathLike[str] | None = None, figure: str | None = None
+    result: object,
+    path: str | PathLike[str] | None = None,
+    figure: str | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw a result, and write it to ``path`` (.pdf, .png or .svg) if that is given.
 
     ``result`` is a trajectory, a ``Scan``, a result of ``simulate``, ``sample`` or ``intervals``, a
     list of such results at several radii of one box, which are drawn beside the exact curves, one
-    of ``transmission`` or ``observe``, or a table of a scene that ``load`` returns; a scene or box
-    of two plain discs is sketched. ``figure`` names one of several that suit, as the workflow does.
-    A notebook shows what is returned; at a plain prompt a window does. Raises ``InputError`` for
-    what no figure shows, and for a path that cannot be written.
+    of ``transmission`` or ``observe``, or a table of a scene that ``load`` returns. A scene or box
+    of two plain discs is sketched.
+
+    ``figure`` names one of several figures that suit:
+
+    - mean times: ``mean_times`` (all events), ``mean_hop_time``, ``mean_collision_time``,
+      ``mean_wall_time``, ``pressure``
+    - volume and areas: ``volume``, ``areas`` (all events), ``vertical_hop_area``,
+      ``horizontal_hop_area``, ``collision_area``, ``wall_area``
+    - a scene or a box: ``model``, ``configuration_space``, ``largest_radius``,
+      ``integration_regimes``, ``surface_shell``
+    - ``hop_histogram``, ``hopping_trajectory``, ``transmission`` and ``observed``
+
+    Without it all events that were measured are drawn; a warning names what is not.
+
+    The first of ``figure.axes`` is the main panel; labels tell the others apart:
+    ``{a.get_label(): a for a in figure.axes}["residuals"]``. In ``ax``, axes of your own, only the
+    main panel of quantities over the radius is drawn, in the settings of your figure. A second call
+    with the same ``ax`` adds another result, of another box too.
+
+    A notebook shows what is returned; at a plain prompt a window does. Raises ``InputError`` if no
+    figure shows the result, and if the path cannot be written.
 
     Example:
 
@@ -377,13 +399,14 @@ def plot(
     """
     from twodiscs.figures import plot
 
-    return plot.plot(result, path, figure)
+    return plot.plot(result, path, figure, ax)
 
 
 def animate(trajectory: pd.DataFrame, path: str | PathLike[str]) -> None:
-    """Write an animation of a hop of a trajectory to ``path``, a .gif or .png file.
+    """Write an animation of a trajectory to ``path``, a .gif or .png file.
 
-    Raises ``InputError`` for anything but a trajectory of a scene without effects.
+    It shows a hop of two discs, or the beginning of the trajectory. Balls are seen along z, and the
+    spin of rough discs is not shown. Raises ``InputError`` for anything but a trajectory.
 
     Example:
 

@@ -18,7 +18,6 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
-from twodiscs_paper.pipeline.results import verdict
 
 SCENE = BOX.scene(0.2)
 SAMPLES = 10**12  # at 0.36 a sample in 300 000 is a hit of a shell
@@ -316,39 +315,12 @@ def test_the_check_takes_all_rows_of_a_scene_with_effects(tmp_path):
     assert all(row["passed"] and row["bound"] == bound for row in found)
 
 
-# The verdict ----------------------------------------------------------------------------------
+# What is a test -------------------------------------------------------------------------------
 
 
 @pytest.fixture
 def good(points, theory):
     return table_of(points, theory)
-
-
-@pytest.fixture
-def bad(points, theory):
-    wrong = {
-        (radius, "top_wall_time"): 0.99 * theory[radius, "top_wall_time"] for radius in (0.1, 0.3)
-    }
-    return table_of(points, theory | wrong)
-
-
-def test_a_verdict_sums_up_what_passed(good):
-    failures, text = verdict.verdict({"good": good, "again": good}, {})
-    assert failures == []
-    largest = max(abs(row["z"]) for row in good)
-    line = f"{COMPARED} comparisons passed, {TESTED} of them tests, largest |z| {largest:.3g}; "
-    few = sum(row["status"] in ("too-few", "none-seen") for row in good)
-    line += f"{few} had too few events for an error, 0 more could not be compared\n"
-    assert text == f"good: {line}again: {line}"
-
-
-def test_a_verdict_says_what_could_not_be_compared(laws, theory):
-    dynamics = laws[1].dynamics(np.random.default_rng(6), replicas=64, relative=1e-2)
-    failures, text = verdict.verdict({"scene": table_of({"dynamics": [dynamics]}, theory)}, {})
-    assert failures == []
-    n = len(EVENTS)
-    assert text.startswith(f"scene: {n} comparisons passed, ")
-    assert text.endswith(f"{n} had too few events for an error, 1 more could not be compared\n")
 
 
 def test_independent_rows_could_fail_and_follow_from_no_other(good):
@@ -376,32 +348,3 @@ def test_walls_are_tests_of_their_own_where_they_are_not_counted_alone(laws, the
         assert [row["quantity"] for row in found if row["independent"]] == [
             f"{event}_time" for event in events
         ]
-
-
-def test_a_verdict_names_scene_quantity_radius_and_method_of_a_failure(good, bad):
-    failures, _ = verdict.verdict({"good": good, "bad": bad}, {})
-    wrong = [row for row in bad if row["passed"] is False]
-    assert len(failures) == len(wrong) >= 2
-    assert all(line.startswith("bad: ") and "top_wall_time" in line for line in failures)
-    for radius in (0.1, 0.3):
-        (row,) = (row for row in wrong if row["radius"] == radius)
-        assert (
-            f"bad: mean_time of top_wall_time at radius {radius} by dynamics has "
-            f"z = {row['z']:.3g}, beyond the bound {row['bound']:.3g}"
-        ) in failures
-    row = {**wrong[0], "radius": None, "comparison": "z_mean"}
-    assert verdict.named(row) == "z_mean of top_wall_time over all radii by dynamics"
-
-
-def test_studies_are_judged_by_their_scores():
-    """1000 scores: a bound of 4.9 or so."""
-    row = dict.fromkeys(("scene", "event", "radius", "z"))
-    z = *np.linspace(0, 1, 998).tolist(), -4.7
-    rows = [row | {"radius": 0.1, "event": "vertical_hop", "z": each} for each in z]
-    failures, text = verdict.verdict({}, {"passages": [*rows, row]})
-    assert (failures, text) == ([], "passages: 999 comparisons passed, largest |z| 4.7\n")
-    (failure,), _ = verdict.verdict({}, {"passages": [*rows, rows[0] | {"z": 5.1}]})
-    bound = scores.bonferroni_bound(1000, scores.FALSE_ALARM)
-    assert failure == (
-        f"passages: event vertical_hop, radius 0.1 has z = 5.1, beyond the bound {bound:.3g}"
-    )

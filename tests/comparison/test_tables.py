@@ -15,12 +15,11 @@ from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import base
 from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, Table
 from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.cost import Cost, Forecast
+from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.exact import Theory
-from twodiscs_paper.catalogue import STUDY_TABLES
-from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs.model.plugins import plugin
 
-EVERY_TABLE = SCENE_TABLES | STUDY_TABLES | {"forecast": Forecast, "benchmark": Benchmark}
+EVERY_TABLE = plugin("tables")
 
 # A table as a class ---------------------------------------------------------------------------
 
@@ -131,8 +130,8 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
     assert declared - {"table", "sampled"} == {*SCENE_TABLES, "forecast"}
     assert all(
         callable(table.rows)
-        for table in (SCENE_TABLES | STUDY_TABLES).values()
-        if table.name() != "effects_cost"
+        for name, table in EVERY_TABLE.items()
+        if name not in ("effects_cost", "forecast", "benchmark")
     )
 
 
@@ -260,7 +259,6 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
     [
         ("twodiscs.comparison.scene_tables", ("numpy", "scipy", "pandas")),
         ("twodiscs.theory.exact", ("numpy", "scipy", "pandas")),
-        ("twodiscs_paper.pipeline.results.verdict", ("numpy", "scipy", "pandas")),
         ("twodiscs.comparison.check", ("scipy.stats", "pandas", "numba", "matplotlib")),
     ],
 )

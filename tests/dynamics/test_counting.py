@@ -16,9 +16,7 @@ from twodiscs.dynamics.two import lockstep
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.separations import draw_constants
 from twodiscs.theory.exact import mean_times
-from twodiscs_paper.studies.accuracy_cost import scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
@@ -40,21 +38,6 @@ def test_shards_add_up():
     whole = counting.run_blocks(PAPER, EVENTS, 7, 0, 5, 8.0)
     parts = [counting.run_blocks(PAPER, EVENTS, 7, a, b, 8.0) for a, b in ((0, 1), (1, 4), (4, 5))]
     assert same(whole, [sum(part) for part in zip(*parts, strict=True)])
-
-
-@pytest.mark.parametrize("radius", [0.05, 0.2, 0.24, 0.3, 0.38])
-def test_the_scalar_engine_counts_the_same(radius):
-    """Written with branches and divisions, the same law has the same counts, replica for replica.
-
-    Chaos would turn a difference in the last bit into other counts after some tens of events.
-    """
-    scene = PAPER.with_radius(radius)
-    duration = counting.replica_duration(scene)
-    arguments = (duration, scene.contact_distance, draw_constants(scene), (0, 0))
-    usual = scalar.count_blocks(np.uint64(3), 0, 1, 1024, *arguments)
-    sums, products = counting.run_blocks(scene, EVENTS, 3, 0, 1, duration)[:2]
-    at = [EVENTS.index(event) for event in scalar.COUNTED]
-    assert same(usual, (sums[at], products[np.ix_(at, at)]))
 
 
 GENERIC = """

@@ -10,47 +10,12 @@ from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
-from twodiscs.model.events import EVENTS, SHELLS
+from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
-from twodiscs.theory.exact import mean_times, shell_expectation, volume
-from twodiscs_paper.studies.stability import measure as stability
+from twodiscs.theory.exact import shell_expectation, volume
 
 BOX = Box(1.5, 1.0)
-RADII = (0.05, 0.2, 0.24, 0.3, 0.38)
-
-
-@pytest.fixture(scope="module")
-def covered():
-    """{(radius, event): row} of 1600 repetitions of a run of one block."""
-    rows = list(stability.coverage_rows(BOX, seed=77))
-    return {(row["radius"], row["quantity"]): row for row in rows}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("radius", RADII)
-def test_intervals_cover_the_exact_time_in_92_to_98_of_100(covered, radius):
-    """1600 repetitions know the coverage to 0.55 %: a true 95 % fails once in 1e7 seeds."""
-    times = mean_times(BOX.scene(radius))
-    for event in EVENTS:
-        if times[event] is None:
-            assert (radius, event) not in covered
-        else:
-            row = covered[radius, event]
-            assert row["count"] == 1600
-            assert row["status"] == "counted"
-            assert 0.92 <= row["value"] <= 0.98, (radius, event, row["value"])
-            assert row["passed"]
-
-
-def test_too_few_events_are_said_to_be_too_few(monkeypatch):
-    """Just below h/4 one block sees hardly any horizontal hop: there is no interval to speak of."""
-    monkeypatch.setattr(stability, "ordinary_radii", lambda box: [0.2499])
-    rows = list(stability.coverage_rows(BOX, seed=7, repetitions=20))
-    row = next(row for row in rows if row["quantity"] == "horizontal_hop")
-    assert row["status"] == "too-few"
-    assert row["value"] is None
-    assert row["passed"] is None
 
 
 @pytest.mark.slow

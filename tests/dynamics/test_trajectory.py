@@ -6,35 +6,11 @@ import pytest
 from effect_scenes import SCENES
 
 from twodiscs.comparison.tables.trajectory import Trajectory
-from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.starts import state_in, states
 from twodiscs.theory.exact import event_rate, mean_times
-from twodiscs_paper.studies.accuracy_cost import scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
-
-
-def test_following_one_trajectory_is_the_kernel_in_slow_motion():
-    start = state_in(states(PAPER, 1, 5), 0)
-    rows = list(trajectory.follow(PAPER, start, 64.0))
-    names = [row[5] for row in rows]
-    times = [row[0] for row in rows]
-    assert times == sorted(times)
-    assert names[0] == "start"
-    assert names[-1] == "end"
-    assert times[-1] == pytest.approx(64.0)
-    counts = scalar.count_replica(
-        *start, 64.0, PAPER.range_x / 2, PAPER.range_y / 2, PAPER.contact_distance
-    )
-    for event in ("vertical_hop", "horizontal_hop", "disc_collision"):
-        assert names.count(event) == counts[scalar.COUNTED.index(event)] > 0
-    for row in rows:
-        if row[5] == "vertical_hop":
-            assert abs(row[2] - row[4]) < 1e-14
-        if row[5] == "horizontal_hop":
-            assert abs(row[1] - row[3]) < 1e-14
 
 
 @pytest.mark.parametrize("radius", [0.2, 0.3, 0.3749, 0.38])

@@ -13,7 +13,7 @@ from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import FOLLOWED
+from twodiscs.model.families.plain import FOLLOWED
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
 from twodiscs.sampling.starts import require_room

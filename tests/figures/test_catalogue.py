@@ -12,8 +12,8 @@ import pytest
 
 import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.figures.catalogue import ANIMATION, FIGURES, NOTES, Entry
-from twodiscs.figures.kit.captions import Sentence, Shown
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.figures.kit.captions import NOTES, Shown
 from twodiscs.figures.kit.limits import LARGEST, limits
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
@@ -31,15 +31,17 @@ EFFECTS = {"field": 1.5}
 
 
 def test_the_modules_that_draw_are_those_of_the_entries():
+    """Each has a caption too."""
     folder = Path(twodiscs.__file__).parents[1]
     drawing = {
         ".".join(path.relative_to(folder).with_suffix("").parts)
         for floor in ("twodiscs/figures", "twodiscs_paper/studies")
         for path in (folder / floor).rglob("*.py")
         for node in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(node, ast.FunctionDef) and node.name == "draw"
+        if isinstance(node, ast.FunctionDef) and node.name == "caption"
     }
-    assert drawing == {entry.module for entry in (FIGURES | STUDY_FIGURES).values()}
+    assert drawing == {entry.module for entry in ALL.values()}
+    assert all(hasattr(import_module(module), "draw") for module in drawing - {ANIMATION.module})
 
 
 @pytest.mark.parametrize("name", FIGURES | STUDY_FIGURES)
@@ -83,11 +85,10 @@ def test_an_entry_is_complete(name):
 def test_captions_are_plain_text_in_whole_sentences(name, effects):
     entry = ALL[name]
     shown = Shown(Box(1.5, 1.0, effects))
-    own, alike = entry.said(shown)
-    assert entry.full_caption(shown) == f"{own} {alike}".strip()
-    assert own.startswith(entry.caption[0].text)
+    own, alike = entry.caption_parts(shown)
+    assert entry.caption(shown) == f"{own} {alike}".strip()
     assert bool(alike) == bool(entry.note)
-    for caption in (own, entry.full_caption(shown)):
+    for caption in (own, entry.caption(shown)):
         assert caption.endswith(".")
         assert not re.search(r"[\\${}_]{2}|\\|\$|\s\s|\n|\.\.|\. [a-z]", caption)
 
@@ -95,18 +96,18 @@ def test_captions_are_plain_text_in_whole_sentences(name, effects):
 def test_captions_of_scenes_with_effects_say_nothing_of_plain_ones():
     called = [entry for entry in FIGURES.values() if entry.needs]
     for entry in called:
-        plain, other = entry.full_caption(), entry.full_caption(Shown(Box(1.5, 1.0, EFFECTS)))
+        plain, other = entry.caption(), entry.caption(Shown(Box(1.5, 1.0, EFFECTS)))
         assert not re.search(r"[wh]/4|square box|Dashed|four times", other)
         assert ("lines mark h/4" in plain) == ("hops end at r_v" in other)
         assert ("lines mark h/4" in plain) == bool(entry.note)
         assert "r_v" not in plain
-    assert sum("Dashed" in entry.full_caption() for entry in called) >= 4
+    assert sum("Dashed" in entry.caption() for entry in called) >= 4
     assert "of a wall halves" in caption("mean_wall_time", EFFECTS)
 
 
 def caption(name, effects, discs=2, sides=(1.5, 1.0), **more):
     """Return the caption of a figure in a box with effects."""
-    return ALL[name].full_caption(Shown(Box(*sides, effects, discs), **more))
+    return ALL[name].caption(Shown(Box(*sides, effects, discs), **more))
 
 
 @pytest.mark.parametrize("sides", [(1.5, 1.0), (1.0, 1.5), (1.0, 1.0), (3.0, 1.0)], ids=str)
@@ -235,20 +236,11 @@ def test_captions_speak_of_an_effect_where_it_is(effect, value, words):
     called = [ANIMATION, *(entry for entry in FIGURES.values() if entry.needs)]
 
     def told(effects):
-        return " ".join(entry.full_caption(Shown(Box(1.5, 1.0, effects))) for entry in called)
+        return " ".join(entry.caption(Shown(Box(1.5, 1.0, effects))) for entry in called)
 
     for word in words:
         assert word in told({effect: value})
         assert word not in told({"mass_ratio": 2.0})
-
-
-def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
-    crosses = Sentence("Crosses are\n few.", mark=lambda row: row["count"] < 9)
-    monkeypatch.setitem(NOTES, "note", (Sentence("All alike."), crosses))
-    entry = Entry("a", "b", "One\n  two.", "c", note="note")
-    assert entry.said(Shown(rows=[{"count": 1}])) == ("One two. Crosses are few.", "All alike.")
-    assert entry.said(Shown(rows=[{"count": 9}])) == ("One two.", "All alike.")
-    assert entry.full_caption() == "One two. If there are any, crosses are few. All alike."
 
 
 @pytest.mark.parametrize(
@@ -262,7 +254,7 @@ def test_what_explains_a_mark_is_said_by_each_figure_that_has_it(monkeypatch):
         ("pressure", "In a square box", {(1, 1)}),
         ("mean_hop_time", "Arrows", set()),
         ("volume", "Crosses", set()),
-        ("stability", "Crosses", set()),
+        ("stability_of_runs", "Crosses", set()),
         ("stability", "not run.", {(1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5)}),
     ],
 )
@@ -270,9 +262,9 @@ def test_captions_say_what_the_box_makes_of_a_figure(name, sentence, boxes):
     said = {
         sides
         for sides in ((1, 1), (1.5, 1), (2, 1), (5, 1), (1, 5))
-        if sentence in " ".join(ALL[name].said(Shown(Box(*sides), rows=[])))
+        if sentence in ALL[name].caption(Shown(Box(*sides), rows=[]))
     }
-    assert sentence.lower() in ALL[name].full_caption().lower()
+    assert sentence.lower() in ALL[name].caption().lower()
     assert said == boxes
 
 

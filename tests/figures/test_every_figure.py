@@ -5,9 +5,9 @@ from functools import cache
 import pytest
 from figure_cases import BOXES, PAPER, draw, tables_of, unclear
 
-from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
+from twodiscs.figures.radius import volume
 from twodiscs.model.box import Box
 
 #: Boxes where labels could meet, and of any size.
@@ -72,7 +72,7 @@ def test_tables_with_little_in_them():
         with pytest.raises(ValueError, match=r"mean_times\.csv has no row of right_wall"):
             draw("mean_wall_time", PAPER, few)
         with pytest.raises(ValueError, match="tables must be the one of volume, not none"):
-            radius.draw(PAPER, {}, **FIGURES["volume"].options)
+            volume.draw(PAPER, {})
 
 
 @pytest.mark.parametrize("name", [name for name, entry in FIGURES.items() if entry.tables])
@@ -92,7 +92,7 @@ def test_laws_of_plain_scenes_are_not_drawn_with_effects(name):
         )
     )
     assert not any(dashed[1:] + marks[1:])
-    assert bool(dashed[0]) == ("laws" in FIGURES[name].options or name == "pressure")
+    assert bool(dashed[0]) == ("mean" in name or name == "pressure")
     assert bool(marks[0]) == (name == "hop_histogram")
     texts = [text.get_text() for axes in figures[1].axes for text in axes.texts]
     assert any(symbol in text for text in texts)

@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
-from figure_cases import BOXES, PAPER, draw, simulated, tables_of, unclear
+from figure_cases import BOXES, PAPER, bars, covered, draw, points, simulated, tables_of, unclear
 from matplotlib import rcParams
 
-from twodiscs.figures import radius
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import curves, panels, style
 from twodiscs.figures.kit.captions import Shown
+from twodiscs.figures.radius import over_radius
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law, small_radius_time
 
-OVER_RADIUS = [name for name, entry in FIGURES.items() if entry.module == "twodiscs.figures.radius"]
+OVER_RADIUS = [name for name, entry in FIGURES.items() if ".radius." in entry.module]
 
 
 @pytest.fixture(scope="module")
@@ -22,42 +22,51 @@ def figures():
         return {name: draw(name, PAPER, tables_of("paper")) for name in OVER_RADIUS}
 
 
+#: {figure: its quantities, in the order of colours and markers}
+QUANTITIES = {
+    "volume": ["volume"],
+    "vertical_hop_area": ["vertical_hop_area"],
+    "horizontal_hop_area": ["horizontal_hop_area"],
+    "collision_area": ["disc_collision_area"],
+    "wall_area": [f"{event}_area" for event in over_radius.WALLS],
+    "mean_hop_time": ["vertical_hop_time", "horizontal_hop_time"],
+    "mean_collision_time": ["disc_collision_time"],
+    "mean_wall_time": [f"{event}_time" for event in over_radius.WALLS],
+}
+
+
 @pytest.mark.parametrize("name", OVER_RADIUS)
 def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
-    """In the order of the catalogue, which is that of colours and markers."""
+    """Estimates with their standard errors, and residuals, as in the rows of the table."""
     radii, exact = curves.exact(PAPER)
-    names, main = FIGURES[name].options["names"], figures[name].axes[1]
+    names, (main, lower) = QUANTITIES[name], figures[name].axes[:2]
     drawn = [line for line in main.lines if len(line.get_xdata()) == len(radii)]
     assert len(drawn) == len(names)
+    assert FIGURES[name].needs == {*names}
     for line, quantity, (colour, marker) in zip(drawn, names, style.SERIES, strict=False):
-        np.testing.assert_array_equal(line.get_ydata(), exact[quantity])
+        rooted = "hop_area" in name
+        np.testing.assert_array_equal(line.get_ydata(), exact[quantity] ** (0.5 if rooted else 1))
         assert line.get_color() == (style.BLACK if len(names) == 1 else colour)
-        (table,) = FIGURES[name].tables
-        found = {
-            (row["radius"], row["estimate"])
-            for row in tables_of("paper")[table]
-            if radius._quantity(row) == quantity and row["stderr"]
-        }
-        symbols = {
-            point
-            for one in main.lines
-            if (one.get_color(), one.get_marker()) == (colour, marker)
-            for point in zip(one.get_xdata(), one.get_ydata(), strict=True)
-        }
-        assert found
-        assert found <= symbols
-    legend = [text.get_text() for text in main.get_legend().get_texts()]
-    single = FIGURES[name].options.get("single")
-    laws = ["limiting law"] if FIGURES[name].options.get("laws") else []
-    assert legend == (["exact", single] if single else list(names.values())) + laws
-    assert main.get_ylabel() == FIGURES[name].options["label"]
-    assert main.get_yscale() == ("function" if FIGURES[name].options.get("rooted") else "log")
+        rows = [
+            row
+            for row in tables_of("paper")[FIGURES[name].tables[0]]
+            if over_radius.quantity_of(row) == quantity and row["stderr"]
+        ]
+        assert rows
+        shown = [(r, y, s) for r, y, s in bars(main, colour, marker) if s]
+        due = np.array([(row["radius"], row["estimate"], row["stderr"]) for row in rows])
+        if rooted:
+            due[:, 1] **= 0.5
+            due[:, 2] /= 2 * due[:, 1]
+        np.testing.assert_allclose(shown, due, rtol=1e-9)
+        due = {(row["radius"], row["z"]) for row in rows if abs(row["z"]) < 6}
+        assert due <= points(lower, colour, marker)
 
 
 def test_blocked_hop_area_is_shown_as_zero(figures):
     points = {
         (x, y)
-        for line in figures["horizontal_hop_area"].axes[1].lines
+        for line in figures["horizontal_hop_area"].axes[0].lines
         if line.get_marker() == "o"
         for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
     }
@@ -73,12 +82,12 @@ def asymptotes(axes):
 
 def test_limiting_laws_run_into_the_curves(figures):
     """The law for small discs begins at the limit r → 0, and that of the end ends on the curve."""
-    small, last = asymptotes(figures["mean_collision_time"].axes[1])
-    assert small[0][-1] == radius.SMALL * PAPER.largest_radius
+    small, last = asymptotes(figures["mean_collision_time"].axes[0])
+    assert small[0][-1] == over_radius.SMALL * PAPER.largest_radius
     assert small[1][0] == small_radius_time(PAPER, "disc_collision", small[0][0])
     time = mean_times(PAPER.scene(float(last[0][-1])))["disc_collision"]
     assert last[1][-1] == pytest.approx(time, rel=1e-3)
-    assert len(asymptotes(figures["mean_hop_time"].axes[1])) == 2
+    assert len(asymptotes(figures["mean_hop_time"].axes[0])) == 2
 
 
 def test_times_approach_the_end_of_their_hop(figures):
@@ -88,7 +97,7 @@ def test_times_approach_the_end_of_their_hop(figures):
     for (event, end), (distances, times) in zip(ends.items(), asymptotes(lower), strict=True):
         law = leading_law(PAPER, event)
         np.testing.assert_allclose(times, law.coefficient * (end * distances) ** -2, rtol=1e-5)
-        assert distances.max() < radius.LAW
+        assert distances.max() < over_radius.LAW
     rows = [r for r in tables_of("paper")["mean_times"] if r["event"] == "horizontal_hop"]
     shown = {x for line in lower.lines if line.get_marker() == "s" for x in line.get_xdata()}
     assert shown == {1 - row["radius"] / 0.25 for row in rows if row["stderr"]}
@@ -104,31 +113,19 @@ def test_the_legend_leaves_out_what_is_never_seen():
         for scene in map(box.scene, (0.05, 0.1, 0.2))
         for event, time in mean_times(scene).items()
     ]
-    entry = FIGURES["mean_wall_time"]
     with style.context():
-        main = radius.draw(box, {"mean_times": rows}, **entry.options).axes[1]
+        main = draw("mean_wall_time", box, {"mean_times": rows}).axes[0]
     legend = main.get_legend()
-    names = entry.options["names"]
-    assert [text.get_text() for text in legend.get_texts()] == [
-        names["right_wall_time"], names["any_wall_time"],
-    ]  # fmt: skip
+    names = over_radius.WALLS["right_wall"], over_radius.WALLS["any_wall"]
+    assert tuple(text.get_text() for text in legend.get_texts()) == names
     shown = [(handle.get_color(), handle.get_marker()) for handle in legend.legend_handles]
     assert shown == [style.SERIES[0], style.SERIES[2]]
-
-
-def covered(axes):
-    """Return the lines with a vertex, or a piece between two, beneath the legend of ``axes``."""
-    axes.figure.draw_without_rendering()
-    extent = axes.get_legend().get_window_extent()
-    lines = [line for line in axes.lines if line.get_zorder() > 1]  # those behind mark limits
-    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in lines]
-    return [line for line, path in paths if path.intersects_bbox(extent, filled=False)]
 
 
 @pytest.mark.parametrize("name", BOXES)
 def test_no_collision_time_lies_beneath_the_legend(name):
     with style.context():
-        assert covered(draw("mean_collision_time", BOXES[name], tables_of(name)).axes[1]) == []
+        assert covered(draw("mean_collision_time", BOXES[name], tables_of(name)).axes[0]) == []
 
 
 def test_no_hop_time_lies_beneath_the_legend_where_it_ends_with_the_largest_radius():
@@ -165,8 +162,8 @@ def test_an_estimate_above_the_curve_is_in_the_picture():
     first, *others = [r for r in tables["areas"] if r["quantity"] == "vertical_hop_area"]
     far = first | {"estimate": 1.2 * first["exact"], "stderr": 0.1 * first["exact"]}
     with style.context():
-        main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[1]
-    assert main.get_ylim()[1] > 1.3 * first["exact"]
+        main = draw("vertical_hop_area", PAPER, {"areas": [far, *others]}).axes[0]
+    assert main.get_ylim()[1] > (1.2 * first["exact"]) ** 0.5
 
 
 def test_where_nothing_is_known_there_are_symbols_only():
@@ -188,10 +185,10 @@ def test_where_nothing_is_known_there_are_symbols_only():
         (axes,) = figure.axes
         assert axes.get_xlabel() == "radius $r$"
         assert any(label.label1.get_visible() for label in axes.xaxis.get_major_ticks())
-        caption = FIGURES[name].full_caption(Shown(ring, None, shown))
+        caption = FIGURES[name].caption(Shown(ring, None, shown))
         assert "Residuals" not in caption
         assert "(b)" not in caption
-        assert "Where no exact value is known there is no line and no residual." in caption
+        assert "If no exact value is known there is no line and no residual." in caption
 
 
 def test_curves_are_drawn_to_their_end_without_any_residual():
@@ -206,7 +203,7 @@ def test_curves_are_drawn_to_their_end_without_any_residual():
     main, approach = figure.axes
     assert main.get_xlabel() == "radius $r$"
     assert approach.get_xlabel().startswith("relative distance")
-    caption = FIGURES["mean_hop_time"].full_caption(Shown(PAPER, None, rows))
+    caption = FIGURES["mean_hop_time"].caption(Shown(PAPER, None, rows))
     assert "In (b) the same times" in caption
     assert "Residuals" not in caption
 

@@ -5,6 +5,7 @@ import math
 from itertools import product
 from pathlib import Path
 
+import numpy as np
 import pytest
 from fabricated import command
 
@@ -309,3 +310,17 @@ def test_scores_of_a_study_are_compared_with_its_estimates(name):
     assert any("is there twice" in said for said in verdict.study_failures([*rows, *rows]))
     for nothing in ([], [row | {"z": None} for row in rows]):
         assert [*verdict.study_failures(nothing)] == ["nothing is compared"]
+
+
+def test_studies_are_judged_by_their_scores():
+    """1000 scores: a bound of 4.9 or so."""
+    row = dict.fromkeys(("scene", "event", "radius", "z"))
+    z = *np.linspace(0, 1, 998).tolist(), -4.7
+    rows = [row | {"radius": 0.1, "event": "vertical_hop", "z": each} for each in z]
+    failures, text = verdict.verdict({}, {"passages": [*rows, row]})
+    assert (failures, text) == ([], "passages: 999 comparisons passed, largest |z| 4.7\n")
+    (failure,), _ = verdict.verdict({}, {"passages": [*rows, rows[0] | {"z": 5.1}]})
+    bound = scores.bonferroni_bound(1000, scores.FALSE_ALARM)
+    assert failure == (
+        f"passages: event vertical_hop, radius 0.1 has z = 5.1, beyond the bound {bound:.3g}"
+    )

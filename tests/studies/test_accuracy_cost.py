@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from figure_cases import bars, points
 
 from twodiscs.figures.kit import style
+from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
@@ -196,12 +198,60 @@ def test_from_starts_next_to_it_it_does_not(rows, hop):
     assert all(row["work"] < 24 / row["error"] ** 2 for row in found)
 
 
-@pytest.mark.parametrize("module", [figure, figure_by_radius])
-def test_the_figures_draw_them(rows, module, tmp_path):
+@pytest.fixture(scope="module")
+def panels(rows):
+    """The panels of both figures, {label: axes}."""
     with style.context():
-        drawn = module.draw(tables={"accuracy_cost": rows})
-        style.save(drawn, tmp_path / "figure.png")
-    assert (tmp_path / "figure.png").stat().st_size > 10_000
+        figures = [m.draw(tables={"accuracy_cost": rows}) for m in (figure, figure_by_radius)]
+    return {axes.get_label(): axes for drawn in figures for axes in drawn.axes}
+
+
+@pytest.mark.parametrize(
+    ("panel", "part", "method"),
+    [
+        ("volume", "volume", "sobol"),
+        ("area", "area", "surface"),
+        ("area", "area", "sobol"),
+        ("times", "time", "lockstep"),
+        ("times", "time", "scalar"),
+    ],
+)
+def test_bars_are_those_of_the_mean_over_the_runs(rows, panels, panel, part, method):
+    """Not of one run; they end above zero."""
+    own = of(rows, part=part, method=method)
+    own = [row for row in own if part != "time" or row["quantity"] == "vertical_hop_time"]
+    due = [
+        (row["seconds"], row["error"], min(row["spread"] / row["repetitions"] ** 0.5, 0.9 * error))
+        for row in own
+        for error in [row["error"]]
+    ]
+    shown = bars(panels[panel], figure.LOOK[method][0], "None")  # beside the symbols
+    np.testing.assert_allclose(shown, sorted(due), rtol=1e-9)
+
+
+def test_quadrature_is_drawn_over_its_nodes(rows, panels):
+    for part, look in (("volume", (style.BLUE, "o")), ("area", (style.VERMILLION, "s"))):
+        own = of(rows, part=part, method="quadrature")
+        due = {(row["work"], max(row["error"], 2.0**-53)) for row in own}
+        assert points(panels["quadrature"], *look) == due
+
+
+def test_prices_of_pilots_are_drawn_over_those_of_a_poisson_process(rows, panels):
+    predicted = of(rows, part="radius", method="poisson")
+    speed = np.median([row["work"] / row["seconds"] for row in predicted])
+    for event, look in LOOKS.items():
+        own = of(rows, part="radius", method="lockstep", quantity=f"{event}_time")
+        assert {(r["radius"], r["seconds"]) for r in own} <= points(
+            panels["times by radius"], *look
+        )
+        due = {
+            row["radius"]: row["seconds"] * speed / one["work"]
+            for row in own
+            for one in of(predicted, quantity=f"{event}_time", radius=row["radius"])
+        }
+        shown = dict(points(panels["ratios"], *look))
+        assert shown.keys() >= due.keys() != set()
+        assert [shown[radius] for radius in due] == pytest.approx([*due.values()], rel=0.01)
 
 
 @pytest.mark.parametrize("wrong", [{"seconds": 0}, {"repetitions": 1}])

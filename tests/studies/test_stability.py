@@ -17,7 +17,7 @@ from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.theory import exact
-from twodiscs_paper.studies.stability import figure
+from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
 from twodiscs_paper.studies.stability.table import LongRuns, Stability
 
@@ -255,9 +255,8 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path):
         "theory", "sampling", "estimates", "times", "dynamics", "reversal", "coverage"
     }  # fmt: skip
     with style.context():
-        drawn = figure.draw(PAPER, {"stability": rows})
-        style.save(drawn, tmp_path / "figure.png")
-    assert len(drawn.axes) == 8
+        for module in (figure, figure_runs):
+            style.save(module.draw(PAPER, {"stability": rows}), tmp_path / "figure.png")
 
 
 def test_the_figure_says_how_long_runs_are():
@@ -271,14 +270,15 @@ def test_the_figure_says_how_long_runs_are():
         for case, radius, count in runs
     ]
     with style.context():
-        drawn = figure.draw(PAPER, {"stability": rows})
+        drawn = figure_runs.draw(PAPER, {"stability": rows})
     said = {text.get_text() for text in drawn.findobj(Text)}
     assert {r"$5\times10^{7}$", "$10^{6}$", "$r=10^{-9}$"} <= said
 
 
 def test_a_table_without_rows_is_drawn_empty(tmp_path):
     with style.context():
-        style.save(figure.draw(PAPER, {"stability": []}), tmp_path / "figure.png")
+        for module in (figure, figure_runs):
+            style.save(module.draw(PAPER, {"stability": []}), tmp_path / "figure.png")
 
 
 def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path):

@@ -284,7 +284,7 @@ def test_every_figure_is_shown_with_its_caption_and_category(seen, complete):
         entry, found = entries[name], seen["results"][path]
         more = f" Scene {scene[0]}." if scene else ""
         shown = SHOWN[scene[0] if scene else "six"]
-        assert plain(found["caption"]) == plain(entry.full_caption(shown)) + more
+        assert plain(found["caption"]) == plain(entry.caption(shown)) + more
         assert found["labels"] == entry.labels
         assert found["width"] > 300
         assert path in seen["categories"][entry.category][scene[0] if scene else "all scenes"]
@@ -316,4 +316,4 @@ def test_a_tall_figure_fits_the_window_beside_its_caption(seen):
     place = seen["placed"]
     assert min(place[side] for side in ("left", "top", "right", "bottom")) >= 0
     assert place["left"] > 300
-    assert plain(FIGURES["mean_hop_time"].full_caption(SHOWN["six"])) in plain(place["caption"])
+    assert plain(FIGURES["mean_hop_time"].caption(SHOWN["six"])) in plain(place["caption"])

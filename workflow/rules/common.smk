@@ -195,11 +195,19 @@ def figure_tables(w, input):
     return assigned(reads, input.tables)
 
 
-def caption(w):
-    """Return the caption of a figure in Snakemake's report."""
-    scene = about(w)
-    shown = Shown(scene.box, scene.quantities.names) if scene else Shown()
-    return ENTRIES[w.figure].full_caption(shown)
+class Caption:
+    """The caption of a figure in Snakemake's report, which is composed when the report prints it.
+
+    The modules of figures take long to import. As an object it is no parameter that reruns a job.
+    """
+
+    def __init__(self, w):
+        self.figure, self.scene = w.figure, about(w)
+
+    def __str__(self):
+        scene = self.scene
+        shown = Shown(scene.box, scene.quantities.names) if scene else Shown()
+        return ENTRIES[self.figure].caption(shown)
 
 
 # The studies that the scenes allow, and their parts.

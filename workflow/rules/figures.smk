@@ -28,7 +28,7 @@ rule figure:
         radius=radius_of,
         tables=figure_tables,
         origin=origin,
-        caption=caption,
+        caption=Caption,
         options=lambda w: str(ENTRIES[w.figure].options),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
@@ -59,7 +59,7 @@ rule shared_figure:
         box=box,
         tables=figure_tables,
         origin=origin,
-        caption=caption,
+        caption=Caption,
         options=lambda w: str(ENTRIES[w.figure].options),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q}"
@@ -90,7 +90,7 @@ rule animate:
         box=box,
         radius=radius_of,
         tables=figure_tables,
-        caption=caption,
+        caption=Caption,
         code=figure_code,
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"

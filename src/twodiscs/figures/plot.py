@@ -1,6 +1,7 @@
 """Figures and animations of what the face returns; what is drawn is what the workflow draws."""
 
 import sys
+import warnings
 from functools import partial
 from importlib import import_module
 from operator import attrgetter
@@ -9,8 +10,10 @@ from twodiscs.comparison.measured.measurements import Intervals, Measurements, t
 from twodiscs.comparison.measured.observe import Observed
 from twodiscs.comparison.measured.scan import Scan
 from twodiscs.comparison.measured.transmission import Transmission
+from twodiscs.figures import together
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
+from twodiscs.figures.radius.over_radius import quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice
 
@@ -21,8 +24,10 @@ DRAWN = (
 )
 
 
-def plot(result, path, figure):
+def plot(result, path, figure, axes=None):
     """Return the figure that shows ``result`` (see the face)."""
+    if axes is not None:
+        return _beside(result, path, figure, axes)
     draw = _over_time(result, figure) or _in_catalogue(result, figure)
     with style.context():
         drawn = draw()
@@ -55,7 +60,9 @@ def _in_catalogue(result, figure):
                 f"the target report writes, not {result.attrs['table']!r} alone"
             )
         raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
-    name = check_choice("figure", fitting[0] if figure is None else figure, fitting)
+    name = _chosen(figure, fitting, tables)
+    if name in together.KINDS:
+        return partial(together.draw, box, {name: tables}, name)
     entry = FIGURES[name]
     if not box.is_plain and not entry.needs:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
@@ -64,6 +71,47 @@ def _in_catalogue(result, figure):
         )
     draw = import_module(entry.module).draw
     return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
+
+
+def _is_over_radius(name):
+    """Say whether the figure called ``name`` shows quantities over the radius."""
+    return name in together.KINDS or ".radius." in FIGURES[name].module
+
+
+def _shown_by(name):
+    """Return the quantities that the figure called ``name`` shows."""
+    return together.names_of(name)[0].keys() if name in together.KINDS else FIGURES[name].needs
+
+
+def _chosen(figure, fitting, rows):
+    """Return the name of the ``figure``, one of ``fitting``, or of the first of them if it is None.
+
+    A warning then names the quantities in ``rows`` that this one does not show.
+    """
+    if figure is not None:
+        return check_choice("figure", figure, fitting)
+    if _is_over_radius(fitting[0]):
+        shown = _shown_by(fitting[0])
+        others = dict.fromkeys(q for q in map(quantity_of, rows) if q not in shown)
+        if others:
+            warnings.warn(
+                f"the figure {fitting[0]} does not show {', '.join(others)}; "
+                f"figure= chooses one of {', '.join(fitting)}",
+                stacklevel=5,
+            )
+    return fitting[0]
+
+
+def _beside(result, path, figure, axes):
+    """Draw quantities over the radius into ``axes`` of another figure, which is returned."""
+    box, rows, fitting, _ = _what(result)
+    fitting = [name for name in fitting if _is_over_radius(name)]
+    if not fitting:
+        raise InputError(f"result must be over the radius to be drawn in ax, not {result!r:.80}")
+    together.add(axes, box, rows, _shown_by(_chosen(figure, fitting, rows)))
+    if path is not None:
+        style.save(axes.figure, path)
+    return axes.figure
 
 
 def _show(figure):
@@ -101,13 +149,16 @@ def _what(result):
                 raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")
             results = sorted(results, key=attrgetter("scene.radius"))
             rows = [row for item in results for row in item.rows]
-            return boxes.pop(), rows, _figures_of(rows), {}
+            (box,) = boxes
+            return box, rows, _figures_of(rows, box), {}
     attributes = getattr(result, "attrs", {})
     if isinstance(attributes, dict) and isinstance(attributes.get("box"), Box):
         # A table that was loaded; what is absent is None in rows.
         rows = result.astype(object).where(result.notna(), None).to_dict("records")
         table = attributes.get("table")
         fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
+        if rows and table in ("volume", "areas", "mean_times"):
+            fitting = _figures_of(rows, attributes["box"])
         if rows and fitting:
             return attributes["box"], rows, fitting, {}
     if scene is not None and hasattr(result, "iterrows"):
@@ -119,13 +170,21 @@ def _drawings():
     return [name for name, entry in FIGURES.items() if not entry.needs]
 
 
-def _figures_of(rows):
-    """Return the names of the figures that show quantities of these rows."""
+def _figures_of(rows, box):
+    """Return the names of the figures that show quantities of these rows, of a ``Box``."""
     if "left" in rows[0]:
         return ["hop_histogram"]
-    shown = {row.get("quantity") or f"{row['event']}_time" for row in rows}
-    over_radius = {n: e for n, e in FIGURES.items() if e.module == "twodiscs.figures.radius"}
-    return [name for name, entry in over_radius.items() if entry.needs & shown]
+    shown, names = {*map(quantity_of, rows)}, []
+    for table in ("mean_times", "volume", "areas"):
+        own = [
+            n
+            for n, e in FIGURES.items()
+            if e.tables == (table,) and e.is_called(shown, box.calls_for)
+        ]
+        if own and table in together.KINDS:
+            own.insert(0 if sum(map(_is_over_radius, own)) > 1 else len(own), table)
+        names += own
+    return names
 
 
 def rows_of(trajectory):
@@ -152,7 +211,5 @@ def animate(trajectory, path):
     scene = the_scene(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
         raise InputError(f"trajectory must be what trajectory() returns, not {trajectory!r:.80}")
-    if scene.has_effects:
-        raise InputError(f"scene must have no effects to be animated, not {scene}")
     with style.context():
         animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])

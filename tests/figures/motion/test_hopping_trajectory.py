@@ -46,7 +46,7 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
         assert list(dots.get_xdata()) == times
     entry = FIGURES["hopping_trajectory"]
     for some in (rows, [row for row in rows if row["event"] != hop]):
-        said = "mark the hops" in entry.full_caption(Shown(box, None, some))
+        said = "mark the hops" in entry.caption(Shown(box, None, some))
         assert said == (some is rows)
     texts = [" ".join(text.get_text() for text in one.axes[0].texts) for one in (figure, bare)]
     assert ["$r=0.24$" in text for text in texts] == [True, False]

@@ -39,6 +39,18 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    return """
+    Configuration space is a product of two squares, one for x1 and x2 and one for y1 and y2,
+    without the overlaps of the discs. With x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and
+    Y, discs overlap if x² + y² < 2r². The dotted band of each square is excluded by the point
+    shown in the other one; dashed lines are its widest bounds, at ±√2 r. The hatched quarters, in
+    which all four coordinates are positive, hold a sixteenth of the volume. Each square is drawn
+    to its own scale.
+    """
+
+
 def _turned(across, along):
     """Return (x1, x2) where (x1 − x2)/√2 = ``across`` and (x1 + x2)/√2 = ``along``."""
     return (along + across) / sqrt(2), (along - across) / sqrt(2)

@@ -28,6 +28,16 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    return """
+    (a) The largest discs that fit the box. They jam along a diagonal, where w − 2r, h − 2r and 2r
+    are the sides of a right triangle. If one side of the box is at least twice the other, each
+    disc spans the shorter one instead. (b) The hops that are possible in boxes of any shape; this
+    box is marked.
+    """
+
+
 def _jammed(axes, width, height):
     """Draw the discs at the largest radius, disc 1 in the lower left corner."""
     radius = Box(width, height).largest_radius

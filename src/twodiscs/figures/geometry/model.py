@@ -47,6 +47,16 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    text = """
+    Two hard discs of radius r in a box of width w and height h. The origin of the coordinates is
+    the centre of the box. The centres of the discs stay in the dashed rectangle, of half-sides
+    a = w/2 − r and b = h/2 − r.
+    """
+    return text + ("Boxes longer than 4:1 are drawn shorter." if shown.is_longer_than(4) else "")
+
+
 def _origin(axes, reach):
     """Draw the axes x and y at the centre of the box."""
     for head, name, offset in (((reach, 0), "$x$", (4, -3)), ((0, reach), "$y$", (-4, 2))):

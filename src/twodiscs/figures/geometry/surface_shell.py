@@ -49,6 +49,18 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    text = """
+    The area of a surface is estimated from the samples within a distance ε of it. (a) The surface
+    of vertical hops can be crossed from both sides: its shell is 2ε thick, and extends √2 ε to
+    either side along y1. (b) The surface of collisions, with x = |x1 − x2|/√2 and
+    y = |y1 − y2|/√2, has a shell on its outer side only.
+    """
+    longer = shown.is_longer_than(1.8)
+    return text + ("Boxes longer than 1.8:1 are drawn shorter." if longer else "")
+
+
 def _hop(axes, b, epsilon):
     """Draw the square of y1, y2 with the surface y1 = y2 and its shell, which has two sides."""
     d = sqrt(2) * epsilon

@@ -1,18 +1,29 @@
-"""Captions: plain sentences, some of them with a condition on what the figure shows."""
+"""What a figure shows, as captions ask for it, and the sentences that several captions share.
 
-from collections.abc import Callable
+The module of a figure has a function ``caption(shown)`` beside ``draw``. It takes a ``Shown`` and
+returns plain text; line breaks and indentation in it do not matter.
+"""
+
 from dataclasses import dataclass
 
-from twodiscs.figures.kit.limits import LARGEST, limits
+from twodiscs.figures.kit.limits import (
+    ACROSS_X,
+    ACROSS_Y,
+    HORIZONTAL,
+    LARGEST,
+    TOP,
+    VERTICAL,
+    limits,
+)
 from twodiscs.model.box import Box
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What a figure shows: ``quantities`` of a ``box``, of which its tables have ``rows``.
+    """What a figure shows: ``quantities`` of a ``box``, from tables with these ``rows``.
 
-    ``quantities`` are a set of names as in theory.csv. Each of the three is None where it is not
-    known: whatever may be said then is said, but of a plain box where there is none.
+    ``quantities`` is a set of names as in theory.csv. Each of the three is None if it is not known:
+    every question about it is then answered by yes, and the box is plain.
     """
 
     box: Box | None = None
@@ -21,125 +32,61 @@ class Shown:
 
     @property
     def effects(self):
-        """What the box calls for: its effects, and ``discs`` where they are more than two."""
+        """The effects of the box, and ``discs`` if they are more than two."""
         return self.box.calls_for if self.box else {}
 
     @property
+    def plain(self):
+        """Whether the scene has two discs and no effects."""
+        return not self.effects
+
+    @property
+    def many(self):
+        """Whether the scene has more than two discs."""
+        return "discs" in self.effects
+
+    def has(self, effect):
+        """Say whether the scene has two discs and this ``effect``."""
+        return effect in self.effects and not self.many
+
+    @property
+    def square(self):
+        """Whether the box is square, and neither a field nor a periodic axis tells x from y."""
+        same = self.effects.keys().isdisjoint({"field", "periodic"})
+        return same and (self.box is None or not self.is_longer_than(1))
+
+    def is_longer_than(self, ratio):
+        """Say whether the longer side of the box is more than ``ratio`` times the shorter one."""
+        box = self.box
+        return box is None or max(box.width, box.height) > ratio * min(box.width, box.height)
+
+    def is_marked(self, *names):
+        """Say whether vertical lines mark the radii with all of these ``names``."""
+        return self.box is None or self.lines.issuperset(names)
+
+    @property
     def lines(self):
-        """The names of the radii that vertical lines mark, the largest one left out."""
+        """The names of the radii that vertical lines mark, except the largest one."""
         pieces = [name.split("=") for _, name in limits(self.box)]
         return {piece for some in pieces for piece in some} - {LARGEST}
 
+    def shows(self, *quantities):
+        """Say whether the figure shows all of these ``quantities``."""
+        return self.quantities is None or self.quantities.issuperset(quantities)
 
-def always(shown):
-    """Say that the sentence holds for every figure."""
-    return True
+    def any_row(self, condition):
+        """Say whether ``condition`` is true of any row."""
+        return self.rows is None or any(map(condition, self.rows))
 
+    def if_any(self, condition, text):
+        """Return the ``text`` that explains a symbol if ``condition`` is true of any row.
 
-def both(*conditions):
-    """Return the condition that all of the ``conditions`` hold."""
-    return lambda shown: all(condition(shown) for condition in conditions)
-
-
-def plain(shown):
-    """Say whether the scene has no effects."""
-    return not shown.effects
-
-
-def other(shown):
-    """Say whether the scene has effects, or more discs than two."""
-    return not plain(shown)
-
-
-def of_many(shown):
-    """Say whether the scene has more discs than two."""
-    return "discs" in shown.effects
-
-
-def of_two(shown):
-    """Say whether the scene has two discs."""
-    return not of_many(shown)
-
-
-def along_ring(shown):
-    """Say whether the scene has more discs than two, and the longer side is periodic."""
-    box = shown.box
-    return of_many(shown) and "periodic" in box.effects and box.width >= box.height
-
-
-def shown_hop(box):
-    """Return the hop that the figure of a trajectory of two discs in a ``Box`` shows.
-
-    It is that along the longer side unless this is periodic.
-    """
-    periodic = box.effects.get("periodic", "")
-    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
-    return "horizontal_hop" if along_x else "vertical_hop"
-
-
-def hops_shown(shown):
-    """Say whether the figure of a trajectory of two discs has hops in it."""
-    return of_two(shown) and any_row(lambda row: row["event"] == shown_hop(shown.box))(shown)
-
-
-def cross(shown):
-    """Say whether more discs than two pass each other along the longer side."""
-    box = shown.box
-    hop = "horizontal_hop" if box and box.width >= box.height else "vertical_hop"
-    passed = any_row(lambda row: row["event"] == hop)
-    return of_many(shown) and not along_ring(shown) and passed(shown)
-
-
-def with_effects(shown):
-    """Say whether the scene has effects, of two discs."""
-    return other(shown) and of_two(shown)
-
-
-def with_effect(name):
-    """Return the condition that the scene has the effect ``name``, of two discs."""
-    return lambda shown: name in shown.effects and of_two(shown)
-
-
-def in_plane(shown):
-    """Say whether the scene has no third side."""
-    return "depth" not in shown.effects
-
-
-def walled(shown):
-    """Say whether the scene has equal discs of the plane, rough or not, between walls."""
-    return shown.effects.keys() <= {"moment_of_inertia", "discs"}
-
-
-def keeps_side(shown):
-    """Say whether disc 1 is at last kept to its side of disc 2 where the figure shows wall hits."""
-    near = shown.box.scene(shown.box.last_radius * (1 - 1e-9))
-    walls = zip(near.confined, ("right_wall_time", "top_wall_time"), strict=True)
-    return any(confined and shows(time)(shown) for confined, time in walls)
-
-
-def shows(*quantities):
-    """Return the condition that the figure shows all of these ``quantities``."""
-    return lambda shown: shown.quantities is None or shown.quantities.issuperset(quantities)
-
-
-def shows_any(*quantities):
-    """Return the condition that the figure shows any of these ``quantities``."""
-    return lambda shown: shown.quantities is None or not shown.quantities.isdisjoint(quantities)
-
-
-def marked(*names):
-    """Return the condition that vertical lines mark the radii with all of these ``names``."""
-    return lambda shown: shown.box is None or shown.lines.issuperset(names)
-
-
-def marked_alone(*names):
-    """Return the condition that vertical lines mark these and the largest radius alone."""
-    return lambda shown: shown.box is not None and shown.lines == set(names)
-
-
-def any_row(condition):
-    """Return the condition that ``condition`` is true of any row."""
-    return lambda shown: shown.rows is None or any(map(condition, shown.rows))
+        If the rows are not known the text has a condition of its own.
+        """
+        if self.rows is None:
+            text = " ".join(text.split())
+            return f" If there are any, {text[0].lower()}{text[1:]}"
+        return f" {text}" if self.any_row(condition) else ""
 
 
 def is_judged(row):
@@ -153,59 +100,123 @@ def is_unknown(rows):
     return bool(measured) and all(row.get("exact") is None for row in measured)
 
 
-def known(shown):
-    """Say whether there are exact values that the figure can show as curves."""
-    return shown.rows is None or not is_unknown(shown.rows)
+# Symbols ------------------------------------------------------------------------------------------
+
+ERROR_BARS = """
+Error bars are one standard error; they are hidden if they are smaller than the symbols.
+"""
+STRIP = """
+Full symbols come from initial states in a strip around the surface of the hop, where the flux is
+measured and not the waiting time.
+"""
 
 
-def longer_than(ratio):
-    """Return the condition that the longer side of the box is more than ``ratio`` shorter ones."""
-
-    def holds(shown):
-        box = shown.box
-        return box is None or max(box.width, box.height) > ratio * min(box.width, box.height)
-
-    return holds
+def _in_bursts(row):
+    """Say whether no law is known for the counts of a row of mean_times.csv."""
+    few = row.get("status") == "too-few"
+    return few and "replicas" in row and row["exact"] is not None and row["z"] is None
 
 
-def square(shown):
-    """Say whether the box is square, and neither a field nor a periodic axis tells x from y."""
-    alike = shown.effects.keys().isdisjoint({"field", "periodic"})
-    return alike and not (shown.box and longer_than(1)(shown))
+def symbols(shown, note):
+    """Return what explains crosses and arrows in figures of a ``note``, one of ``NOTES``."""
+    text = shown.if_any(
+        lambda row: row.get("status") == "too-few" and not _in_bursts(row),
+        "Crosses are estimates from too few events for an error bar.",
+    )
+    if note == "simulated":
+        text += shown.if_any(
+            _in_bursts,
+            """
+            Crosses are estimates without an error bar: events come in bursts, and the largest burst
+            may not have come yet.
+            """,
+        )
+        text += shown.if_any(
+            lambda row: row.get("bound") is not None,
+            "Arrows start at 95 % lower bounds if no event was counted.",
+        )
+    return text
 
 
-@dataclass(frozen=True)
-class Sentence:
-    """A sentence of a caption, or several, that are said of what ``holds`` is true of.
-
-    One with a ``mark`` explains a symbol: it is said where that is true of any row, and with a
-    condition where the rows are not known.
-    """
-
-    text: str
-    holds: Callable = always
-    mark: Callable | None = None
-
-    def __post_init__(self):
-        object.__setattr__(self, "text", " ".join(self.text.split()))
-
-    def is_said(self, shown):
-        """Say whether the sentence belongs to the caption of a figure."""
-        return self.holds(shown) and (self.mark is None or any_row(self.mark)(shown))
-
-    def said(self, shown):
-        """Return the text of a sentence that belongs to the caption of a figure."""
-        if self.mark is None or shown.rows is not None:
-            return self.text
-        return f"If there are any, {self.text[0].lower()}{self.text[1:]}"
+# Notes that several figures share -----------------------------------------------------------------
 
 
-def sentences(caption):
-    """Return a ``caption``, a text or some texts and ``Sentence``, as a tuple of the latter."""
-    parts = (caption,) if isinstance(caption, str) else caption
-    return tuple(Sentence(part) if isinstance(part, str) else part for part in parts)
+def _lines(shown):
+    """Return what vertical lines mark."""
+    text = _lines_of_plain(shown) if shown.plain else _other_lines(shown)
+    if shown.has("radius_ratio"):
+        text += " The radius r is that of disc 1."
+    if shown.has("depth"):
+        text += " The discs are balls."
+    if shown.effects.get("discs", 2) > 3:
+        text += " For larger discs no arrangement is known."
+    if shown.many and shown.any_row(
+        lambda row: row.get("exact") is None and row.get("estimate") is not None
+    ):
+        text += " If no exact value is known there is no line and no residual."
+    return text
 
 
-def said(caption, shown):
-    """Return the text of the sentences of a ``caption`` that belong to a figure."""
-    return " ".join(sentence.said(shown) for sentence in caption if sentence.is_said(shown))
+def _lines_of_plain(shown):
+    if shown.is_marked("h/4", "w/4"):
+        return """
+        Vertical lines mark h/4 and w/4, where hops become blocked, and the largest radius.
+        """
+    for name, hops in (("h/4", "horizontal"), ("w/4", "vertical")):
+        if shown.is_marked(name):
+            return f"""
+            Vertical lines mark {name}, where {hops} hops become blocked, and the largest radius.
+            """
+    return ""
+
+
+def _other_lines(shown):
+    """Return what vertical lines mark in scenes with effects or with more than two discs."""
+    if not shown.lines:
+        return " The vertical line marks the largest radius, r_max."
+    text = " Vertical lines mark the largest radius, r_max, and the radii where something changes."
+    meanings = {
+        VERTICAL: "Vertical hops end at r_v.",
+        HORIZONTAL: "Horizontal hops end at r_h.",
+        ACROSS_X: "From r_x on, disc 1 stays on its side of disc 2 along x.",
+        ACROSS_Y: "From r_y on, disc 1 stays on its side of disc 2 along y.",
+        TOP: "From r_t on, disc 1 has the energy to reach the top wall.",
+    }
+    for side, axis, place in (("h/2", "x", "above"), ("w/2", "y", "beside")):
+        end = f"no ball fits straight {place} the other one"
+        if "depth" not in shown.effects:
+            end = f"discs do not pass each other along {axis}"
+        meanings[side] = f"From σ = r1 + r2 = {side} on, {end}."
+    return " ".join([text, *(words for name, words in meanings.items() if name in shown.lines)])
+
+
+_RESIDUALS = " Residuals z beneath are in standard errors, with guide lines at ±2 and ±5."
+
+
+def sampled(shown):
+    """Return what figures of volumes explain in the same words."""
+    text = ERROR_BARS + _lines(shown)
+    if shown.has("field"):
+        text += " In a field volumes and areas are weighted with the invariant density."
+    return text + (_RESIDUALS if shown.any_row(is_judged) else "")
+
+
+def shells(shown):
+    """Return what figures of areas explain in the same words."""
+    text = sampled(shown)
+    if shown.any_row(is_judged):
+        text += """
+        They are taken from the exact expectation of the shell. Its thickness shifts the estimate
+        slightly off the line.
+        """
+    return text
+
+
+def simulated(shown):
+    """Return what figures of dynamics explain in the same words."""
+    text = ERROR_BARS + _lines(shown)
+    return text + (_RESIDUALS if shown.any_row(is_judged) else "")
+
+
+#: What captions of several figures share, {name: function of a ``Shown``}.
+NOTES = {"sampled": sampled, "shells": shells, "simulated": simulated}

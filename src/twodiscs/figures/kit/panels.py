@@ -9,6 +9,7 @@ panels and named above.
 import math
 import re
 from dataclasses import dataclass
+from itertools import cycle
 
 import numpy as np
 from matplotlib import rcParams
@@ -46,11 +47,15 @@ GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
 
 @dataclass(frozen=True)
 class Series:
-    """One quantity: its name in the legend, rows of a table, exact values along the curve."""
+    """One quantity: its name in the legend, rows of a table, exact values along the curve.
+
+    ``look`` is (colour, marker), if they are not those of the place among other series.
+    """
 
     name: str
     rows: list
     exact: np.ndarray
+    look: tuple | None = None
 
     def is_seen(self):
         """Say whether there is a positive value to be drawn."""
@@ -67,8 +72,8 @@ def panels(box, label, beneath=0, judged=True):
     line = 0 if is_short(box) else LINE
     under = LOWER + GAP if judged else 0
     figure = new_figure(beneath + BOTTOM + under + MAIN + TOP + line + room(box))
-    lower = add_panel(figure, beneath + BOTTOM, LOWER) if judged else None
-    main = add_panel(figure, beneath + BOTTOM + under, MAIN)
+    main = add_panel(figure, beneath + BOTTOM + under, MAIN, name="main")
+    lower = add_panel(figure, beneath + BOTTOM, LOWER, name="residuals") if judged else None
     main.set_ylabel(label)
     (lower or main).set_xlabel("radius $r$")
     if judged:
@@ -99,10 +104,13 @@ def mark(panels, ends):
     name_limits(panels[0], ends)
 
 
-def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT):
-    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches."""
+def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
+    """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
+
+    ``name`` is their label, by which they are found among the axes of the figure.
+    """
     across, up = figure.get_size_inches()
-    axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up), label=name)
     # The power of ten of an ordinate stands beside what is written above.
     axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
     return axes
@@ -185,7 +193,7 @@ def room(box, more=""):
 def effects(box):
     """Return how many discs a ``Box`` has, if not two, and its effects in symbols, texts."""
     texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
-    discs = [f"${box.discs}$ discs"] if box.discs > 2 else []
+    discs = [f"${box.discs}$ discs"] if "discs" in box.calls_for else []
     return [*discs, *(powers(EFFECTS[name].symbol.format(value)) for name, value in texts)]
 
 
@@ -237,12 +245,17 @@ def spread(wanted, widths, gap, most):
     return middles[::-1]
 
 
+def with_looks(series):
+    """Return ((colour, marker), ``Series``) for each of the ``series``."""
+    return [(part.look or look, part) for look, part in zip(cycle(SERIES), series, strict=False)]
+
+
 def draw_series(main, lower, radii, series, single=False):
     """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
 
     ``lower`` is None where there are no residuals.
     """
-    for (colour, marker), part in zip(SERIES, series, strict=False):
+    for (colour, marker), part in with_looks(series):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
         estimates(main, part.rows, colour, marker)
         if lower:
@@ -317,7 +330,7 @@ def legend(axes, box, series, loc, single=None, more=()):
     """
     loc = loc if box.is_plain else "best"
     handles, names = [], []
-    for (colour, marker), part in zip(SERIES, series, strict=False):
+    for (colour, marker), part in with_looks(series):
         style = open_symbol(colour, marker)
         if single and not np.any(np.isfinite(part.exact)):
             handles += axes.plot([], [], ls="", **style)

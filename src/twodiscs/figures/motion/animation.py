@@ -93,7 +93,7 @@ class Stage:
         inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
-        up = 0 if panels.is_short(box, radius) or box.discs > 2 else SIGN
+        up = 0 if panels.is_short(box, radius) or box.family == "many" else SIGN
         room = LARGER * panels.room(box, more) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
         self.figure.set_dpi(DPI)
@@ -305,7 +305,7 @@ def animate(box, radius, rows, paths):
             raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
     if not rows:
         raise InputError("trajectory must have rows, not none")
-    stage = (Stage if box.discs == 2 else StageOfMany)(box, radius, rows)
+    stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():
         artist.set_animated(True)
@@ -332,6 +332,35 @@ def animate(box, radius, rows, paths):
     for path in paths:
         with writing_to(path):
             first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
+
+
+def caption(shown):
+    """Return the caption."""
+    periodic = shown.effects.get("periodic")
+    if shown.many:
+        text = """
+        The discs as they move, coloured by their order along the longer side at the start. Traces
+        are the latest paths of the centres. Beneath are the positions along the longer side.
+        """
+    else:
+        text = """
+        The discs as they move. Traces are the latest paths of the centres. Beneath is the
+        separation of the discs against time.
+        """
+        if shown.any_row(lambda row: row["event"] in HOPS):
+            text += """
+            The picture stops at a hop, of the rarer kind if there are two, which changes the sign
+            of the separation.
+            """
+    if periodic:
+        text += "Discs that leave at a dotted end come in at the opposite one. "
+    if shown.many and periodic and many.along(shown.box) in periodic:
+        text += "Beneath, positions go on beyond the box. "
+    if shown.has("depth"):
+        text += "Balls are seen along z, so that they may cover each other. "
+    if shown.has("moment_of_inertia"):
+        text += "The spin of rough discs is not shown."
+    return text
 
 
 def _palette(image, kept):

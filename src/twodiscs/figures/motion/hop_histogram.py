@@ -71,6 +71,27 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    text = """
+    Density of the time t between successive hops, both in units of the mean time τ. The dashed line
+    is the exponential density of the same mean. Bins in (a) widen with t; (b) enlarges short times
+    in equal bins. Symbols tell the radii apart; error bars are one standard error.
+    """
+    if shown.many:
+        text += "Hops are those of any pair of discs. "
+    if shown.any_row(lambda row: row["exact_mean"] is not None):
+        text += "The mean time is exact. "
+    if shown.many and shown.any_row(lambda row: row["exact_mean"] is None):
+        text += "If no exact mean time is known it is measured. "
+    if shown.plain:
+        text += """
+        Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is undone
+        after one bounce: 3√2/16 divided by h − 2r for vertical hops, by w − 2r for horizontal ones.
+        """
+    return text
+
+
 def _mark_zero(axes, box, row, colour):
     """Mark the exact density at 0 where bins are fine enough to show it."""
     scene, hop = box.scene(row["radius"]), row["event"]

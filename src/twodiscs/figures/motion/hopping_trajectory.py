@@ -3,7 +3,6 @@
 import numpy as np
 
 from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.captions import shown_hop
 from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figure
 from twodiscs.figures.motion import many
 from twodiscs.model.events import AXIS
@@ -24,7 +23,7 @@ def draw(box, tables, radius=None):
     through the rows are the trajectory itself. More than two discs are drawn by
     ``many.world_lines``.
     """
-    if box.discs > 2:
+    if box.family == "many":
         return many.world_lines(box, tables["trajectory"], radius)
     hop = shown_hop(box)
     axis = AXIS[hop]
@@ -65,6 +64,47 @@ def draw(box, tables, radius=None):
     whole.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)  # above, beside the box
     panels.name_box(whole, box, more, up=above)
     return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    if shown.many:
+        return _caption_of_many(shown)
+    text = """
+    (a) One trajectory: the separation of the discs in one direction against time. (b) The shaded
+    stretch of time enlarged.
+    """
+    if shown.any_row(lambda row: row["event"] == shown_hop(shown.box)):
+        text += """
+        Dots in (a) and bars in (b) mark the hops, at which the separation changes sign. A hop is
+        often undone soon, before collisions have scrambled the motion.
+        """
+    return text
+
+
+def _caption_of_many(shown):
+    axis = many.along(shown.box)
+    hop = "horizontal_hop" if axis == "x" else "vertical_hop"
+    text = """
+    (a) The beginning of one trajectory: the positions of the discs along the longer side against
+    time, coloured by their order at the start. (b) The first part of it enlarged.
+    """
+    if axis in shown.effects.get("periodic", ""):
+        return text + "On the periodic axis positions go on beyond the box."
+    hops = shown.any_row(lambda row: row["event"] == hop)
+    return text + ("Discs hop at the points where lines cross." if hops else "")
+
+
+def shown_hop(box):
+    """Return the hop of two discs in a ``Box`` that the figure shows.
+
+    It is the one along the longer side, unless this axis is periodic.
+    """
+    if box is None:
+        return "horizontal_hop"
+    periodic = box.effects.get("periodic", "")
+    along_x = "y" in periodic or (box.width >= box.height and "x" not in periodic)
+    return "horizontal_hop" if along_x else "vertical_hop"
 
 
 def _crowded(hops, length, start, end):

@@ -18,7 +18,7 @@ def _panel(scene, more=""):
     """Return (figure, its axes) under the sides of the box, the radius, ``more`` and effects."""
     box, more = Box.of(scene), panels.of_radius(scene.radius) + more
     figure = new_figure(panels.BOTTOM + HEIGHT + TOP + panels.room(box, more))
-    axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT)
+    axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT, name="main")
     panels.name_box(axes, box, more)
     return figure, axes
 

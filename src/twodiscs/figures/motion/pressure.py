@@ -53,8 +53,28 @@ def draw(box, tables):
     panels.legend(main, box, series, "upper left", more=more)
     if summed:
         panels.letter(main, "a")
-        _virials(panels.add_panel(figure, panels.BOTTOM, VIRIALS), box, rows, radii)
+        beneath = panels.add_panel(figure, panels.BOTTOM, VIRIALS, name="virials")
+        _virials(beneath, box, rows, radii)
     return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    text = """
+    Force of disc 1 on a wall, divided by the force in an ideal gas of one particle (dotted): exact
+    (lines) and from the hits that dynamics counted (symbols), which transfer the same momentum on
+    average.
+    """
+    if shown.square and shown.shows("right_wall_time", "top_wall_time"):
+        text += "In a square box both pressures are the same. "
+    if shown.plain:
+        text += "Dashed lines in (a) are the leading laws below the largest radius. "
+    if shown.box is None or virial.weights(shown.box.tiny) is not None:
+        text += """
+        (b) The virials of the walls and of the collisions of the discs, divided by twice the mean
+        kinetic energy: those of the walls minus that of collisions are one at every radius.
+        """
+    return text
 
 
 def _series(name, box, event, rows, radii, factor):

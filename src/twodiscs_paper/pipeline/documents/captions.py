@@ -1,4 +1,4 @@
-"""Captions as the figures are: without what a figure of this box and of these tables has not."""
+"""Captions of figures that are built: their tables decide which symbols are explained."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from twodiscs_paper.catalogue import STUDY_TABLES
 
 
 def _rows(entry, results, scene):
-    """Return {quantity: rows} of what a figure shows, of the tables that there are."""
+    """Return {quantity: rows} of what a figure shows, from the tables that are built."""
     shown = {}
     for name in entry.tables:
         path = Path(results, "" if name in STUDY_TABLES else scene["name"], f"{name}.csv")
@@ -26,8 +26,8 @@ def _is_seen(row):
     return any(row.get(value) for value in ("exact", "estimate", "bound"))
 
 
-def said(entry, results, scene):
-    """Return what the caption of a figure says of it alone, and what it says as others do.
+def caption_parts(entry, results, scene):
+    """Return the caption of a figure alone, and what it has in common with other captions.
 
     ``results`` is the folder of all results; ``scene`` has the "name" of the figure's scene, the
     first one for a figure of none, its "width" and "height", and its "effects" if there are any,
@@ -38,9 +38,11 @@ def said(entry, results, scene):
     box = Box(scene["width"], scene["height"], effects, discs)
     rows = _rows(entry, results, scene)
     seen = frozenset(quantity for quantity, some in rows.items() if any(map(_is_seen, some)))
-    return entry.said(Shown(box, seen or None, [row for some in rows.values() for row in some]))
+    return entry.caption_parts(
+        Shown(box, seen or None, [row for some in rows.values() for row in some])
+    )
 
 
 def caption(entry, results, scene):
-    """Return the whole caption of a figure, see ``said``."""
-    return " ".join(filter(None, said(entry, results, scene)))
+    """Return the whole caption of a figure, see ``caption_parts``."""
+    return " ".join(filter(None, caption_parts(entry, results, scene)))

@@ -52,7 +52,7 @@ def described(name, path):
     if kind == ".csv" and stem in TABLES:
         text = TABLES[stem].meaning()
     elif "figures/" in name and stem in ENTRIES:
-        text = f"{ENTRIES[stem].title}. {ENTRIES[stem].caption}"
+        text = f"{ENTRIES[stem].title}. {ENTRIES[stem].caption()}"
     return {
         "name": name,
         "description": text,

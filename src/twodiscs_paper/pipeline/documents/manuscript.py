@@ -11,7 +11,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.documents.captions import said
+from twodiscs_paper.pipeline.documents.captions import caption_parts
 from twodiscs_paper.pipeline.documents.numbers.rounding import integer
 from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, printed, read, table_rows
 from twodiscs_paper.pipeline.results.provenance import commit, versions
@@ -23,10 +23,10 @@ CONSTANTS = {"dearer": COST_RATIO, "intervals": RETURNS, "passages_pause": QUIET
 def captions(results, scene):
     """Return {figure: (its own caption, the sentences that it shares or "", its key in ``NOTES``)}.
 
-    ``scene`` is the scene that the manuscript is about; see ``captions.said``.
+    ``scene`` is the scene that the manuscript is about; see ``captions.caption_parts``.
     """
     return {
-        name: (*said(entry, results, scene), entry.note)
+        name: (*caption_parts(entry, results, scene), entry.note)
         for name, entry in (FIGURES | STUDY_FIGURES).items()
     }
 

@@ -71,7 +71,7 @@ def figure(folder, path, scenes):
     scene = scenes.get(path.parts[0])
     main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
-    text = caption(entry, folder, about) if about else entry.full_caption()
+    text = caption(entry, folder, about) if about else entry.caption()
     if scene:
         text += f" Scene {scene['name']}, {scene['box']}."
     data = Path(folder, path).read_bytes()

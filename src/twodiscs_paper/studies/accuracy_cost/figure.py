@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.panels import add_panel, name_box
@@ -21,18 +21,11 @@ from twodiscs.figures.kit.style import (
 )
 from twodiscs.model.box import Box
 
-#: Inches: width of two columns, the height, margins and the gaps between the panels.
-WIDTH, HEIGHT = 7.0, 3.86
-LEFT, RIGHT, BOTTOM, TOP, GAP = 0.5, 0.1, 0.36, 0.36, 0.46
+#: Inches: width of two columns, the height of a panel, margins and gaps.
+WIDTH, HEIGHT = 7.0, 2.1
+LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.4, 0.55, 0.62
 
-#: The lower part of a panel that is split and the gap, in inches; the error there; the times.
-LOWER, BREAK = 1.25, 0.05
-SPLIT, TIMES = 3e-5, (1.5e-7, 2e-1)
-
-LEGEND = {
-    "fontsize": 6.5, "handlelength": 1.8, "borderaxespad": 0.3,
-    "title": "method: power of the time", "title_fontsize": 6.5, "alignment": "left",
-}  # fmt: skip
+LEGEND = {"fontsize": 6.8, "handlelength": 1.8, "borderaxespad": 0.3, "labelspacing": 0.2}
 
 #: No error below this one can be told from rounding.
 ROUNDING = 2.0**-53
@@ -42,11 +35,8 @@ LOOK = {
     "rejection": (BLUE, "o"),
     "conditioned": (GREEN, "^"),
     "sobol": (ORANGE, "D"),
-    "shell": (PURPLE, "o"),
-    "balanced_shell": (PURPLE, "*"),
+    "balanced_shell": (BLACK, "*"),
     "surface": (GREEN, "^"),
-    "quadrature": (VERMILLION, "s"),
-    "exact": (BLACK, "*"),
     "lockstep": (BLUE, "o"),
     "single_precision": (SKY, "D"),
     "scalar": (GREEN, "^"),
@@ -57,52 +47,45 @@ LOOK = {
 LEVEL = 1e-3
 DOTTED = (0, (1, 1.5))
 
-#: Shades of one colour for several settings, the coarsest first.
-SHADES = (1.0, 0.75, 0.55, 0.4, 0.3)
+#: Colour and marker of shells of each thickness, the thickest first.
+SHELLS = (("#3B0F4F", "o"), ("#7A2A7F", "s"), ("#B04F9E", "^"), (PURPLE, "v"))
 
 
 def draw(box=None, *, tables):
-    """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
+    """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
-    figure = new_figure(HEIGHT, WIDTH)
-    for i, drawn in enumerate((_volume, _area)):
-        upper = _panel(figure, i, BOTTOM + LOWER + BREAK, TOP)
-        lower = _panel(figure, i, BOTTOM, HEIGHT - BOTTOM - LOWER)
-        drawn((upper, lower), rows)
-        _split(upper, lower)
-    _times(_panel(figure, 2, BOTTOM, TOP), rows)
-    figure.axes[0].set_ylabel("relative error")
-    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=12)
-    for axes in figure.axes:
-        axes.xaxis.set_major_locator(LogLocator(numticks=12))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+    figure = new_figure(BOTTOM + 2 * HEIGHT + BETWEEN + TOP, WIDTH)
+    for i, drawn in enumerate((_volume, _area, _times, _quadrature)):
+        width = (WIDTH - LEFT - RIGHT - ACROSS) / 2
+        left, bottom = LEFT + i % 2 * (width + ACROSS), BOTTOM + (1 - i // 2) * (HEIGHT + BETWEEN)
+        axes = add_panel(figure, bottom, HEIGHT, left, width, drawn.__name__.strip("_"))
+        axes.set(yscale="log", ylabel="relative error")
+        drawing.label(axes, f"({'abcd'[i]})", (0, 1), (-28, 7), xycoords="axes fraction")
+        if drawn is not _quadrature:
+            axes.set(xscale="log", xlabel="processor time (s)")
+            axes.xaxis.set_major_locator(LogLocator(numticks=12))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+        drawn(axes, rows)
         axes.yaxis.set_minor_formatter(NullFormatter())
+    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=14)
     return figure
 
 
-def _panel(figure, i, bottom, top):
-    """Return new logarithmic axes in column ``i``, with room ``bottom`` and ``top`` in inches."""
-    width = (WIDTH - LEFT - RIGHT - 2 * GAP) / 3
-    left = LEFT + i * (width + GAP)
-    axes = add_panel(figure, bottom, HEIGHT - bottom - top, left, width)
-    axes.set(xscale="log", yscale="log", xlabel="processor time (s)")
-    if top == TOP:
-        drawing.label(axes, f"({'abc'[i]})", (0, 1), (-24, 7), xycoords="axes fraction", ha="left")
-    return axes
-
-
-def _split(upper, lower):
-    """Make two panels one, whose lower part has more decades to the inch."""
-    upper.set(xlim=TIMES, ylim=(SPLIT, 1), xlabel="")
-    lower.set(xlim=TIMES, ylim=(2e-17, SPLIT))
-    upper.spines.bottom.set_visible(False)
-    lower.spines.top.set_visible(False)
-    upper.tick_params(labelbottom=False, bottom=False, which="both")
-    lower.tick_params(top=False, which="both")
-    upper.yaxis.set_major_locator(LogLocator(numticks=6))
-    lower.yaxis.set_major_locator(FixedLocator([1e-16, 1e-13, 1e-10, 1e-7]))
-    lower.yaxis.set_minor_locator(NullLocator())
-    lower.legend(loc="lower right", bbox_to_anchor=(1, 0.1), **LEGEND)
+def caption(shown):
+    """Return the caption."""
+    return """
+    What a digit costs: true relative error against processor time on one core, root mean square
+    over repeated runs. Error bars are one standard error. Numbers in the legends are fitted powers
+    of the time. (a) Volume by rejection sampling, by the conditioned sampler and by scrambled Sobol
+    points. (b) Area of disc collisions by shells of thickness ε, whose bias (dotted) no work
+    removes, and of the ε at which bias and noise balance; by samples on the surface itself and by
+    Sobol points there. (c) Mean time between vertical hops by event-driven dynamics: one trajectory
+    at a time, many in lock step, and these in single precision; and by a search for overlaps every
+    Δt, whose error ∝ Δt (dotted) does not fall with time. The dashed line is the smallest error
+    of time steps with any Δt. The arrow shows how much sooner the lock step has the mean to 1e-3.
+    (d) Gauss quadrature along the arc against the number of its nodes, and exact evaluation; the
+    legend has their processor times.
+    """
 
 
 def _of(rows, part, method, **where):
@@ -122,72 +105,74 @@ def _slope(row):
     return f"${row['slope']:.2f}({max(1, round(100 * row['slope_stderr']))})$"
 
 
-def _points(axes, rows, method, label=None, shade=1.0, style="-", full=False):
+def _points(axes, rows, look, label=None, style="-", full=False):
     """Draw the errors of one method: root mean square, with bars for the spread between runs."""
-    colour, marker = LOOK[method]
+    colour, marker = look
     x = np.array([row["seconds"] for row in rows])
     y = np.maximum([row["error"] for row in rows], ROUNDING)
     filled = full or marker == "*"
     axes.plot(
         x, y, marker=marker, ms=6 if marker == "*" else SIZES[marker],
-        ls=style if len(rows) > 1 else "", lw=0.7, color=colour, alpha=shade, label=label,
+        ls=style if len(rows) > 1 else "", lw=0.7, color=colour, label=label,
         mfc=colour if filled else "white", mew=0.0 if marker == "*" else 0.6,
     )  # fmt: skip
-    if rows[0]["repetitions"] and len(rows) > 1 and method != "quadrature":
+    if rows[0]["repetitions"] and len(rows) > 1:
         # The mean over R runs is known √R times better than one of them.
         bars = [row["spread"] / math.sqrt(row["repetitions"]) for row in rows]
-        axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, alpha=shade, lw=0.6)
+        axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, lw=0.6)
 
 
-def _rest(panels, rows, part):
-    """Draw quadrature with its numbers of nodes, and the exact evaluation."""
-    (nodes,) = _of(rows, part, "quadrature").values()
-    (exact,) = _of(rows, part, "exact").values()
-    colour, digits = LOOK["quadrature"][0], abs(nodes[0]["slope"])
-    for axes, (high, low) in zip(panels, ((1, SPLIT), (SPLIT, 0)), strict=True):
-        _points(axes, nodes, "quadrature", f"quadrature, {digits:.1f} digits/node")
-        _points(axes, exact, "exact", "exact evaluation")
-        for row in nodes:
-            if row["work"] in (2, 4, 6, 8) and low < max(row["error"], ROUNDING) < high:
-                at = row["seconds"], max(row["error"], ROUNDING)
-                drawing.label(axes, f"{row['work']}", at, (-6, 0), color=colour, fontsize=6.5)
-
-
-def _volume(panels, rows):
+def _volume(axes, rows):
     radii = sorted({row["radius"] for row in rows if row["part"] == "volume"})
     for radius, style, full in zip(radii, ("-", (0, (4, 2))), (False, True), strict=False):
         for method in ("rejection", "conditioned"):
             (series,) = _of(rows, "volume", method, radius=radius).values()
             label = f"{method}, $r={radius:g}$: {_slope(series[0])}"
-            for axes in panels:
-                _points(axes, series, method, label, style=style, full=full)
+            _points(axes, series, LOOK[method], label, style, full)
     (series,) = _of(rows, "volume", "sobol").values()
-    for axes in panels:
-        _points(axes, series, "sobol", f"Sobol points: {_slope(series[0])}")
-    _rest(panels, rows, "volume")
-    _title(panels[0], f"volume, $r={radii[0]:g}$")
+    _points(axes, series, LOOK["sobol"], f"Sobol points, $r={radii[0]:g}$: {_slope(series[0])}")
+    axes.set(xlim=(3e-7, 0.2), ylim=(5e-5, 1))
+    axes.legend(loc="lower left", **LEGEND)
+    _title(axes, "volume")
 
 
-def _area(panels, rows):
-    shells = _of(rows, "area", "shell")
-    (nodes,) = _of(rows, "area", "quadrature").values()
-    beside = 1.3 * max(row["seconds"] for row in nodes if row["error"] > SPLIT)
-    for i, (shade, (thickness, series)) in enumerate(zip(SHADES, shells.items(), strict=False)):
-        for axes in panels:
-            _points(axes, series, "shell", None if i else "shells", shade)
-            axes.axhline(series[0]["floor"], color=PURPLE, lw=0.5, ls=DOTTED, alpha=shade)
-        text = rf"$\varepsilon={thickness:.2g}$"
-        style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": PURPLE}
-        drawing.label(panels[0], text, (beside, series[0]["floor"]), (0, 0.5), **style)
+def _area(axes, rows):
+    shells = _of(rows, "area", "shell").items()
+    for look, (thickness, series) in zip(SHELLS, shells, strict=False):
+        _points(axes, series, look, rf"shells, $\varepsilon={thickness:.2g}$")
+        axes.axhline(series[0]["floor"], color=look[0], lw=0.6, ls=DOTTED)
     best = [row for series in _of(rows, "area", "balanced_shell").values() for row in series]
-    names = {"surface": "on the surface", "sobol": "same, Sobol"}
-    for axes in panels:
-        _points(axes, best, "balanced_shell", rf"best $\varepsilon$: {_slope(best[0])}")
-        for method, name in names.items():
-            (series,) = _of(rows, "area", method).values()
-            _points(axes, series, method, f"{name}: {_slope(series[0])}")
-    _rest(panels, rows, "area")
-    _title(panels[0], f"area of collisions, $r={best[0]['radius']:g}$")
+    _points(axes, best, LOOK["balanced_shell"], rf"best $\varepsilon$: {_slope(best[0])}")
+    for method, name in (("surface", "on the surface"), ("sobol", "same, Sobol")):
+        (series,) = _of(rows, "area", method).values()
+        _points(axes, series, LOOK[method], f"{name}: {_slope(series[0])}")
+    axes.set(xlim=(1e-5, 20), ylim=(2e-4, 0.2))
+    axes.legend(loc="upper right", **LEGEND)
+    _title(axes, f"area of collisions, $r={best[0]['radius']:g}$")
+
+
+def _quadrature(axes, rows):
+    """Draw the errors of quadrature over the number of its nodes, and of the exact evaluation."""
+    parts = (("volume", "volume", BLUE, "o"), ("area", "area", VERMILLION, "s"))
+    for part, name, colour, marker in parts:
+        (nodes,) = _of(rows, part, "quadrature").values()
+        (exact,) = _of(rows, part, "exact").values()
+        error = np.maximum([row["error"] for row in nodes], ROUNDING)
+        micro = 1e6 * np.median([row["seconds"] for row in nodes])
+        axes.plot(
+            [row["work"] for row in nodes], error, marker=marker, ms=SIZES[marker], mfc="white",
+            color=colour, lw=0.7, label=rf"{name}, quadrature: ${micro:.1f}\,\mu$s",
+        )  # fmt: skip
+        micro = 1e6 * exact[0]["seconds"]
+        axes.axhline(
+            max(exact[0]["error"], ROUNDING), color=colour, lw=0.8, ls=(0, (4, 2)),
+            label=rf"{name}, exact evaluation: ${micro:.0f}\,\mu$s",
+        )  # fmt: skip
+    axes.set(xlabel="number of nodes", ylim=(2e-17, 1))
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.legend(loc="upper right", **LEGEND)
+    _title(axes, f"quadrature, $r={nodes[0]['radius']:g}$")
 
 
 def _times(axes, rows):
@@ -199,20 +184,18 @@ def _times(axes, rows):
     }
     for method, name in names.items():
         (series,) = _of(rows, "time", method, quantity=quantity).values()
-        _points(axes, series, method, f"{name}: {_slope(series[0])}")
-    for shade, (step, series) in zip(
-        SHADES, _of(rows, "time", "time_step", quantity=quantity).items(), strict=False
-    ):
-        label = r"time steps $\Delta t$" if shade == SHADES[0] else None
-        _points(axes, series, "time_step", label, shade)
+        _points(axes, series, LOOK[method], f"{name}: {_slope(series[0])}")
+    steps = _of(rows, "time", "time_step", quantity=quantity).items()
+    for i, (step, series) in enumerate(steps):
+        _points(axes, series, LOOK["time_step"], None if i else r"time steps $\Delta t$")
         if series[0]["floor"]:
-            axes.axhline(series[0]["floor"], color=VERMILLION, lw=0.5, ls=DOTTED, alpha=shade)
+            axes.axhline(series[0]["floor"], color=VERMILLION, lw=0.6, ls=DOTTED)
         at = series[-1]["seconds"], series[-1]["error"]
         text = rf"$\Delta t=2^{{{round(math.log2(step))}}}$"
-        style = {"ha": "left", "va": "bottom", "fontsize": 6.5, "color": VERMILLION}
+        style = {"ha": "left", "va": "bottom", "fontsize": 6.8, "color": VERMILLION}
         drawing.label(axes, text, at, (5, 1), **style)
     _gain(axes, rows, quantity)
-    axes.set(xlim=(4e-4, 200), ylim=(2e-5, 0.5))
+    axes.set(xlim=(4e-4, 200), ylim=(1e-5, 0.4))
     axes.legend(loc="lower left", **LEGEND)
     _title(axes, f"mean time of vertical hops, $r={series[0]['radius']:g}$")
 

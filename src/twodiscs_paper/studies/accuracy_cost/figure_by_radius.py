@@ -9,71 +9,99 @@ from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SIZES, SKY, new_figure
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 
-#: Inches: the figure; the height and the widths of the panels of the times and of single precision.
-WIDTH, HEIGHT, TIMES, SINGLE = 7.0, 2.1, 3.72, 2.1
+#: Inches: the figure; heights of the panels of the times and of their ratios to those of a Poisson
+#: process; the widths of these and of single precision.
+WIDTH, TIMES, RATIOS, ACROSS, SINGLE = 7.0, 2.1, 1.0, 3.72, 2.1
 
 #: The least distance of a curve from where its event ends, relatively.
 CLOSEST = 1e-3
 
 
 def draw(box=None, *, tables):
-    """Draw the rows of accuracy_cost.csv; ``box`` is not used, for the table has its own box."""
+    """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
-    figure = new_figure(panels.BOTTOM + HEIGHT + panels.TOP, WIDTH)
-    _times(panels.add_panel(figure, panels.BOTTOM, HEIGHT, width=TIMES), rows)
+    bottom, height = panels.BOTTOM, RATIOS + panels.GAP + TIMES
+    figure = new_figure(bottom + height + panels.TOP, WIDTH)
+    upper = bottom + RATIOS + panels.GAP
+    times = panels.add_panel(figure, upper, TIMES, width=ACROSS, name="times by radius")
+    ratios = panels.add_panel(figure, bottom, RATIOS, width=ACROSS, name="ratios")
+    _times(times, ratios, [row for row in rows if row["part"] == "radius"])
     left = WIDTH - panels.RIGHT - SINGLE
-    _single(panels.add_panel(figure, panels.BOTTOM, HEIGHT, left, SINGLE), rows)
+    single = panels.add_panel(figure, bottom, height, left, SINGLE, "single precision")
+    _single(single, rows)
+    for axes, name in zip(figure.axes, "abc", strict=True):
+        panels.letter(axes, name)
     return figure
 
 
-def _times(axes, rows):
-    """Draw measured times (symbols) and those of a Poisson process (lines) for every event.
-
-    Those of strips are grey inside.
+def caption(shown):
+    """Return the caption."""
+    return """
+    (a) Processor time for a relative error of 1e-3 in each mean time, against the radius: from the
+    speed and the errors of a pilot (open symbols), by a run to that error (full symbols), and
+    predicted from the exact rates and one speed for a Poisson process (lines). Hops near the radius
+    where they are blocked are counted from initial states in a strip next to their surface (grey),
+    at a price that stays flat, here up to a relative distance of 1e-6. (b) The times of pilots
+    divided by those of a Poisson process. This ratio is the variance of the number of events
+    divided by its mean, up to the speed at that radius: below one events come at more regular
+    times than in a Poisson process, as hits of any wall do, and above one in clusters. (c) Error of
+    the mean time between disc collisions if there is little room left, in double and in single
+    precision: lengths rounded to 24 bits make another room (dashed).
     """
-    rows = [row for row in rows if row["part"] == "radius"]
+
+
+def _times(axes, ratios, rows):
+    """Draw measured times (symbols) and those of a Poisson process (lines), and their ratios.
+
+    Times of strips are grey inside. Ratios are those of pilots, which use no strips.
+    """
     box = Box(rows[0]["width"], rows[0]["height"])
     ends = limits(box)
     predicted = [row for row in rows if row["method"] == "poisson"]
     speed = np.median([row["work"] / row["seconds"] for row in predicted])
-    error = predicted[0]["error"]
+    counts = speed * predicted[0]["error"] ** 2
     for event, (colour, marker) in LOOKS.items():
-        radii, seconds = _prediction(box, event, speed * error**2)
-        axes.plot(radii, seconds, color=colour, zorder=2)
+        radii = _radii(box, event)
+        axes.plot(radii, _prediction(box, event, radii, counts), color=colour, zorder=2)
         for method, inside in (("lockstep", "white"), ("strip", "0.7"), ("paid", colour)):
-            points = [
-                (row["radius"], row["seconds"])
-                for row in rows
-                if row["method"] == method and row["quantity"] == f"{event}_time"
+            own = [
+                row for row in rows if (row["method"], row["quantity"]) == (method, f"{event}_time")
             ]
-            if points:
-                axes.plot(
-                    *zip(*points, strict=True), ls="", marker=marker, color=colour, zorder=3,
-                    mfc=inside, ms=SIZES[marker],
-                    label=name_of(event) if method == "lockstep" else None,
-                )  # fmt: skip
+            style = {"ls": "", "marker": marker, "color": colour, "mfc": inside, "zorder": 3}
+            style["ms"] = SIZES[marker]
+            here = np.array([row["radius"] for row in own])
+            seconds = np.array([row["seconds"] for row in own])
+            label = name_of(event) if method == "lockstep" else None
+            axes.plot(here, seconds, label=label, **style)
+            if method == "lockstep":
+                ratios.plot(here, seconds / _prediction(box, event, here, counts), **style)
     for inside, name in (("0.7", "from strips"), (BLACK, "at this error")):
         axes.plot([], [], ls="", marker="o", color=BLACK, mfc=inside, ms=SIZES["o"], label=name)
     axes.plot([], [], color=BLACK, label="Poisson process")
-    for radius, _ in ends:
-        axes.axvline(radius, color=GREY, lw=0.5, ls=(0, (5, 1.5, 1, 1.5)), zorder=0)
-    axes.set(yscale="log", xlim=(0, 1.02 * ends[-1][0]), ylim=(5e-4, 1e4), xlabel="radius $r$")
+    panels.mark((axes, ratios), ends)
+    axes.set(yscale="log", ylim=(5e-4, 1e4))
+    axes.tick_params(labelbottom=False)
     axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
-    panels.name_limits(axes, ends)
     panels.name_box(axes, box)
-    panels.letter(axes, "a")
+    ratios.axhline(1, color=BLACK)
+    ratios.set(yscale="log", xlabel="radius $r$", ylabel="time / Poisson")
+    panels.label_decades(ratios.yaxis, 100)
 
 
-def _prediction(box, event, counts):
-    """Return (radii, seconds) along the curve; ``counts`` is the events a second, over error⁻²."""
+def _radii(box, event):
+    """Return radii that are dense where the event ends."""
     last = box.threshold(event)
     near = last * (1 - np.geomspace(CLOSEST, 0.1, 40))
-    radii = np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
-    scenes = [box.scene(radius) for radius in radii]
+    return np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
+
+
+def _prediction(box, event, radii, counts):
+    """Return the seconds at ``radii``; ``counts`` is the events a second, over error⁻²."""
+    scenes = [box.scene(float(radius)) for radius in radii]
     total = [event_rate(scene) for scene in scenes]
     times = [mean_times(scene)[event] / scene.multiplicity(event) for scene in scenes]
-    return radii, np.array(total) * np.array(times) / counts
+    return np.array(total) * np.array(times) / counts
 
 
 def _single(axes, rows):
@@ -105,4 +133,3 @@ def _single(axes, rows):
     axes.set_xlabel(r"room left, $1-r/r_{\mathrm{max}}$")
     axes.set_ylabel("relative error")
     axes.legend(loc="upper right")
-    panels.letter(axes, "b")

@@ -47,6 +47,21 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    return """
+    (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ; for an
+    exponential distribution it would be the dashed line. It starts from the exact density at 0
+    (thick dashes), of a hop that is undone after one bounce. It jumps at the time from which both
+    discs may have bounced, t = √2 (h − 2r) for vertical hops. Bars are constant rates fitted to all
+    intervals after four mean times; they are dotted if the rate is not constant there (by χ² or by
+    a trend, at the level of 1e-3). The rates of small discs fall on, towards the rate of a cubic
+    tail, 3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open symbols), and
+    what follows from the intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of variation.
+    Error bars are one standard error.
+    """
+
+
 def _rates(axes, rows):
     """Draw the hazard rates of the first radii, with the fitted rates and the limiting laws."""
     event = rows[0]["event"]
@@ -78,7 +93,7 @@ def _rates(axes, rows):
         zero = mean * tails.density_at_zero(box.scene(radius), event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), label="exponential")
-    for ls, name in (("-", "one rate fits"), ((0, (1, 1)), "one rate fitted, refused")):
+    for ls, name in (("-", "constant rate"), ((0, (1, 1)), "constant rate, rejected")):
         axes.plot([], [], color=GREY, lw=1.4, ls=ls, label=name)
     late = np.linspace(6, LONGEST, 40)
     axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
@@ -107,7 +122,9 @@ def _passages(axes, rows):
         )
         style |= {"markerfacecolor": colour, "markersize": 0.4 * SIZES[marker]}
         axes.errorbar(radius, other / mean, spread / mean, ls="", elinewidth=0.5, zorder=4, **style)
-    axes.plot([], [], ls="", marker=".", color=BLACK, label=r"$(1+\mathrm{CV}^2)/2$")
+    axes.plot(
+        [], [], ls="", marker=".", color=BLACK, label=r"from intervals, $(1+\mathrm{CV}^2)/2$"
+    )
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     axes.set(xlabel="radius $r$", ylabel=r"first passage $\langle F\rangle/\tau$")
     axes.legend(loc="upper left")

@@ -14,7 +14,6 @@ from twodiscs.figures.kit.style import (
     GREY,
     ORANGE,
     PURPLE,
-    SKY,
     VERMILLION,
     new_figure,
 )
@@ -25,12 +24,12 @@ from twodiscs_paper.studies.effects.curves import SHOWN_EVENTS
 #: for its names; margins, gaps, the panels of the curves and of the residuals, the legend.
 WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
-MAIN, LOWER, LEGEND = 1.95, 0.75, 0.36
+MAIN, LOWER, LEGEND = 1.95, 0.75, 0.5
 
 #: What is called otherwise here.
 NAMES_OF = {"any_wall": "wall hits"}
 
-COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 
 #: Ratios that are shown; beyond are the ends of the ranges of radii.
@@ -68,9 +67,28 @@ def draw(box=None, *, tables):
             main.set_ylabel(r"mean time / that of plain discs")
             lower.set_ylabel("residual $z$")
     _costs(figure, tables["effects_cost"], looks)
-    _legend(figure, boxes, looks)
-    panels.name_box(figure.axes[0], plain, up=24)
+    _legend(figure, boxes, looks, any(row["stderr"] is None for row in rows if row["estimate"]))
+    panels.name_box(figure.axes[0], plain, up=30)
     return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    text = """
+    Mean times of scenes with one effect or two, divided by those of plain discs in the same box at
+    the same radius (of disc 1) and total energy, up to the largest radius of plain discs: exact
+    (lines) and by event-driven molecular dynamics (symbols), for (a) vertical hops, (b) disc
+    collisions and (c) hits of any disc on any wall. Error bars are one standard error; they are
+    hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of
+    plain discs become blocked, and their largest radius. The torus has neither hops nor walls.
+    Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor time
+    per wall hit or disc collision at r = 0.2, divided by that of plain discs with all events
+    counted. To leave a periodic cell takes as much time as an event, but is not counted.
+    """
+    return text + shown.if_any(
+        lambda row: row.get("estimate") is not None and row.get("stderr") is None,
+        "Crosses are estimates from too few events for an error bar.",
+    )
 
 
 def _look(i):
@@ -110,22 +128,26 @@ def _costs(figure, rows, looks):
     axes = panels.add_panel(figure, BOTTOM, LOWER + JOINT + MAIN, left, COST)
     shown = [row for row in rows if row["variant"] != "plain"]
     for i, row in enumerate(shown):
-        colour, marker = looks.get(row["variant"], (BLACK, "o"))
+        colour, marker = looks.get(row["variant"], (GREY, "o"))
         axes.plot([1, 1 / row["ratio"]], [i, i], color=colour)
         axes.plot(1 / row["ratio"], i, **panels.open_symbol(colour, marker))
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
     names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in shown]
     axes.set_yticks(range(len(shown)), names)
     longest = max(1 / row["ratio"] for row in rows)
-    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, 1.12 * longest), xlabel="relative to plain")
+    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, 1.12 * longest), xlabel="time / that of plain")
     axes.tick_params(axis="y", length=0)
     _title(axes, "d", "time per event")
 
 
-def _legend(figure, boxes, looks):
+def _legend(figure, boxes, looks, rough):
+    """Name the scenes; ``rough`` says whether there are estimates without an error bar."""
     handles = [
         figure.axes[0].plot([], [], **panels.open_symbol(*look), ls="-")[0]
         for look in looks.values()
     ]
     names = [f"{name}: {', '.join(panels.effects(box))}" for name, box in boxes.items()]
+    if rough:
+        handles += figure.axes[0].plot([], [], "x", color=GREY)
+        names.append("too few events for an error bar")
     figure.legend(handles, names, loc="upper center", ncols=3, columnspacing=2.0)

@@ -34,19 +34,6 @@ STUDY = Study(
         "effects": Entry(
             "What each effect does",
             DYNAMICS,
-            """
-            Mean times of scenes with one effect or two, over those of plain discs in the
-            same box at the same radius (of disc 1) and total energy, up to the largest
-            radius of these: exact (lines) and by event-driven molecular dynamics
-            (symbols; error bars of one standard error are hidden where smaller), for (a)
-            vertical hops, (b) disc collisions and (c) hits of any disc on any wall.
-            Vertical lines mark h/4 and w/4, where hops of plain discs become blocked, and
-            their largest radius. The torus has neither hops nor walls. Residuals z
-            beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor
-            time per wall hit or disc collision at r = 0.2, relative to that of plain
-            discs with all events watched; to leave a periodic cell takes as much time as
-            an event, but is none.
-            """,
             "twodiscs_paper.studies.effects.figure",
             tables=("effects", "effects_cost", "effects_curves"),
         ),

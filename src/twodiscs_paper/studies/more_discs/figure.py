@@ -47,6 +47,20 @@ def draw(box, tables):
     return figure
 
 
+def caption(shown):
+    """Return the caption."""
+    return """
+    Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs: exact if a
+    theory is known (lines), by Monte Carlo (dotted) and by event-driven molecular dynamics
+    (symbols). Error bars are one standard error; they are hidden if they are smaller than the
+    symbols. Collisions and hops are those of any pair of discs, wall hits those of one disc at one
+    wall. Two discs have the theory of the box, three discs an exact quadrature; at r = 0.28 only
+    neighbours touch, and a transfer operator gives every N. Times beyond 1000 are not shown. (d)
+    Residuals z of the dynamics in standard errors, from exact values, or from Monte Carlo if no
+    exact value is known; radii stand side by side.
+    """
+
+
 def _times(axes, rows):
     for event, (colour, marker) in LOOKS.items():
         own = [

@@ -1,4 +1,4 @@
-"""Which hops are passages, and diffusion by them."""
+"""Which hops are passages: the transmission coefficient, and how it scales at the threshold."""
 
 import numpy as np
 
@@ -23,8 +23,8 @@ from twodiscs.model.events import AXIS
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 
-#: Inches: the figure across, heights of the panels and of that of the residuals, gaps, room above.
-WIDTH, HEIGHT, RESIDUALS, GAP, TOP = 7.0, 2.1, 0.8, 0.4, 0.22
+#: Inches: the figure across, heights of the three rows of panels, gaps, room above.
+WIDTH, CURVES, POWERS, RESIDUALS, GAP, TOP = 7.0, 1.7, 1.9, 0.8, 0.4, 0.24
 
 #: Halvings of the distance whose κ(t) is shown: of smooth discs, and of rough ones.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
@@ -35,58 +35,81 @@ LOOKS = {
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
-#: Files of more than two discs.
-FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
-
 #: Boxes and hops of smooth discs after the first one.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv; those of κ(t) and diffusion are in the first scene."""
+    """Draw the rows of passages.csv; those of κ(t) are in the first scene."""
     rows = tables["passages"]
-    half = WIDTH / 2 - panels.LEFT - panels.RIGHT
-    bottom, right = panels.BOTTOM + RESIDUALS + GAP, WIDTH / 2 + panels.LEFT
-    upper = bottom + HEIGHT + GAP
-    figure = new_figure(upper + HEIGHT + TOP, WIDTH)
-    curves = panels.add_panel(figure, upper, HEIGHT, width=half)
-    powers = panels.add_panel(figure, upper, HEIGHT, right, half)
-    times = panels.add_panel(figure, bottom, HEIGHT, width=half)
-    diffusion = panels.add_panel(figure, bottom, HEIGHT, right, half)
     whole = WIDTH - panels.LEFT - panels.RIGHT
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=whole)
-    all_axes = (curves, powers, times, diffusion, lower)
-    for axes, name in zip(all_axes, "abcde", strict=True):
+    third = (WIDTH - 3 * (panels.LEFT + panels.RIGHT)) / 3
+    middle = panels.BOTTOM + RESIDUALS + GAP
+    upper = middle + POWERS + GAP
+    figure = new_figure(upper + CURVES + TOP, WIDTH)
+    curves = panels.add_panel(figure, upper, CURVES, width=whole, name="curves")
+    across = [panels.LEFT + i * WIDTH / 3 for i in range(3)]
+    smooth, rough, times = (
+        panels.add_panel(figure, middle, POWERS, left, third, name)
+        for left, name in zip(across, ("smooth", "rough", "times"), strict=True)
+    )
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=whole, name="residuals")
+    for axes, name in zip(figure.axes, "abcde", strict=True):
         panels.letter(axes, name)
     if not rows:
         panels.name_box(curves, box, ": no hop becomes blocked")
-        for axes in all_axes:
+        for axes in figure.axes:
             axes.set_axis_off()
         return figure
-    first = next((row["scene"] for row in rows if row["scene"]), None)
-    own = [row for row in rows if first and row["scene"] == first]
-    main = Box(own[0]["width"], own[0]["height"]) if own else box
+    main, own = first_scene(rows, box)
     hop, limit = [*thresholds(main).items()][-1]
-    ours = _of(own, event=hop, periodic=None)
+    ours = of(own, event=hop, periodic=None)
     _curves(curves, main, hop, limit, ours)
-    _powers(powers, rows, first, hop)
+    _smooth(smooth, rows, ours)
+    _rough(rough, ours)
     _times(times, main, hop, limit, ours)
-    _diffusion(diffusion, rows)
-    _residuals(lower, rows)
-    panels.name_box(curves, main, f",  (a, c) {name_of(hop)}")
+    residuals(lower, rows, RESIDUAL_LOOKS)
+    panels.name_box(curves, main, f",  (a, c, d) {name_of(hop)}")
     return figure
 
 
-def _of(rows, **wanted):
+def caption(shown):
+    """Return the caption."""
+    return """
+    Transmission of hops near the radius r_c at which they become blocked, at distances
+    δ = (r_c − r)/r_c that are halved from one to the next. (a) Transmission coefficient κ(t): the
+    correlation between the order of the discs at a time t after a hop and the direction of the hop,
+    averaged over states on the surface of the hop, for smooth discs (circles) and rough ones
+    (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare
+    it has a plateau, which falls as passages follow one another (lines): κ is the fraction of odd
+    clusters among all hops, from independent runs. (b) Smooth discs: 1 − κ falls about as ∛δ, so
+    that transition state theory becomes exact at the threshold. (c) Rough discs: κ vanishes, and
+    the power depends on their moment of inertia I, in units of mr². (d) Exact mean time τ between
+    hops (lines, ∝ δ⁻² close to the threshold) and mean time τ/κ between passages (symbols). The
+    legend has the powers of δ that are fitted to all points shown. (e) Residuals z in standard
+    errors, from exact values or between two estimators. Error bars are one standard error.
+    """
+
+
+def first_scene(rows, box):
+    """Return (box of the first scene, its rows); the ``box`` that is given if there are none."""
+    first = next((row["scene"] for row in rows if row["scene"]), None)
+    own = [row for row in rows if first and row["scene"] == first]
+    return (Box(own[0]["width"], own[0]["height"]) if own else box), own
+
+
+def of(rows, **wanted):
     """Return those of ``rows`` that have these values."""
     return [row for row in rows if all(row[k] == v for k, v in wanted.items())]
 
 
-def _columns(rows, *names):
+def columns(rows, *names):
+    """Return the columns with these ``names``, as arrays."""
     return np.array([[row[name] for row in rows] for name in names], float)
 
 
-def _points(axes, x, y, error, look, label=None, filled=False):
+def points(axes, x, y, error, look, label=None, filled=False):
+    """Draw symbols of one ``look`` with error bars."""
     colour, marker = look
     style = panels.open_symbol(colour, marker, 0.85)
     if filled:
@@ -102,22 +125,22 @@ def _curves(axes, box, hop, limit, rows):
     for inertia, halvings in SHOWN.items():
         colour, marker = LOOKS[inertia]
         for n in halvings:
-            here = _of(rows, moment_of_inertia=inertia, distance=2.0**-n)
-            seen = _of(here, quantity="correlation")
+            here = of(rows, moment_of_inertia=inertia, distance=2.0**-n)
+            seen = of(here, quantity="correlation")
             if not seen:
                 continue
             scene = box.scene(seen[0]["radius"])
             unit = box_time(scene, hop)
-            time, value, error = _columns(seen, "time", "estimate", "stderr")
+            time, value, error = columns(seen, "time", "estimate", "stderr")
             axes.errorbar(
                 time / unit, value, error, color=colour, marker=marker, markersize=1.6, lw=0.5,
                 elinewidth=0.5, zorder=3,
             )  # fmt: skip
             drawing.label(
-                axes, f"$2^{{-{n}}}$", (time[-1] / unit, value[-1]), (3, 0), ha="left",
-                color=colour, fontsize=6.5,
+                axes, rf"$\delta=2^{{-{n}}}$", (time[-1] / unit, value[-1]), (3, 1.5 * (n == 12)),
+                ha="left", color=colour, fontsize=6.5,
             )  # fmt: skip
-            for row in _of(here, quantity="coefficient"):
+            for row in of(here, quantity="coefficient"):
                 late = np.geomspace(0.5, 10, 30)
                 fall = np.exp(-2 * row["estimate"] * late * unit / row["exact_mean"])
                 axes.plot(late, row["estimate"] * fall, color=BLACK, lw=0.7, zorder=5)
@@ -130,44 +153,53 @@ def _curves(axes, box, hop, limit, rows):
         axes.plot([], [], color=colour, marker=marker, markersize=2.5, lw=0.6, label=name)
     axes.plot([], [], color=BLACK, lw=0.7, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters")
     axes.plot([], [], color=BLACK, lw=0.8, ls=(0, (3, 1.5)), label="exact slope at 0")
-    axes.set(xscale="log", xlim=(0.09, 15), ylim=(-0.02, 1.32))
+    axes.set(xscale="log", xlim=(0.095, 13.5), ylim=(0, 1.06))
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.set(xlabel="time $t$ over the range along the hop", ylabel=r"transmission $\kappa(t)$")
-    axes.set_yticks([0, 0.2, 0.4, 0.6, 0.8, 1])
-    axes.legend(loc="upper left", ncols=2, fontsize=6.6)
+    axes.set(xlabel="time $t$ / range along the hop", ylabel=r"transmission $\kappa(t)$")
+    # Above the panel, beside the name of the box.
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=4, columnspacing=1.2)
 
 
-def _powers(axes, rows, first, hop):
-    """Draw 1 − κ of smooth discs and κ of rough ones."""
-    seen = [row for row in rows if row["quantity"] == "coefficient"]
+def _smooth(axes, rows, ours):
+    """Draw 1 − κ of smooth discs at every threshold of every scene."""
     others = iter(OTHERS)
-    kinds = dict.fromkeys((r["scene"], r["event"], r["moment_of_inertia"]) for r in seen)
-    for scene, event, inertia in sorted(kinds, key=lambda kind: kind[2] or 0):
-        own = _of(seen, scene=scene, event=event, moment_of_inertia=inertia)
-        if inertia is not None and (scene, event) != (first, hop):
-            continue
-        distance, value, error = _columns(own, "distance", "estimate", "stderr")
-        if inertia is None:
-            box = Box(own[0]["width"], own[0]["height"])
-            where = f"${panels.sides(box)}$, ${QUARTERS[AXIS[event]]}$"
-            look = LOOKS[None] if (scene, event) == (first, hop) else next(others)
-            _points(axes, distance, 1 - value, error, look, rf"$1-\kappa$, {where}")
-        else:
-            name = rf"$\kappa$, $I={inertia:g}$"
-            _points(axes, distance, value, error, LOOKS[inertia], name)
-    for power, name, start, height in (
-        (1 / 3, r"$\delta^{1/3}$", 5e-5, 0.05),
-        (1 / 2, r"$\delta^{1/2}$", 2.5e-3, 0.009),
-    ):
-        x = np.array([start, 30 * start])
-        axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
-        end = (x[1], height * 30**power)
-        drawing.label(axes, name, end, (3, 0), ha="left", color=GREY)
-    axes.set(xscale="log", yscale="log", xlim=(4e-5, 0.25), ylim=(0.005, 8))
+    seen = of(rows, quantity="coefficient", moment_of_inertia=None)
+    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in seen):
+        own = of(seen, scene=scene, event=event)
+        distance, value, error = columns(own, "distance", "estimate", "stderr")
+        where = (
+            f"${panels.sides(Box(own[0]['width'], own[0]['height']))}$, ${QUARTERS[AXIS[event]]}$"
+        )
+        look = LOOKS[None] if own[0] in ours else next(others)
+        points(axes, distance, 1 - value, error, look, where)
+    _power(axes, 1 / 3, r"$\delta^{1/3}$", 1e-3, 0.015)
+    _scaling(axes, (4e-5, 0.25), (0.005, 4), r"$1-\kappa$, smooth discs")
+
+
+def _rough(axes, ours):
+    """Draw κ of rough discs."""
+    for inertia, look in LOOKS.items():
+        own = of(ours, quantity="coefficient", moment_of_inertia=inertia)
+        if own and inertia is not None:
+            distance, value, error = columns(own, "distance", "estimate", "stderr")
+            points(axes, distance, value, error, look, rf"$I={inertia:g}$")
+    _power(axes, 1 / 2, r"$\delta^{1/2}$", 2e-3, 0.009)
+    _scaling(axes, (1e-3, 0.1), (0.007, 0.5), r"$\kappa$, rough discs")
+
+
+def _power(axes, power, name, start, height):
+    """Draw a power law that starts at (``start``, ``height``)."""
+    x = np.array([start, 20 * start])
+    axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
+    drawing.label(axes, name, (x[1], height * 20**power), (3, 0), ha="left", color=GREY)
+
+
+def _scaling(axes, xlim, ylim, label):
+    """Make both scales logarithmic between the limits, over the distance δ."""
+    axes.set(xscale="log", yscale="log", xlim=xlim, ylim=ylim, ylabel=label)
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
-    axes.set_ylabel(r"$1-\kappa$ (smooth),  $\kappa$ (rough)")
-    if kinds:
-        axes.legend(loc="upper left", fontsize=6.6, ncols=2, columnspacing=0.6)
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left")
 
 
 def _times(axes, box, hop, limit, rows):
@@ -179,73 +211,39 @@ def _times(axes, box, hop, limit, rows):
         tau = [1 / exact.rate(shaped.scene(limit * (1 - d)), hop) for d in distances]
         name = "smooth" if inertia is None else "rough"
         axes.plot(distances, tau, color=BLACK, lw=0.8, ls=style, zorder=5,
-                  label=rf"$\tau$, exact, {name}")  # fmt: skip
+                  label=rf"$\tau$, {name}")  # fmt: skip
     for inertia, look in LOOKS.items():
-        own = _of(rows, moment_of_inertia=inertia, quantity="passage_time")
-        fit = _of(rows, moment_of_inertia=inertia, quantity="passage_exponent")
+        own = of(rows, moment_of_inertia=inertia, quantity="passage_time")
+        fit = of(rows, moment_of_inertia=inertia, quantity="passage_exponent")
         if not own:
             continue
         name = "smooth" if inertia is None else f"$I={inertia:g}$"
         if fit:
-            name += rf", $\delta^{{{fit[0]['estimate']:.2f}}}$"
-        distance, value, error = _columns(own, "distance", "estimate", "stderr")
-        _points(axes, distance, value, error, look, rf"$\tau/\kappa$, {name}")
-    axes.set(xscale="log", yscale="log", xlim=(4e-5, 0.25))
-    axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
-    axes.set_ylabel(r"time $\tau$, time between passages $\tau/\kappa$")
-    axes.legend(loc="upper right", fontsize=6.6)
+            name += rf": ${fit[0]['estimate']:.2f}$"
+        distance, value, error = columns(own, "distance", "estimate", "stderr")
+        points(axes, distance, value, error, look, rf"$\tau/\kappa$, {name}")
+    _scaling(axes, (4e-5, 0.25), (0.3, None), r"times $\tau$ and $\tau/\kappa$")
+    axes.legend(loc="lower left", fontsize=6.8)
 
 
-def _diffusion(axes, rows):
-    """Draw D/(ν ℓ²) on the ring, by either method, and on the lattice."""
-    seen = _of(rows, quantity="diffusion", discs=2)
-    for inertia, name in ((None, "smooth discs"), (ONE_INERTIA, f"rough, $I={ONE_INERTIA:g}$")):
-        for method, filled in (("hops", False), ("states", True)):
-            own = _of(seen, method=method, moment_of_inertia=inertia)
-            if own:
-                x, y, error = _columns(own, "distance", "estimate", "stderr")
-                label = None if filled else f"{name} on a ring"
-                _points(axes, x, y, error, LOOKS[inertia], label, filled)
-    for discs, look in FILES.items():
-        own = _of(rows, quantity="diffusion", discs=discs)
-        if own:
-            x, y, error = _columns(own, "distance", "estimate", "stderr")
-            _points(axes, x, y, error, look, f"{discs} smooth discs on a ring", True)
-    own = _of(rows, quantity="diffusion", method="lattice")
-    x, y, error = _columns(own, "swap", "estimate", "stderr")
-    _points(axes, x, y, error, (GREEN, "^"), "lattice, single file")
-    axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
-    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
-    axes.set(xscale="log", xlim=(0.005, 1.4), ylim=(0, None))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.set_xlabel(r"distance $\delta$, or probability $p$ of a swap")
-    axes.set_ylabel(r"diffusion $D/(\nu\,\ell^2)$")
-    axes.legend(loc="lower right", fontsize=6.6)
+#: {quantity: colour, marker, name} of residuals.
+RESIDUAL_LOOKS = {
+    "slope": (BLUE, "o", r"$\kappa'(0)$, from exact"),
+    "plateau": (VERMILLION, "s", r"$\kappa$, by $\kappa(t)$ and by clusters"),
+}
 
 
-def _residuals(axes, rows):
-    """Draw z of all that has an exact value, or another estimate."""
-    looks = {
-        "slope": (BLUE, "o", r"$\kappa'(0)$, exact"),
-        "rate": (GREEN, "^", r"rate on the ring"),
-        "plateau": (VERMILLION, "s", r"$\kappa$ by $\kappa(t)$ and by clusters"),
-        "diffusion": (PURPLE, "D", "$D$ by displacements and by hops"),
-    }
+def residuals(axes, rows, looks):
+    """Draw z of all quantities in ``looks`` that have an exact value, or another estimate."""
     for quantity, (colour, marker, name) in looks.items():
-        own = [
-            r for r in rows if r["quantity"] == quantity and r["z"] is not None and r["distance"]
-        ]
-        if own:
-            x, z = _columns(own, "distance", "z")
-            style = panels.open_symbol(colour, marker, 0.75)
-            axes.plot(x, z, ls="", label=name, **style)
-    for size, dashes in panels.GUIDES.items():
-        for z in (-size, size):
-            axes.axhline(z, color=GREY, lw=0.5, ls=dashes, zorder=0)
-    axes.axhline(0, color=GREY, lw=0.5, zorder=0)
-    axes.set(xscale="log", xlim=(4e-5, 0.25), ylim=(-panels.LARGEST_RESIDUAL, 9.5))
-    axes.set_yticks([-5, -2, 0, 2, 5])
-    axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
+        judged = [r for r in of(rows, quantity=quantity) if r["z"] is not None and r["distance"]]
+        if judged:
+            x, z = columns(judged, "distance", "z")
+            axes.plot(x, z, ls="", label=name, **panels.open_symbol(colour, marker, 0.75))
+    panels.scale_residuals(axes)
+    # The legend stands above the guide lines.
+    axes.set(xscale="log", xlim=(4e-5, 0.25), ylim=(-panels.LARGEST_RESIDUAL, 10))
     axes.set_ylabel("residual $z$")
+    axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(loc="upper center", ncols=4, fontsize=6.6)
+        axes.legend(loc="upper center", ncols=len(looks))

@@ -33,27 +33,13 @@ STUDY = Study(
         "passages": Entry(
             "Hops that are passages",
             DYNAMICS,
-            """
-            What becomes of hops near the radius r_c where they become blocked, at distances δ =
-            (r_c − r)/r_c that are halved from one to the next. (a) Transmission coefficient κ(t):
-            how the order of the discs at a time t after a hop is correlated with the direction of
-            the hop, over states on the surface of the hop, for smooth discs (circles) and rough
-            ones (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0).
-            Where hops are rare it has a plateau, which falls as passages follow one another
-            (lines): κ is the fraction of odd clusters among all hops, from independent runs. (b)
-            Smooth discs: 1 − κ falls about as ∛δ, so that transition state theory becomes
-            exact; of rough discs it is κ that vanishes, and the power depends on their moment of
-            inertia I, in units of mr². (c) Exact mean time τ between hops (lines, ∝ δ⁻² in the
-            end) and mean time τ/κ between passages (symbols), with the powers fitted to all that
-            is shown. (d) Coefficient D of diffusion of two discs on a ring, over that of a random
-            walk with ν hops per time in either direction, each by ℓ, by correlations of hops
-            (open symbols) and by displacements (dots); of discs in a file of four and of eight, by
-            displacements; and of a tagged particle of a single file on a lattice, whose neighbours
-            swap with the probability p. (e) Residuals z, in
-            standard errors, against exact values or between two estimators. Error bars are one
-            standard error.
-            """,
             "twodiscs_paper.studies.passages.figure",
+            tables=("passages",),
+        ),
+        "diffusion": Entry(
+            "Diffusion by hops",
+            DYNAMICS,
+            "twodiscs_paper.studies.passages.figure_diffusion",
             tables=("passages",),
         ),
     },

@@ -24,17 +24,6 @@ STUDY = Study(
         "thresholds": Entry(
             "Power laws where events die out",
             DYNAMICS,
-            """
-            Mean times near the radius at which their event ends, r = r_c − δ with r_c = w/4
-            for vertical hops, h/4 for horizontal ones and the largest radius for all else:
-            event-driven molecular dynamics (symbols) and exact (lines). (a) Times between
-            hops against their leading laws ∝ δ⁻² (dashed), and mean first passages from a
-            random moment (crosses); slopes are those of inertial and of diffusive motion.
-            (b) Times over their leading laws, of exponent −2 for hops that become blocked
-            and 1 for what vanishes: how near the limit these are reached. Full symbols are
-            from starts in a strip around the hop's surface: there the flux is measured, and
-            no waiting time. Error bars are one standard error.
-            """,
             "twodiscs_paper.studies.thresholds.figure",
             tables=("distributions", "thresholds"),
             main_tables=("mean_times",),

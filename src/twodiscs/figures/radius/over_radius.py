@@ -1,7 +1,6 @@
-"""Volume, areas and mean times over the radius: estimates against exact curves.
+"""Quantities over the radius: estimates against exact curves, for the figures in this folder."""
 
-One figure for all of them; the catalogue says which quantities each shows and how.
-"""
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -20,33 +19,49 @@ SMALL, LAST = 0.4, 0.1
 #: Inches: the height of a lower panel and of the room that it takes.
 APPROACH, ROOM = 1.4, 1.8
 
+#: The events of walls, and their names in a legend.
+WALLS = {
+    "right_wall": "disc 1, right wall",
+    "top_wall": "disc 1, top wall",
+    "any_wall": "any disc, any wall",
+}
+
 #: The lower panel begins this close to the end, relatively; its law is drawn from there on.
 CLOSEST, LAW = 1e-5, 0.3
 
 
-def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), approach=False):
+def over_radius(
+    box,
+    tables,
+    names,
+    label,
+    loc,
+    single=None,
+    rooted=False,
+    laws=(),
+    approach=False,
+    looks=None,
+):
     """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
 
     ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
-    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic unless
-    ``rooted``, as the square root; ``loc`` that of the legend, and ``single`` the method if there
-    is one series only. ``laws`` are "small" and "last", the limiting laws of mean times that are
-    drawn besides; with ``approach`` a panel beneath shows the times over the distance from the
-    radius of their end, unless no exact value is known. Residuals have a panel if there are any.
-    Raises ``InputError`` if the table has none of the quantities, and for no table or several.
+    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic; if ``rooted``,
+    square roots are drawn instead, from zero on. ``loc`` is the place of the legend, and ``single``
+    the name of the method if there is only one series. ``laws`` are "small" and "last": the
+    limiting laws of mean times that are drawn. With ``approach`` a panel beneath shows the times
+    over the distance from the radius of their end, unless no exact value is known. There is a panel
+    of residuals if there are any. ``looks`` maps quantities to (colour, marker). Raises
+    ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
         named = ", ".join(tables) or "none"
         raise InputError(f"tables must be the one of {', '.join(names)}, not {named}")
     ((table, rows),) = tables.items()
-    radii, exact = curves.exact(box)
-    by_quantity = {
-        quantity: panels.Series(name, shown, exact[quantity])
-        for quantity, name in names.items()
-        if (shown := [_as_drawn(row) for row in rows if _quantity(row) == quantity])
-    }
+    radii, by_quantity = series_of(box, rows, names, looks or {})
     if not by_quantity:
         raise InputError(f"{table}.csv has no row of {', '.join(names)}")
+    if rooted:
+        by_quantity = {quantity: _rooted(part) for quantity, part in by_quantity.items()}
     series = list(by_quantity.values())
     drawn = [row for part in series for row in part.rows]
     judged, approach = any(map(is_judged, drawn)), approach and not is_unknown(drawn)
@@ -55,34 +70,47 @@ def draw(box, tables, names, label, loc, single=None, rooted=False, laws=(), app
     for quantity in by_quantity:
         _laws(main, box, quantity.removesuffix("_time"), laws)
     if rooted:
-        main.set_yscale("function", functions=(_root, np.square))
-        largest = [value for part in series for value in part.exact[np.isfinite(part.exact)]]
-        known = [row for part in series for row in part.rows if row["estimate"]]
-        largest += [row["estimate"] + (row["stderr"] or 0.0) for row in known]
-        main.set_ylim(0, 1.05 * max(largest, default=0.0) or 1.0)
+        main.set_ylim(0, None)
     else:
         panels.logarithmic(main, radii, series)
     more = [(panels.LAW_NAME, panels.LAW)] if laws and box.is_plain else []
-    panels.legend(main, box, series, loc, single=single, more=more)
+    # The place is one for all of the quantities.
+    place = loc if len(series) == len(names) else "best"
+    panels.legend(main, box, series, place, single=single, more=more)
     if approach:
         panels.letter(main, "a")
-        _approach(panels.add_panel(figure, panels.BOTTOM, APPROACH), box, by_quantity)
+        beneath = panels.add_panel(figure, panels.BOTTOM, APPROACH, name="approach")
+        _approach(beneath, box, by_quantity)
     return figure
 
 
-def _root(values):
-    return np.sqrt(np.maximum(values, 0))
+def series_of(box, rows, names, looks):
+    """Return (radii of the curves, {quantity: ``Series``}) of the quantities that ``rows`` have."""
+    radii, exact = curves.exact(box)
+    found = {}
+    for quantity, name in names.items():
+        shown = [row for row in rows if quantity_of(row) == quantity]
+        if shown:
+            found[quantity] = panels.Series(name, shown, exact[quantity], looks.get(quantity))
+    return radii, found
 
 
-def _quantity(row):
+def _rooted(series):
+    """Return a ``Series`` of the square roots, with the standard errors of these."""
+
+    def root(row):
+        if not row["estimate"]:
+            return row
+        value = row["estimate"] ** 0.5
+        error = row["stderr"] and row["stderr"] / (2 * value)
+        return row | {"estimate": value, "stderr": error}
+
+    return replace(series, rows=[*map(root, series.rows)], exact=np.sqrt(series.exact))
+
+
+def quantity_of(row):
+    """Return the quantity of a row of a table, as theory.csv names it."""
     return row["quantity"] if "quantity" in row else f"{row['event']}_time"
-
-
-def _as_drawn(row):
-    """Return a row; an area of zero is found where no sample fell into the shell."""
-    if row["exact"] == 0 and row.get("hits") == 0:
-        return row | {"estimate": 0.0, "stderr": 0.0}
-    return row
 
 
 def _laws(axes, box, event, laws):
@@ -114,7 +142,7 @@ def _approach(axes, box, by_quantity):
         if part.is_seen():
             handles.append(Line2D([], [], label=label, color=colour))
         shown += [time for time in times if time]
-        if box.discs > 2:
+        if box.family == "many":
             shown += [row["estimate"] for row in part.rows if row["estimate"]]
         if box.is_plain:
             near = distances < LAW

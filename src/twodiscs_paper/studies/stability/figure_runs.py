@@ -1,0 +1,164 @@
+"""How the dynamics behaves where arithmetic has it hard: parts of stability.csv, a panel each."""
+
+import math
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
+from matplotlib.transforms import blended_transform_factory
+
+from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.kit.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    SERIES,
+    VERMILLION,
+    new_figure,
+)
+from twodiscs_paper.studies.stability.figure import (
+    BETWEEN,
+    BOTTOM,
+    BOUND,
+    HEIGHT,
+    NOTHING,
+    TOP,
+    WIDTH,
+    by_part,
+    heading,
+    lines,
+    panel,
+    radii_of,
+    rounded,
+    select,
+)
+
+#: Colour and marker of each quantity of the long runs.
+WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess": (GREEN, "^")}
+
+
+def draw(box, tables):
+    """Draw the rows of stability.csv on dynamics; ``box`` is that of the first scene."""
+    parts = by_part(tables["stability"])
+    figure = new_figure(TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
+    runs = parts.get("dynamics", [])
+    _runs(panel(figure, "a", 0.5, 0.3), runs, radii_of(runs))
+    _times(panel(figure, "b", 0.85), parts.get("times", []))
+    _reversal(panel(figure, "c"), parts.get("reversal", []))
+    _coverage(panel(figure, "d"), parts.get("coverage", []))
+    panels.name_box(figure.axes[2], box)
+    return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    text = """
+    The dynamics in hard cases; dashed lines are what is required. (a) Worst of a long run: error of
+    the energy, overlap of the discs, distance of centres beyond their range. (b) Worst error of
+    predicted times to a contact (circles) and to a wall (squares), against 50 digits, for many ways
+    to approach. (c) Velocities are reversed after n events: error of return after n more events,
+    against the binary digits that the Lyapunov exponent λ per event costs; the line is one rounding
+    that grows at this rate. The legend has the number of events after which half of the digits are
+    lost, and in brackets the number that λ predicts. (d) Share of 95 % intervals that contain the
+    exact mean time, over independent repetitions. Rows without a symbol were not run.
+    """
+    return text + shown.if_any(
+        lambda row: row["part"] == "coverage" and row["value"] is None,
+        "Crosses are events too rare for an interval.",
+    )
+
+
+def _runs(axes, rows, radii):
+    """Draw the worst errors of the long runs, with their bounds."""
+    places = {key: i for i, key in enumerate(radii)}
+    lines(axes, list(radii.values()))
+    names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
+    for quantity, (colour, marker) in WORST.items():
+        shown = select(rows, quantity=quantity)
+        sign = -1 if quantity == "smallest_gap" else 1
+        x = [max(sign * row["value"], NOTHING) for row in shown]
+        y = [places[row["case"], row["radius"]] for row in shown]
+        axes.plot(x, y, ls="", label=names[quantity], **panels.open_symbol(colour, marker, 0.9))
+        for row in shown[:1]:
+            bound = abs(row["low"] if sign < 0 else row["high"])
+            axes.axvline(bound, **BOUND | {"color": colour})
+    axes.set(xscale="log", xlim=(NOTHING / 2, 1e-10), xlabel="worst of a run")
+    axes.xaxis.set_major_locator(FixedLocator([NOTHING, 1e-15, 1e-13, 1e-11]))
+    axes.set_xticklabels(["0", "$10^{-15}$", "$10^{-13}$", "$10^{-11}$"])
+    axes.xaxis.set_minor_locator(NullLocator())
+    heading(axes)
+    beside = {"xycoords": blended_transform_factory(axes.transAxes, axes.transData), "ha": "left"}
+    for row in select(rows, quantity="energy_error"):
+        events = f"${rounded(row['count'])}$"
+        at = 1, places[row["case"], row["radius"]]
+        drawing.label(axes, events, at, (4, 0), fontsize=6.9, **beside)
+    drawing.label(axes, "events", (1, -0.6), (4, 5), fontsize=6.9, **beside)
+
+
+def _times(axes, rows):
+    """Draw the worst errors of predicted times."""
+    walls = {"wall_time": "wall, "}
+    lines(axes, [walls.get(row["quantity"], "") + row["case"] for row in rows])
+    for i, row in enumerate(rows):
+        look = SERIES[0] if row["quantity"] == "contact_time" else SERIES[1]
+        axes.plot(row["value"], i, **panels.open_symbol(*look))
+    axes.set(xscale="log", xlim=(0.1, 20))
+    axes.set_xlabel(r"error / ($2^{-52}\times$ conditioning)", x=1, ha="right")
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    for row in rows[:1]:
+        axes.axvline(row["high"], **BOUND)
+
+
+# Reversal and coverage ----------------------------------------------------------------------------
+
+
+def _reversal(axes, rows):
+    """Draw the error of return over what the exponent says it should be."""
+    looks = (*SERIES, (ORANGE, "o"))
+    radii = sorted({row["radius"] for row in select(rows, quantity="return_error")})
+    bits = np.array([0.0, 36.0])
+    axes.plot(bits, 2.0 ** (bits - 53), color=BLACK, lw=0.7, zorder=1)
+    for look, radius in zip(looks, radii, strict=False):
+        here = select(rows, radius=radius)
+        rate = select(here, quantity="exponent", case="separation")[0]["value"]
+        number = select(here, quantity="events_retraced")[0]
+        shown = select(here, quantity="return_error")
+        x = [rate * row["count"] / math.log(2) for row in shown]
+        y = [row["value"] for row in shown]
+        name = f"$r={panels.number(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
+        axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
+    axes.axhline(2.0**-26, **BOUND)
+    axes.set(yscale="log", xlim=(0, 36), ylim=(1e-16, 1e-4))
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel(r"binary digits lost to $n$ events, $n\lambda/\ln 2$")
+    axes.set_ylabel("error of return")
+    if radii:
+        axes.legend(loc="lower right", **{"handletextpad": 0.1})
+
+
+def _coverage(axes, rows):
+    """Draw the coverage of the intervals, radius by radius and event by event."""
+    radii = sorted({row["radius"] for row in rows})
+    for i, (event, look) in enumerate(LOOKS.items()):
+        beside = (i - (len(LOOKS) - 1) / 2) * 0.12
+        placed = [(radii.index(r["radius"]) + beside, r) for r in select(rows, quantity=event)]
+        shown = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
+        x, y, error = zip(*shown, strict=True) if shown else ([], [], [])
+        symbol = panels.open_symbol(*look)
+        axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=name_of(event), **symbol)
+        few = [x for x, row in placed if row["value"] is None]
+        axes.plot(few, [0.905] * len(few), "x", color=look[0])
+    for row in [row for row in rows if row["low"] is not None][:1]:
+        axes.axhline(row["low"], **BOUND)
+        axes.axhline(row["high"], **BOUND)
+    axes.axhline(0.95, color=GREY, lw=0.5, zorder=0)
+    axes.set(
+        xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
+    )
+    axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
+    axes.set_xticklabels([f"$r={panels.number(radius)}$" for radius in radii])
+    axes.tick_params(axis="x", length=0)
+    axes.legend(loc="upper center", ncols=3, columnspacing=1.0)

@@ -1,0 +1,134 @@
+"""What the face draws: nothing that was measured is lost, whichever axes it is drawn in."""
+
+import numpy as np
+import pytest
+from figure_cases import bars, covered, points
+from matplotlib.figure import Figure
+from PIL import Image
+
+import twodiscs as td
+from twodiscs.figures.kit import curves, panels, style
+from twodiscs.figures.kit.looks import LOOKS, name_of
+from twodiscs.figures.motion import animation
+from twodiscs.model.box import Box
+
+HOPS, COLLISIONS = "vertical_hop", "disc_collision"
+RADII = (0.1, 0.2, 0.24)
+
+
+def scan(*events, **effects):
+    return td.scan(1.5, 1.0, RADII, error=0.1, events=events, **effects)
+
+
+@pytest.mark.filterwarnings("error")
+def test_all_events_of_a_scan_are_drawn_with_their_errors():
+    found = scan(HOPS, COLLISIONS)
+    figure = td.plot(found)
+    main, lower = figure.axes
+    assert [axes.get_label() for axes in figure.axes] == ["main", "residuals"]
+    rows = [row for result in found for row in result.rows]
+    for event in (HOPS, COLLISIONS):
+        own = [row for row in rows if row["event"] == event]
+        due = [(row["radius"], row["estimate"], row["stderr"]) for row in own]
+        assert len(due) == len(RADII)
+        np.testing.assert_allclose(bars(main, *LOOKS[event]), due, rtol=1e-9)
+        assert {(row["radius"], row["z"]) for row in own} <= points(lower, *LOOKS[event])
+    legend = [text.get_text() for text in main.get_legend().get_texts()]
+    assert legend == [name_of(HOPS), name_of(COLLISIONS)]
+
+
+def test_a_warning_names_what_is_not_drawn():
+    found = td.sample(td.Scene(1.5, 1.0, 0.2), 2**20)
+    with pytest.warns(
+        UserWarning, match=r"volume does not show vertical_hop_area, .*areas"
+    ) as all_:
+        td.plot(found)
+    assert all_[0].filename == __file__
+    assert td.plot(found, figure="areas").axes[0].get_ylabel() == "area $S$"
+
+
+@pytest.mark.parametrize("event", [HOPS, "horizontal_hop", COLLISIONS, "right_wall"])
+def test_the_legend_of_a_single_event_covers_nothing(event):
+    with style.context():
+        assert covered(td.plot(scan(event)).axes[0]) == []
+
+
+def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
+    axes = Figure().add_subplot()
+    one, two = scan(HOPS), scan(HOPS, field=1.0)
+    assert td.plot(one, ax=axes) is axes.figure
+    low = axes.get_ylim()
+    td.plot(two, tmp_path / "two.pdf", ax=axes)
+    assert (tmp_path / "two.pdf").stat().st_size > 5000
+    assert axes.get_ylim()[0] <= low[0] < low[1] <= axes.get_ylim()[1]
+    for found, look in zip((one, two), LOOKS.values(), strict=False):
+        rows = [row for result in found for row in result.rows]
+        due = [(row["radius"], row["estimate"], row["stderr"]) for row in rows]
+        np.testing.assert_allclose(bars(axes, *look), due, rtol=1e-9)
+        exact = curves.exact(Box.of(found[0].scene))[1][f"{HOPS}_time"]
+        drawn = [line.get_ydata() for line in axes.lines if line.get_color() == look[0]]
+        assert any(np.array_equal(line, exact, equal_nan=True) for line in drawn)
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names == [f"vertical hops, {panels.heading(Box.of(f[0].scene))[0]}" for f in (one, two)]
+
+
+def test_only_results_over_the_radius_are_drawn_in_axes_of_the_user():
+    trajectory = td.trajectory(td.Scene(1.5, 1.0, 0.2), duration=2)
+    with pytest.raises(td.InputError, match="result must be over the radius to be drawn in ax"):
+        td.plot(trajectory, ax=Figure().add_subplot())
+
+
+@pytest.mark.parametrize("name", ["mean_times", "pressure", "mean_wall_time"])
+def test_the_figures_of_a_result_are_those_of_its_events(name):
+    found = scan("right_wall", COLLISIONS)
+    assert td.plot(found, figure=name).axes[0].get_label() == "main"
+    with pytest.raises(
+        td.InputError, match="figure must be one of mean_times, mean_collision_time"
+    ):
+        td.plot(found, figure="mean_hop_time")
+
+
+def test_what_a_transmission_leaves_falls_at_twice_its_rate():
+    """The points with their errors, and the curve κ exp(−2κt/τ) of the coefficient."""
+    found = td.transmission(td.Scene(1.5, 1.0, 0.249), "horizontal_hop", 1)
+    (axes,) = td.plot(found).axes
+    frame = found.frame()
+    due = np.column_stack([found.times, frame["kappa"], frame["stderr"]])
+    np.testing.assert_allclose(bars(axes, *LOOKS["horizontal_hop"]), due, rtol=1e-9)
+    (times, values), *_ = (line.get_data() for line in axes.lines if "clusters" in line.get_label())
+    kappa = found.coefficient.value
+    expected = kappa * np.exp(-2 * kappa * times / found.exact_mean)
+    np.testing.assert_allclose(values, expected, rtol=1e-12)
+
+
+# Animations ---------------------------------------------------------------------------------------
+
+EFFECTS = [
+    {"field": 1.5},
+    {"periodic": "x"},
+    {"depth": 1.2, "periodic": "xz"},
+    {"moment_of_inertia": 0.5, "mass_ratio": 2.0},
+]
+
+
+@pytest.mark.parametrize("effects", EFFECTS, ids=str)
+def test_scenes_with_effects_are_animated(effects, tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "BEFORE", 1)
+    monkeypatch.setattr(animation, "AFTER", 1)
+    scene = td.Scene(1.5, 1.0, 0.2, **effects)
+    td.animate(td.trajectory(scene, duration=20), tmp_path / "two.gif")
+    assert Image.open(tmp_path / "two.gif").n_frames > 1
+
+
+def test_discs_are_where_the_trajectory_has_them_on_a_periodic_axis():
+    """Which goes on beyond the box, while a table keeps the separation within one period."""
+    scene = td.Scene(1.5, 1.0, 0.2, periodic="x")
+    found = td.trajectory(scene, duration=60)
+    assert np.abs(found["x1"] - found["x2"]).max() > 1.0
+    with style.context():
+        stage = animation.Stage(Box.of(scene), scene.radius, found.to_dict("records"))
+    times = np.linspace(0, 60, 50)
+    states = found.states_at(times)
+    for disc in (1, 2):
+        due = np.column_stack([states[f"x{disc}"], states[f"y{disc}"]])
+        np.testing.assert_allclose(stage.places(disc, times), due, atol=1e-12)

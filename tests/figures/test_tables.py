@@ -1,0 +1,305 @@
+"""Figures show their tables: symbols, error bars and curves against the committed results."""
+
+import math
+from functools import cache
+from importlib import import_module
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+import pytest
+from figure_cases import PAPER, bars, draw, points, tables_of
+
+from twodiscs.comparison.measured.transmission import box_time
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.figures.catalogue import FIGURES
+from twodiscs.figures.kit import style
+from twodiscs.figures.kit.looks import LOOKS
+from twodiscs.model.events import HOPS, SHELLS
+from twodiscs.theory import laws, virial
+from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.studies.effects import figure as effects
+from twodiscs_paper.studies.passages import figure as passages
+from twodiscs_paper.studies.passages import figure_diffusion as diffusion
+from twodiscs_paper.studies.tails import figure as tails
+from twodiscs_paper.studies.thresholds.measure import near
+
+EXPECTED = Path(__file__).parents[2] / "paper" / "expected"
+TABLES = SCENE_TABLES | STUDY_TABLES
+
+
+@cache
+def table(name):
+    """Return the rows of a committed table; costs, which are times, are made up."""
+    if name == "effects_cost":
+        variants = ["plain", *dict.fromkeys(row["scene"] for row in table("effects"))]
+        return [TABLES[name].empty(variant=v, ratio=1 / (1 + i)) for i, v in enumerate(variants)]
+    folder = EXPECTED / "paper" if name in SCENE_TABLES else EXPECTED
+    return TABLES[name].read(folder / f"{name}.csv")
+
+
+@cache
+def drawn(name):
+    """Return {label of the panel, or its place: axes} of a figure of the committed tables."""
+    entry = (FIGURES | STUDY_FIGURES)[name]
+    tables = {name: table(name) for name in (*entry.tables, *entry.main_tables)}
+    with style.context():
+        figure = import_module(entry.module).draw(box=PAPER, tables=tables, **entry.options)
+    return {axes.get_label() or i: axes for i, axes in enumerate(figure.axes)}
+
+
+def of(rows, **wanted):
+    return [row for row in rows if all(row[name] == value for name, value in wanted.items())]
+
+
+def cases():
+    """Yield (figure, panel, colour, marker, (x, y, standard error) of all symbols of this look)."""
+    yield from _passages()
+    yield from _pressure()
+    yield from _thresholds()
+    yield from _distributions()
+    rows = table("tails")
+    for (event, radius), look in zip(
+        dict.fromkeys((row["event"], row["radius"]) for row in rows), tails.LOOKS, strict=False
+    ):
+        own = [
+            (row["time"] / row["exact_mean"], row["estimate"], row["stderr"], row["law"])
+            for row in of(rows, event=event, radius=radius)
+            if row["quantity"] == "survival"
+            and row["stderr"]
+            and row["stderr"] < 0.3 * row["estimate"]
+        ]
+        if all(law for *_, law in own):
+            yield "tails", 1, *look, [(t, y / law, s / law) for t, y, s, law in own]
+        else:
+            yield "tails", 2, *look, [(t, y, s) for t, y, s, _ in own]
+    rows = [row for row in table("more_discs") if row["dynamics"] and row["dynamics"] < 1000]
+    for i, radius in enumerate(sorted({row["radius"] for row in rows})):
+        for event, look in LOOKS.items():
+            own = of(rows, radius=radius, event=event)
+            due = [(row["discs"], row["dynamics"], row["dynamics_stderr"]) for row in own]
+            yield "more_discs", i, *look, due
+    rows = [row for row in table("effects") if row["quantity"] != "never_met_share"]
+    for k, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
+        for i, event in enumerate(effects.SHOWN_EVENTS):
+            own = of(rows, scene=scene, quantity=f"{event}_time")
+            due = [
+                (row["radius"], row["estimate"] / row["plain"], row["stderr"] / row["plain"])
+                for row in own
+                if row["stderr"] and row["plain"]
+            ]
+            yield "effects", 2 * i, *effects._look(k), due
+    rows = of(table("stability"), part="coverage")
+    radii = sorted({row["radius"] for row in rows})
+    for i, (event, look) in enumerate(LOOKS.items()):
+        beside = 0.12 * (i - (len(LOOKS) - 1) / 2)
+        own = [row for row in of(rows, quantity=event) if row["value"] is not None]
+        due = [(radii.index(row["radius"]) + beside, row["value"], row["stderr"]) for row in own]
+        yield "stability_of_runs", "d", *look, due
+
+
+def _passages():
+    rows = table("passages")
+    first = rows[0]["scene"]
+    ours = of(rows, scene=first, event="horizontal_hop", periodic=None)
+    for inertia, look in passages.LOOKS.items():
+        own = of(ours, moment_of_inertia=inertia)
+        kappa, times = of(own, quantity="coefficient"), of(own, quantity="passage_time")
+        yield "passages", "times", *look, _columns(times, "distance")
+        if inertia is None:
+            kappa = [row | {"estimate": 1 - row["estimate"]} for row in kappa]
+        yield "passages", "rough" if inertia else "smooth", *look, _columns(kappa, "distance")
+        shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
+        curves = [row for row in of(own, quantity="correlation") if row["distance"] in shown]
+        if curves:
+            due = [(row["time"] / _unit(row), row["estimate"], row["stderr"]) for row in curves]
+            yield "passages", "curves", *look, due
+        # Both methods, open symbols and dots.
+        yield (
+            "diffusion",
+            "ring",
+            *look,
+            _columns(
+                of(rows, quantity="diffusion", discs=2, moment_of_inertia=inertia), "distance"
+            ),
+        )
+    for discs, look in diffusion.FILES.items():
+        own = of(rows, quantity="diffusion", discs=discs)
+        yield "diffusion", "ring", *look, _columns(own, "distance")
+    lattice = of(rows, quantity="diffusion", method="lattice")
+    yield "diffusion", "lattice", style.GREEN, "^", _columns(lattice, "swap")
+
+
+def _unit(row):
+    return box_time(PAPER.scene(row["radius"]), "horizontal_hop")
+
+
+def _columns(rows, x):
+    return [(row[x], row["estimate"], row["stderr"]) for row in rows]
+
+
+def _pressure():
+    rows = [row for row in table("mean_times") if row["stderr"] is not None]
+    factors = (
+        ("main", dict.fromkeys(("right_wall", "top_wall"), virial.pressure_factor)),
+        ("virials", {
+            event: lambda scene, event: abs(virial.weights(scene)[event])
+            for event in ("right_wall", "top_wall", "disc_collision")
+        }),
+    )  # fmt: skip
+    for panel, events in factors:
+        for (event, factor), look in zip(events.items(), style.SERIES, strict=False):
+            due = []
+            for row in of(rows, event=event):
+                scene = PAPER.scene(row["radius"])
+                value = factor(scene, event) * scene.share(event) / row["estimate"]
+                due.append((row["radius"], value, value * row["stderr"] / row["estimate"]))
+            yield "pressure", panel, *look, due
+
+
+def _thresholds():
+    for event, look in LOOKS.items():
+        law = laws.leading_law(PAPER, event) if event in SHELLS else None
+        if law:
+            rows = near(PAPER, law, of(table("mean_times"), event=event))
+            own = [(1 - r["radius"] / law.limit, r["estimate"], r["stderr"]) for r in rows]
+            units = [law(row["radius"]) for row in rows]
+            if event in HOPS:
+                yield "thresholds", 0, *look, own
+            due = [(x, y / unit, s / unit) for (x, y, s), unit in zip(own, units, strict=True)]
+            yield "thresholds", 1, *look, due
+
+
+def _distributions():
+    rows = of(table("distributions"), scene=table("distributions")[0]["scene"])
+    event = rows[0]["event"]
+    radii = list(dict.fromkeys(row["radius"] for row in of(rows, event=event)))
+    for radius, look in zip(radii, style.SERIES, strict=False):
+        due = [
+            ((row["first"] + row["last"]) / 2 / mean, row["estimate"] * mean, row["stderr"] * mean)
+            for row in of(rows, event=event, radius=radius, quantity="hazard")
+            for mean in [row["exact_mean"]]
+            if row["stderr"] < 0.15 * row["estimate"]
+        ]
+        yield "distributions", 0, *look, due
+    for hop, look in zip(HOPS, style.SERIES, strict=False):
+        own = of(rows, event=hop, quantity="first_passage", last=None)
+        columns = (("estimate", "stderr"), ("reference", "reference_stderr"))
+        due = [
+            (row["radius"], row[y] / row["exact_mean"], row[s] / row["exact_mean"])
+            for row in own
+            for y, s in columns
+        ]
+        yield "distributions", 1, *look, due
+
+
+CASES = [case for case in cases() if case[-1]]
+
+
+@pytest.mark.parametrize(
+    ("name", "panel", "colour", "marker", "due"),
+    CASES,
+    ids=[f"{name}-{panel}-{colour}{marker}" for name, panel, colour, marker, _ in CASES],
+)
+def test_symbols_and_error_bars_are_those_of_the_table(name, panel, colour, marker, due):
+    shown = bars(drawn(name)[panel], colour, marker)
+    assert len(shown) == len(due)
+    np.testing.assert_allclose(shown, sorted(due), rtol=1e-7)
+
+
+def test_every_figure_of_a_study_is_compared():
+    """Costs are times, which no table of the repository has: tests of the study compare them."""
+    compared = {name for name, *_ in CASES}
+    costs = {"accuracy_cost", "accuracy_cost_by_radius", "stability"}
+    assert compared | costs >= STUDY_FIGURES.keys()
+
+
+def test_what_passages_leave_falls_at_twice_their_rate():
+    """The curves κ exp(−2κt/τ) of the figure, at all their times."""
+    rows = of(table("passages"), scene=table("passages")[0]["scene"], event="horizontal_hop")
+    shown = [
+        line.get_data()
+        for line in drawn("passages")["curves"].lines
+        if line.get_color() == style.BLACK and len(line.get_xdata()) == 30
+    ]
+    due = [
+        row
+        for inertia, halvings in passages.SHOWN.items()
+        for n in halvings
+        for row in of(rows, quantity="coefficient", moment_of_inertia=inertia, distance=2.0**-n)
+    ]
+    assert len(shown) == len(due) > 2
+    for (times, values), row in zip(shown, due, strict=True):
+        kappa, rate = row["estimate"], 1 / row["exact_mean"]
+        expected = [kappa * math.exp(-2 * kappa * rate * t * _unit(row)) for t in times]
+        np.testing.assert_allclose(values, expected, rtol=1e-12)
+
+
+def test_the_powers_are_the_fitted_ones():
+    legend = drawn("passages")["times"].get_legend().get_texts()
+    fits = of(table("passages"), quantity="passage_exponent", event="horizontal_hop")
+    fits = of(fits, scene=table("passages")[0]["scene"])
+    for fit in fits:
+        assert any(f"{fit['estimate']:.2f}" in text.get_text() for text in legend)
+
+
+def test_residuals_are_those_of_the_table():
+    for name, looks in (("passages", passages), ("diffusion", diffusion)):
+        for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
+            rows = of(table("passages"), quantity=quantity)
+            due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
+            assert points(drawn(name)["residuals"], colour, marker) == due
+
+
+def test_the_panels_of_stability_are_those_of_the_table():
+    rows, (volume, areas) = table("stability"), style.SERIES[:2]
+    shares = of(rows, part="sampling", case="largest radius", method="conditioned")
+    due = {(-row["distance"], row["value"]) for row in shares}
+    assert points(drawn("stability")["c"], *volume) == due
+    estimates = of(rows, part="estimates", status="sampled")
+    for look, is_volume in ((volume, True), (areas, False)):
+        due = [row["z"] for row in estimates if (row["quantity"] == "volume") == is_volume]
+        shown = points(drawn("stability")["d"], *look)
+        assert sorted(z for z, _ in shown) == sorted(due)
+    energies = of(rows, part="dynamics", quantity="energy_error")
+    shown = points(drawn("stability_of_runs")["a"], style.BLUE, "o")
+    assert {x for x, _ in shown} == {max(row["value"], 1e-17) for row in energies}
+
+
+def test_rates_that_are_not_constant_are_dotted():
+    rows = of(table("distributions"), scene=table("distributions")[0]["scene"])
+    shown = [line for line in drawn("distributions")[0].lines if line.get_linewidth() == 1.4]
+    found = {
+        (line.get_color(), float(line.get_ydata()[0])): line.get_linestyle()
+        for line in shown
+        if len(line.get_xdata())
+    }
+    radii = dict.fromkeys(row["radius"] for row in of(rows, event=rows[0]["event"]))
+    for radius, (colour, _) in zip(radii, style.SERIES, strict=False):
+        own = of(rows, radius=radius, event=rows[0]["event"])
+        tests = [row for row in own if row["quantity"] in ("rate", "trend")]
+        (rate,) = of(tests, quantity="rate")
+        constant = all(row["p"] > 1e-3 for row in tests)
+        assert (found[colour, rate["estimate"] * rate["exact_mean"]] == "-") == constant
+
+
+def test_the_histogram_has_the_densities_of_its_bins():
+    with style.context():
+        axes = draw("hop_histogram", PAPER, tables_of("paper")).axes
+    rows = tables_of("paper")["hop_histogram"]
+    for i, (_, group) in enumerate(groupby(rows, key=lambda row: row["radius"])):
+        own, (colour, marker) = list(group), style.SERIES[i]
+        for panel, bins in zip(axes, ("wide", "equal"), strict=False):
+            mean = own[0]["exact_mean"]
+            due = [
+                (
+                    (row["left"] + row["right"]) / 2 / mean,
+                    row["density"] * mean,
+                    row["stderr"] * mean,
+                )
+                for row in of(own, bins=bins)
+            ]
+            shown = np.array(bars(panel, colour, marker))
+            assert len(shown) > 5
+            for point in shown:
+                assert np.isclose(due, point, rtol=1e-9).all(axis=1).any()
