@@ -7,9 +7,10 @@ import ast
 from pathlib import Path
 from textwrap import fill
 
+from rules import direct
+
 from twodiscs.arguments import Parser, run
 from twodiscs.model.sources import ROOT, imports_of, modules
-from twodiscs_paper.pipeline.documents.report import direct
 
 #: The rooms of the packages from the lowest floor up; one may import those before it, and itself.
 LIBRARY = (
@@ -101,7 +102,8 @@ def draw():
         )  # fmt: skip
         says, names = purpose(room)
         text = {"ha": "center", "va": "center", "family": "sans-serif"}
-        axes.text(x, y + FLOOR - 0.12, room.removeprefix("twodiscs."), fontsize=9, color=BLUE, **text)
+        name = room.removeprefix("twodiscs.")
+        axes.text(x, y + FLOOR - 0.12, name, fontsize=9, color=BLUE, **text)
         axes.text(x, y + FLOOR - 0.38, fill(says, 44), fontsize=6.5, **text)
         axes.text(x, y + 0.19, fill("  ".join(names), 50), fontsize=6, color=GREY, **text)
     return figure

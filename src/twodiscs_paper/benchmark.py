@@ -291,7 +291,7 @@ def main():
     parser.add_argument("--output", default="results/benchmark.csv")
     given = parser.parse_args()
     requests = (request for path in given.scenes for request in load(read(path)).scenes)
-    effects = {r.name: r.box.effects for r in requests if r.box.effects and r.box.discs == 2}
+    effects = {r.name: r.box.effects for r in requests if r.box.family == "effects"}
     quick = given.table == "effects_cost"
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)

@@ -178,6 +178,11 @@ def replicas_needed(scene, event, error):
     return of_family(scene, "theory", "replicas_needed")(scene, event, error)
 
 
+def least_free_fraction(scene):
+    """Return the least share of the prism that must be free; 0 where draws do not need the prism."""
+    return of_family(check_scene(scene), "theory", "least_free_fraction")
+
+
 def free_fraction(scene):
     """Return the share of the prism in which the discs are free, weighted in a field."""
     ranges = (

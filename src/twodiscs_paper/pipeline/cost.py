@@ -58,11 +58,14 @@ def _seconds(scene, stage, work):
 def _most(scene, stage):
     """Return the work that one radius may take, by the budgets alone."""
     discs = scene.box.discs
-    sample, event = (1.0, DEAREST) if discs == 2 else (DRAW * discs, max(DEAREST, discs**2 / 2))
+    sample, event, interval = 1.0, DEAREST, 1.0
+    if "discs" in scene.box.calls_for:
+        sample, event = DRAW * discs, max(DEAREST, discs**2 / 2)
+        interval = event
     return {
         "monte_carlo": sample * scene.monte_carlo["samples"],
         "dynamics": event * scene.event_budget,
-        "intervals": (1.0 if discs == 2 else event) * scene.histogram["event_budget"],
+        "intervals": interval * scene.histogram["event_budget"],
     }[stage]
 
 

@@ -2,12 +2,13 @@
 
 from twodiscs.model.events import DECLARED
 from twodiscs.theory import weighted
+from twodiscs.theory.exact import MIN_FRACTION as least_free_fraction
 from twodiscs.theory.families.clusters import replicas_needed
 from twodiscs.theory.flux import constant
 from twodiscs.theory.weighted import shell_expectation
 
 __all__ = [
-    "fraction_near", "passing_rate", "rate", "replicas_needed", "shell_expectation", "shells",
+    "fraction_near", "least_free_fraction", "passing_rate", "rate", "replicas_needed", "shell_expectation", "shells",
     "volume_and_areas", "work_per_event",
 ]  # fmt: skip
 

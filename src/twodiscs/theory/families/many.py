@@ -2,7 +2,11 @@
 
 from twodiscs.theory.many.exact import event_rates, volume_and_areas
 
-__all__ = ["rate", "replicas_needed", "volume_and_areas", "work_per_event"]
+__all__ = ["least_free_fraction", "rate", "replicas_needed", "volume_and_areas", "work_per_event"]
+
+
+#: Initial states do not need a free prism.
+least_free_fraction = 0.0
 
 
 def rate(scene, event, volume, areas):

@@ -7,9 +7,13 @@ from twodiscs.theory import plain
 from twodiscs.theory.plain import shell_expectation
 
 __all__ = [
-    "fraction_near", "rate", "replicas_needed", "shell_expectation", "shells",
+    "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation", "shells",
     "volume_and_areas", "work_per_event",
 ]  # fmt: skip
+
+
+#: Initial states are drawn where the discs fit, not in the prism.
+least_free_fraction = 0.0
 
 
 def volume_and_areas(scene):

@@ -14,7 +14,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import PRESETS, InputError, decimal_hint, format_number
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
-from twodiscs.theory.exact import MIN_FRACTION, events_per_interval, free_fraction
+from twodiscs.theory.exact import events_per_interval, free_fraction, least_free_fraction
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.reading import ConfigError, shown
 from twodiscs_paper.pipeline.configuration.request import Configuration, Quantities, SceneRequest
@@ -198,7 +198,9 @@ def _scene(block, path, common):
     if watched is None:
         watched = dict.fromkeys(Quantities.__dataclass_fields__, True)
         watched["trajectory"] = bool(_hops(scene))
-        watched["hop_histogram"] = bool(_hops(scene)) and _is_smooth(scene) and scene.discs == 2
+        watched["hop_histogram"] = (
+            bool(_hops(scene)) and _is_smooth(scene) and "discs" not in box.calls_for
+        )
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     quantities = Quantities(
         volume=watched["volume"],
@@ -215,7 +217,7 @@ def _scene(block, path, common):
             box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
-    for radius in quantities.hop_histogram if scene.discs == 2 else ():
+    for radius in () if "discs" in box.calls_for else quantities.hop_histogram:
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(
@@ -346,11 +348,11 @@ def _checked(radii, box, path):
             scene = box.scene(radius)
         except InputError as error:
             raise ConfigError(f"{path}: {error}") from None
-        two = scene.discs == 2
-        if two and scene.has_effects and (share := free_fraction(scene)) < MIN_FRACTION:
+        least = least_free_fraction(scene)
+        if least and (share := free_fraction(scene)) < least:
             raise ConfigError(
                 f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
-                f"places with {_effects_of(box)}, and at least {MIN_FRACTION:g} of it is needed"
+                f"places with {_effects_of(box)}, and at least {least:g} of it is needed"
             )
         if radius in seen:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")

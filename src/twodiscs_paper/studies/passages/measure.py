@@ -101,7 +101,7 @@ class _Hop:
 
     def _seed(self, what):
         inertia = self.scene.moment_of_inertia
-        kind = f"{self.scene.periodic} {inertia}" if self.scene.has_effects else ""
+        kind = f"{self.scene.periodic} {inertia}" if not self.scene.is_plain else ""
         return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
     def said(self, quantity, method, estimate, time=None, reference=None, events=None):
