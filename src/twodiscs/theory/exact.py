@@ -179,7 +179,7 @@ def replicas_needed(scene, event, error):
 
 
 def least_free_fraction(scene):
-    """Return the least share of the prism that must be free; 0 where draws do not need the prism."""
+    """Return the least share of the prism that must be free, 0 if draws do not need the prism."""
     return of_family(check_scene(scene), "theory", "least_free_fraction")
 
 

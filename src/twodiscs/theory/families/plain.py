@@ -7,8 +7,8 @@ from twodiscs.theory import plain
 from twodiscs.theory.plain import shell_expectation
 
 __all__ = [
-    "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation", "shells",
-    "volume_and_areas", "work_per_event",
+    "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation",
+    "shells", "volume_and_areas", "work_per_event",
 ]  # fmt: skip
 
 
