@@ -99,7 +99,7 @@ def add_box(parser, required=True):
     """Add the arguments that say what a ``Box`` is: sides, the number of discs and effects."""
     for side in ("width", "height"):
         parser.add_argument(f"--{side}", type=number, required=required, help="a length")
-    parser.add_argument("--discs", type=whole_number, default=2, help="how many (2), at most 64")
+    parser.add_argument("--discs", type=whole_number, default=2, help="how many (2), at most 1024")
     effects = parser.add_argument_group("effects", "what the scene calls for besides")
     for effect in EFFECTS.values():
         kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}

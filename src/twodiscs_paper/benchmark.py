@@ -21,6 +21,7 @@ from twodiscs.arguments import Parser, run
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.intervals import hop_intervals
+from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -73,8 +74,21 @@ def lockstep_of_many(discs, blocks=BLOCKS // 8):
     """Count all events of so many discs by the kernel of N discs, which takes two as well."""
     scene = Scene(SCENE.width, SCENE.height, SCENE.radius / 2, discs=discs)
     duration = many.replica_duration(scene)
-    counted, seconds = timed(lambda: many.run_blocks(scene, 1, 0, blocks, duration))
+    counted, seconds = timed(lambda: kernels.run_blocks(scene, 1, 0, blocks, duration))
     return many.simulated_events(counted[0]), seconds
+
+
+def in_long_box(discs, hops, events=1_000_000):
+    """Count about so many events of N discs at a room of 0.75 × 1 each, without initial states."""
+    scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
+    each = many.replicas_of(scene)
+    duration = many.replica_duration(scene, max(256, events / each))
+
+    def counted(time):
+        return timed(lambda: kernels.run_blocks(scene, 1, 0, 1, time, hops=hops))
+
+    (sums, _), seconds = counted(duration)
+    return many.simulated_events(sums), seconds - counted(duration / 2**20)[1]
 
 
 def lockstep_intervals(intervals=5_000_000):
@@ -237,6 +251,14 @@ def compared(name, values, unit, baseline, larger_is_better=True):
 MANY = {"lockstep": partial(lockstep, BLOCKS // 8, replace(SCENE, radius=SCENE.radius / 2))}
 MANY |= {f"discs_{discs}": partial(lockstep_of_many, discs) for discs in (2, 3, 4, 8)}
 
+#: Numbers of discs in a box of 0.75 × 1 for each, at half the radius; with hops, and without.
+NUMBERS = (3, 8, 16, 64, 256, 1024)
+BY_NUMBER = {"lockstep": MANY["lockstep"]} | {
+    f"discs_{discs}{'' if hops else '_without_hops'}": partial(in_long_box, discs, hops)
+    for hops in (True, False)
+    for discs in NUMBERS
+}
+
 
 def benchmarks(effects):
     """Run everything and return the rows of benchmark.csv; ``effects`` as in ``with_effects``."""
@@ -261,6 +283,7 @@ def benchmarks(effects):
         "numpy",
     )
     add("md_events_per_second_of_many", interleaved(MANY), "1/s", "lockstep")
+    add("md_events_per_second_by_number", interleaved(BY_NUMBER), "1/s", "lockstep")
     for error in (1e-3, 1e-4):
         events = count_until(error)[0]
         seconds = {

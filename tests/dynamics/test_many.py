@@ -11,6 +11,7 @@ import scalar_many
 
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
+from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -22,7 +23,7 @@ from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 def counted(scene, blocks, seed=1, events=None):
     """Return ({class: rate}, {class: standard error}, rates for the virial theorem by replica)."""
     duration = many.replica_duration(scene, events)
-    sums, products = many.run_blocks(scene, seed, 0, blocks, duration)
+    sums, products = kernels.run_blocks(scene, seed, 0, blocks, duration)
     replicas = blocks * REPLICAS
     found = sums / replicas / duration
     errors = found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
@@ -161,6 +162,7 @@ def test_orders_are_those_of_the_ergodic_components(scene):
 
 BITS = """
 import hashlib
+from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
@@ -168,7 +170,7 @@ scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6)]
 found = hashlib.sha256()
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
-    counts = many.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
+    counts = kernels.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
     for part in (*counts, *measures.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
         found.update(part.tobytes())
 print(found.hexdigest())
@@ -191,9 +193,9 @@ def test_the_bits_do_not_depend_on_the_processor(tmp_path):
 
 def test_lanes_and_shards_do_not_matter():
     for scene in (EXACT["three"], EXACT["four in a channel"], OTHERS["five, dense"]):
-        whole = many.run_blocks(scene, 7, 0, 3, 8.0, replicas=100)
-        other = many.run_blocks(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
-        parts = [many.run_blocks(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
+        whole = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100)
+        other = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
+        parts = [kernels.run_blocks(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]
         for one, same, *pieces in zip(whole, other, *parts, strict=True):
             assert np.array_equal(one, same)
             assert np.array_equal(one, sum(pieces))

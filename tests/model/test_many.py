@@ -150,8 +150,8 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"discs": 1}, "discs must be an integer from 2 to 64, not 1"),
-        ({"discs": 65}, "discs must be an integer from 2 to 64, not 65"),
+        ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
+        ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
         ({"discs": 3.0}, "discs must be an integer of at least 2, not 3.0"),
         ({"discs": True}, "discs must be an integer of at least 2, not True"),
         ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),

@@ -724,10 +724,10 @@ def test_more_discs_are_a_scene_of_their_own():
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"discs": 1}, "discs must be an integer from 2 to 64, not 1"),
-        ({"discs": 65}, "discs must be an integer from 2 to 64, not 65"),
-        ({"discs": 2.5}, "discs must be an integer from 2 to 64, not 2.5"),
-        ({"discs": True}, "discs must be an integer from 2 to 64, not True"),
+        ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
+        ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
+        ({"discs": 2.5}, "discs must be an integer from 2 to 1024, not 2.5"),
+        ({"discs": True}, "discs must be an integer from 2 to 1024, not True"),
         ({"discs": 3, "radii": [0.31]}, "radii: radius 0.31 does not fit: 3 discs"),
         ({"discs": 3, "effects": {"field": 1}}, "effects: field must be left out with 3 discs"),
         (

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import OCTAVES, REPLICAS, relative_errors
+from twodiscs.dynamics.ensemble import OCTAVES, relative_errors
 from twodiscs.model.checks import InputError, check_choice, check_error, check_integer
 from twodiscs.model.events import EVENTS
 from twodiscs.model.family import of_family
@@ -48,8 +48,8 @@ def replica_duration(scene):
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
-    A block is ``REPLICAS`` initial states, each followed for ``duration``. Returns (sums,
-    products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n), int64, in the order of EVENTS.
+    A block is some initial states (``block_replicas``), each followed for ``duration``. Returns
+    (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n), int64, in the order of EVENTS.
     """
     return of_family(scene, "dynamics", "run_blocks")(
         scene, events, seed, first, stop, duration, **shape
@@ -138,6 +138,7 @@ class CountingRun:
 
     def _everything(self, budget):
         scene, duration = self.scene, replica_duration(self.scene)
+        each = self._family("block_replicas")
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
         replicas = (
@@ -157,16 +158,16 @@ class CountingRun:
             )
             return sums if octaves is None else (*sums, octaves)
 
-        block_events = REPLICAS * expected_event_rate(scene) * duration
+        block_events = each * expected_event_rate(scene) * duration
         # Crowds that the budget has no chance to show are not waited for.
         needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
-        needed = needed / REPLICAS
+        needed = needed / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
-        planned = max(replicas, default=0.0) / REPLICAS
+        planned = max(replicas, default=0.0) / each
         planned = max([planned, *needed])
 
         def excess_of(sums, blocks):
-            errors = relative_errors(*sums[:2], blocks * REPLICAS)[index] / goals
+            errors = relative_errors(*sums[:2], blocks * each)[index] / goals
             return np.maximum(errors, np.sqrt(needed / blocks))
 
         return SequentialRun(
@@ -191,7 +192,7 @@ class CountingRun:
         return {
             "radius": self.scene.radius,
             "duration": replica_duration(self.scene),
-            "replicas": blocks * REPLICAS,
+            "replicas": blocks * self._family("block_replicas"),
             "rounds": rounds,
             "events": simulated_events(sums) + sum(strips[hop]["events"] for hop in strips),
             "counts": {EVENTS[e]: int(sums[e]) for e in tracked},

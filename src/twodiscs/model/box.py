@@ -18,8 +18,8 @@ TINY = 1e-6
 class Box:
     """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which ``discs`` may move.
 
-    There are two of them unless told, at most 64. Effects that have the value of their absence are
-    left out. Raises ``InputError`` for a side that is no length, for an unknown effect, and for
+    There are two of them unless told, at most 1024. Effects that have the value of their absence
+    are left out. Raises ``InputError`` for a side that is no length, for an unknown effect, and for
     effects that do not go together.
 
     Example:

@@ -13,8 +13,8 @@ SHORTEST, LONGEST = 1e-60, 1e60
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
 
-#: The most discs there may be.
-MOST_DISCS = 64
+#: The most discs there may be, and the most of which the volume of configuration space is computed.
+MOST_DISCS, MOST_WITH_VOLUME = 1024, 64
 
 #: Relative errors that have a name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}

@@ -52,7 +52,7 @@ class Scene:
     * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
       of the surfaces is reversed too, between discs and at walls. None means smooth.
 
-    ``discs`` is their number, an integer from 2 to 64. More than two are equal and smooth, in the
+    ``discs`` is their number, an integer from 2 to 1024. More than two are equal and smooth, in the
     plane, and of the effects only ``periodic`` "x" goes with them: the box is then a ring along x,
     with a total momentum of 0 along it. A collision or a hop is then that of any pair, a hit of the
     right or the top wall that of one disc, averaged over all initial conditions.

@@ -1,6 +1,7 @@
 """The molecular dynamics of two discs in scenes with effects."""
 
 from twodiscs.dynamics.two.lockstep import (
+    block_replicas,
     cost_ratio,
     expected_rate,
     replica_duration,
@@ -29,8 +30,9 @@ from twodiscs.dynamics.two.strip import summary as rare_summary
 from twodiscs.theory.exact import event_rate as expected_event_rate
 
 __all__ = [
-    "INTERVAL_SUMS", "advance_all", "cost_ratio", "events_of", "events_per_interval",
-    "expected_event_rate", "expected_rate", "interval_cost", "mean_interval", "new_wraps",
-    "planned", "rare_hops", "rare_run", "rare_summary", "record_intervals", "replica_duration",
-    "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
+    "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
+    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost", "mean_interval",
+    "new_wraps", "planned", "rare_hops", "rare_run", "rare_summary", "record_intervals",
+    "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
+    "work_per_event",
 ]  # fmt: skip

@@ -3,7 +3,7 @@
 import math
 
 from twodiscs.dynamics.ensemble import RETURNS
-from twodiscs.dynamics.many import lockstep
+from twodiscs.dynamics.many import kernels, lockstep
 from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duration
 from twodiscs.dynamics.many.path import (
     advance_all,
@@ -14,12 +14,14 @@ from twodiscs.dynamics.many.path import (
     usual_duration,
 )
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import HOPS
+from twodiscs.sampling.many.initial import LARGE
 
 __all__ = [
-    "INTERVAL_SUMS", "advance_all", "cost_ratio", "events_of", "events_per_interval",
-    "expected_event_rate", "expected_rate", "interval_cost", "mean_interval", "new_wraps",
-    "planned", "rare_hops", "record_intervals", "replica_duration", "run_blocks", "state_of",
-    "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
+    "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
+    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost", "mean_interval",
+    "new_wraps", "planned", "rare_hops", "record_intervals", "replica_duration", "run_blocks",
+    "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
 ]  # fmt: skip
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
@@ -28,6 +30,9 @@ INTERVAL_SUMS = 3
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble:
 #: 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
 PAIR = 0.8
+
+#: The same of ``LARGE`` numbers of discs: the time of an event, and what each disc adds to it.
+TOUCHED, COMPARED = 50.0, 0.25
 
 trajectory_rate = expected_event_rate
 
@@ -38,8 +43,15 @@ def expected_rate(scene, event):
 
 
 def run_blocks(scene, events, seed, first, stop, duration, *, octaves=None, **shape):
-    """Count all events in some blocks, see ``counting.run_blocks``; all are detected."""
-    return lockstep.of_events(*lockstep.run_blocks(scene, seed, first, stop, duration, **shape))
+    """Count all events in some blocks, see ``counting.run_blocks``; few discs detect all."""
+    hops = any(event in HOPS for event in events)
+    counts = kernels.run_blocks(scene, seed, first, stop, duration, hops=hops, **shape)
+    return lockstep.of_events(*counts)
+
+
+def block_replicas(scene):
+    """Return the number of replicas of a block."""
+    return lockstep.replicas_of(scene)
 
 
 def planned(scene, blocks, affordable):
@@ -59,10 +71,14 @@ def work_per_event(scene):
 
 def cost_ratio(scene):
     """Return the time of an event over that of one of the plain ensemble."""
+    if scene.discs >= LARGE:
+        return TOUCHED + COMPARED * scene.discs
     return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
 
 
-interval_cost = cost_ratio
+def interval_cost(scene):
+    """Return the time of an event over the plain one for intervals, which compare all pairs."""
+    return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
 
 
 def mean_interval(scene, hop):

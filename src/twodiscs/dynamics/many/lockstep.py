@@ -29,13 +29,16 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
-from twodiscs.sampling.many.initial import draw_states, initial_of, method
+from twodiscs.sampling.many.initial import LARGE, draw_states, initial_of, method
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import exact
-from twodiscs.theory.many.rates import rates
+from twodiscs.theory.many.rates import bulk_measures, rates
 
 #: Events of a replica, and where its initial state takes as long as some ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
+
+#: Events of each disc in a replica of ``LARGE`` numbers of discs.
+EVENTS_OF_DISC = 64
 
 #: A flight on a ring that ends without an event.
 LOOK_AGAIN = -1.0
@@ -375,18 +378,14 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
     return totals
 
 
-def run_blocks(scene, seed, first, stop, duration, *, replicas=REPLICAS, lanes=LANES):
-    """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
+def replicas_of(scene):
+    """Return how many replicas of a ``Scene`` a block has: fewer of ``LARGE`` numbers of discs."""
+    return REPLICAS if scene.discs < LARGE else REPLICAS >> (scene.discs.bit_length() - 5)
 
-    A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
-    for ``duration``. Returns (sums, products) as ``count_blocks`` does: integers, which depend on
-    neither lanes nor shards.
-    """
-    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    return count_blocks(
-        np.uint64(seed), first, stop, replicas, lanes, duration, scene.discs, law_of(scene),
-        initial_of(scene), hops_x,
-    )  # fmt: skip
+
+def epoch_of(scene):
+    """Return a time in which each disc of a ``Scene`` has some ``EVENTS_OF_DISC`` events."""
+    return replica_duration(scene, EVENTS_OF_DISC * scene.discs)
 
 
 def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums, going):
@@ -414,9 +413,12 @@ def expected_rates(scene):
 
     Exact where that is known, and else from some insertions (``measures.expected``), within a few
     per cent. Where these have no room, or see no wall hits or collisions, those are a guess
-    (``replica_duration``).
+    (``replica_duration``). Rates of ``LARGE`` numbers of discs follow from an equation of state,
+    within some ten per cent.
     """
-    known = exact.measures(scene) or measures.expected(scene)
+    known = exact.measures(scene)
+    if known is None:
+        known = measures.expected(scene) if scene.discs < LARGE else bulk_measures(scene)
     guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
     if known is None:
         return guess
@@ -441,8 +443,10 @@ def replica_duration(scene, events=None):
 
     Those are the wall hits of an ideal gas, and what discs do in the room that is left to them
     below the largest radius. Unless told, ``events`` are 256, or ``EVENTS_OF_CHAIN`` where an
-    initial state takes a chain of moves.
+    initial state takes a chain of moves; ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each.
     """
+    if events is None and scene.discs >= LARGE:
+        events = EVENTS_OF_DISC * scene.discs
     events = events or (EVENTS_OF_CHAIN if method(scene) == "chain" else REPLICA_EVENTS)
     return nearest_power_of_two(events / _guessed_rate(scene))
 

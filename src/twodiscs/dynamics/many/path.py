@@ -4,10 +4,10 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
+from twodiscs.dynamics.many.kernels import advance_scene
 from twodiscs.dynamics.many.lockstep import (
     N,
     advance,
-    advance_states,
     expected_event_rate,
     find_events,
     law_of,
@@ -25,7 +25,7 @@ event_rate = expected_event_rate
 
 def advance_all(scene, states, wraps, time):
     """Advance the columns of ``states``, see ``trajectory.advance_all``."""
-    advance_states(states, wraps, time, law_of(scene))
+    advance_scene(scene, states, wraps, time)
 
 
 def new_wraps(scene, number):

@@ -255,6 +255,11 @@ def replica_duration(scene):
     return duration
 
 
+def block_replicas(scene):
+    """Return the number of replicas of a block."""
+    return REPLICAS
+
+
 def run_blocks(
     scene, events, seed, first, stop, duration, *,
     replicas=REPLICAS, lanes=LANES, sides=(0, 0), octaves=None,

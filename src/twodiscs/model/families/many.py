@@ -7,7 +7,7 @@ import math
 from fractions import Fraction
 from functools import cache
 
-from twodiscs.model.checks import InputError
+from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
 
 __all__ = [
     "check", "confined", "ergodic_components", "largest_radius", "multiplicity", "passed",
@@ -37,7 +37,7 @@ def check(scene):
             "far as arrangements are known here"
         )
     size = scene.discs * math.log10(scene.range_x * scene.range_y)
-    if abs(size) > MOST_DIGITS:
+    if scene.discs <= MOST_WITH_VOLUME and abs(size) > MOST_DIGITS:
         raise InputError(
             f"width and height must be in a unit of length in which the prism of all places of "
             f"{scene.discs} discs lies between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "

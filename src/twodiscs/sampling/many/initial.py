@@ -7,7 +7,8 @@
   is left of the ratio; positions along the channel are then order statistics. Exact at every
   density.
 * ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one
-  disc at a time, a new chain for each state. Not exact: how far it is from equilibrium is tested,
+  disc at a time, a new chain for each state. ``LARGE`` numbers of discs take event chains instead
+  (``chains``). Not exact: how far it is from equilibrium is tested,
   against rejection and channels where they can be used, and against chains of other lengths. Where
   discs cannot get from one arrangement to another, it keeps to the known one.
 
@@ -24,7 +25,8 @@ import numpy as np
 from twodiscs.model.families.many import arrangement, is_ordered
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import measures
+from twodiscs.sampling.many import chains, measures
+from twodiscs.sampling.many.cells import Grid, grid_of
 from twodiscs.sampling.many.measures import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many import channel
@@ -34,6 +36,12 @@ LEAST = 1e-3
 
 #: Sweeps of a chain, and the least number of sizes of its moves, which are halves of one another.
 SWEEPS, SCALES = 4000, 8
+
+#: From that many discs on moves are event chains, and cells tell who may touch whom.
+LARGE = 20
+
+#: With more discs too few heights in a channel would be accepted.
+MOST_REJECTED = 64
 
 #: Weights of cells are at least those of exp(−z): (1 + z/64)^(−64).
 POWER = 64
@@ -56,11 +64,16 @@ class Cells(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """A chain from an arrangement (2, N): its sweeps, and of how many sizes its moves are."""
+    """A chain from an arrangement (2, N): its sweeps, and of how many sizes its moves are.
+
+    With a ``grid`` they are event chains, as many as ``sweeps``, of a mean ``length``.
+    """
 
     centres: np.ndarray
     sweeps: int
     scales: int
+    length: float = 0.0
+    grid: Grid | None = None
 
 
 class Initial(NamedTuple):
@@ -84,6 +97,8 @@ def method(scene):
     """
     if is_ordered(scene) or (not scene.periodic and is_ordered(scene.turned())):
         return "channel"
+    if scene.discs >= LARGE:
+        return "chain"
     return "rejection" if measures.free_fraction(scene) >= LEAST else "chain"
 
 
@@ -94,7 +109,7 @@ def initial_of(scene, by=None):
         scene.discs, scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
         scene.width if scene.periodic else None,
         _cells(scene) if by == "channel" else None,
-        _chain(scene) if by == "chain" else None,
+        _chain(scene) if by == "chain" or scene.discs > MOST_REJECTED else None,
     )  # fmt: skip
 
 
@@ -102,7 +117,19 @@ def _chain(scene):
     # The smallest moves are some fraction of the room that is left to the discs.
     tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
     scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
-    return Chain(np.array(arrangement(scene)).T.copy(), SWEEPS, scales)
+    centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
+    if grid is None:
+        return Chain(centres, SWEEPS, scales)
+    number, length = chains.plan(scene)
+    return Chain(centres, number, scales, _rounded(length), grid)
+
+
+def large_grid(scene):
+    """Return the ``Grid`` of a ``Scene`` of ``LARGE`` numbers of discs, None for others.
+
+    There is none for a short ring either.
+    """
+    return grid_of(scene) if scene.discs >= LARGE else None
 
 
 def _rounded(value):
@@ -247,10 +274,7 @@ def _rejected(state, initial, centres, chain):
         i += 1
 
 
-@optional(_rejected)
-def by_chain(state, initial, centres, chain):
-    """Fill ``centres`` (2, N) by a chain of moves, or by rejection where there is none."""
-    centres[:] = chain.centres
+def _one_by_one(state, initial, centres, chain, grid):
     width, height = 2 * initial.half_x, 2 * initial.half_y
     for _ in range(chain.sweeps):
         for i in range(initial.discs):
@@ -261,6 +285,31 @@ def by_chain(state, initial, centres, chain):
             inside = (abs(x) <= initial.half_x) & (abs(y) <= initial.half_y)
             if inside and not overlaps(centres, i, initial.discs, x, y, initial):
                 centres[0, i], centres[1, i] = x, y
+
+
+@optional(_one_by_one)
+def move_discs(state, initial, centres, chain, grid):
+    """Move discs by event chains, or one by one where there is no grid."""
+    chains.run_chains(state, initial, centres, chain.sweeps, chain.length, grid)
+
+
+@optional(_rejected)
+def by_chain(state, initial, centres, chain):
+    """Fill ``centres`` (2, N) by a chain of moves, or by rejection where there is none."""
+    centres[:] = chain.centres
+    move_discs(state, initial, centres, chain, chain.grid)
+
+
+@optional(lambda chain: False)
+def is_there(chain):
+    """Say whether there is a chain."""
+    return True
+
+
+@optional(lambda state, initial, centres, chain: None)
+def settle(state, initial, centres, chain):
+    """Move the discs from where they are, if there is a chain."""
+    move_discs(state, initial, centres, chain, chain.grid)
 
 
 def _elsewhere(state, initial, centres, cells):
@@ -282,10 +331,10 @@ def chosen(state, weights, ends, backward):
 
 
 @compiled
-def propose_heights(state, cells, sigma, heights):
+def propose_heights(state, cells, sigma, heights, tilted=False):
     """Fill ``heights`` (N,), from the middle of the channel; say whether they are accepted.
 
-    They are then distributed as (A − S)₊^N.
+    They are then distributed as (A − S)₊^N; if ``tilted``, as the weights of cells where S < A.
     """
     discs, height = heights.size, cells.ends[-1] - cells.ends[0]
     ratio, left, k = 1.0, cells.room, 0
@@ -299,8 +348,8 @@ def propose_heights(state, cells, sigma, heights):
             apart = abs(heights[i] - heights[i - 1])
             left -= excess(min(apart, height), sigma, height, cells.least)
             ratio /= cells.weights[last, k]
-    if left <= 0.0:
-        return False
+    if left <= 0.0 or tilted:
+        return left > 0.0
     for _ in range(discs):
         ratio *= left * cells.scale
     return uniform(state) < ratio
@@ -312,7 +361,7 @@ def draw_centres(state, initial, centres, cells):
     along, across = (1, 0) if cells.turned else (0, 1)
     half = initial.half_y if cells.turned else initial.half_x
     heights, order = centres[across], centres[along]
-    while not propose_heights(state, cells, initial.sigma, heights):
+    while not propose_heights(state, cells, initial.sigma, heights, is_there(initial.chain)):
         pass
     taken = 0.0
     for i in range(1, initial.discs):
@@ -327,6 +376,7 @@ def draw_centres(state, initial, centres, cells):
             apart = heights[i] - heights[i - 1]
             passed += math.sqrt((initial.sigma - apart) * (initial.sigma + apart))
         order[i] = min(max(passed + free * order[i] - half, -half), half)
+    settle(state, initial, centres, initial.chain)
 
 
 @compiled

@@ -20,7 +20,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
+from twodiscs.model.checks import (
+    MOST_WITH_VOLUME,
+    InputError,
+    check_choice,
+    check_fraction,
+    check_integer,
+)
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
@@ -282,6 +288,11 @@ def inserted(scene, quantities, shell, seed):
         raise InputError("quantities must name at least one quantity, not none")
     check_fraction("shell", shell)
     check_integer("seed", seed, 0)
+    if scene.discs > MOST_WITH_VOLUME:
+        raise InputError(
+            f"discs must be at most {MOST_WITH_VOLUME} for Monte Carlo by insertion, not "
+            f"{scene.discs}: almost no insertion of more would have a weight"
+        )
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
         wanted |= {f"{event}_area" for event in ("right_wall", "top_wall")} & {*allowed}

@@ -1,13 +1,14 @@
 """The exact numbers of N discs, where there are any: which method has them.
 
-Two discs have the plain theory, three the quadrature between its kinks, and any number in a channel
-so low that they keep their order the transfer operator. No exact value is known here for all
-others; their events may be possible all the same.
+Two discs have the plain theory, three the quadrature between its kinks, and up to
+``MOST_WITH_VOLUME`` in a channel so low that they keep their order the transfer operator. No exact
+value is known here for all others; their events may be possible all the same.
 """
 
 import math
 from functools import lru_cache
 
+from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
 from twodiscs.model.families.many import is_ordered, multiplicity
 from twodiscs.model.scene import Scene
@@ -18,8 +19,11 @@ from twodiscs.theory.many.rates import Measures, rates
 
 
 def method(scene):
-    """Return which theory knows a ``Scene``: "plain", "three", "channel", or None."""
-    if scene.periodic:
+    """Return which theory knows a ``Scene``: "plain", "three", "channel", or None.
+
+    A channel of more than ``MOST_WITH_VOLUME`` discs is not computed: it would take minutes.
+    """
+    if scene.periodic or scene.discs > MOST_WITH_VOLUME:
         return None
     if scene.discs < 4:
         return "plain" if scene.discs == 2 else "three"

@@ -132,3 +132,22 @@ def small_disc_rates(scene):
         "right_wall": c * (scene.discs + n * closed) / a,
         "top_wall": c * (scene.discs + n * closed) / b,
     }  # fmt: skip
+
+
+# Many discs ---------------------------------------------------------------------------------------
+
+
+def bulk_measures(scene):
+    """Return about what the ``Measures`` of many discs are, from an equation of state.
+
+    PV/(N kT) is Z = (1 + η²/8)/(1 − η)², with η the packing fraction (Henderson, Mol. Phys. 30, 971
+    (1975)). Two of them that are level are as if alone.
+    """
+    a, b, n, sigma = scene.range_x, scene.range_y, scene.discs, scene.contact_distance
+    packing = min(0.9, n * math.pi * sigma * sigma / 4 / (scene.width * scene.height))
+    z = (1 + packing * packing / 8) / (1 - packing) ** 2
+    pairs = n * (n - 1) / 2
+    return Measures(
+        math.nan, 0.0 if scene.periodic else n * z / a, n * z / b, 2 * n * (z - 1) / sigma,
+        pairs / a * max(0.0, 1 - sigma / b) ** 2, pairs / b * max(0.0, 1 - sigma / a) ** 2,
+    )  # fmt: skip

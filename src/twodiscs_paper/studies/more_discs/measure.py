@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from twodiscs.dynamics.ensemble import REPLICAS
+from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.families.many import multiplicity
@@ -27,9 +28,9 @@ DISCS, RADII = (2, 3, 4, 8), (0.1, 0.2, 0.28)
 def dynamics_rates(scene, events, seed):
     """Return ({class: rate}, {class: error}, error of the virial sum) of about so many events."""
     duration = many.replica_duration(scene)
-    each = many.simulated_events(many.run_blocks(scene, seed, 0, 1, duration)[0])
+    each = many.simulated_events(kernels.run_blocks(scene, seed, 0, 1, duration)[0])
     blocks = max(2, math.ceil(events / each))
-    sums, products = many.run_blocks(scene, seed, 0, blocks, duration)
+    sums, products = kernels.run_blocks(scene, seed, 0, blocks, duration)
     replicas = blocks * REPLICAS
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2

@@ -1,0 +1,371 @@
+"""Counts of events of many equal discs: one trajectory at a time, an event costs what it touches.
+
+The law of one event is that of ``lockstep``. Discs have times of their own: a disc flies straight
+from its last event on, and nothing is done for it before its next one. The box is divided into
+cells whose sides are longer than σ. Only discs in the same cell or in neighbouring ones can meet,
+so a disc keeps the soonest contact with those, and the time at which it comes to a border of its
+cell. The outermost borders are the walls. A tree of minima has the first of all these times.
+
+A contact is kept by the disc that looked for it last. If the other disc has an event before, the
+contact is out of date; then the first disc looks again at the time of the old contact, before which
+it cannot meet anybody else.
+
+A hop of two discs is a change of sign of their separation. Both fly straight from the later one of
+their last events on, so all hops of a disc are found at its own events: one comparison for each of
+the other discs. Where no hop is asked for, nothing is compared.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses
+from twodiscs.dynamics.many.lockstep import (
+    ABOVE,
+    BESIDE,
+    COLLISIONS,
+    HORIZONTAL,
+    VERTICAL,
+    N,
+    nearest,
+)
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many.cells import (
+    Places,
+    around_columns,
+    columns_within,
+    enter,
+    interval_of,
+    leave,
+    new_places,
+)
+from twodiscs.sampling.many.initial import draw_states
+from twodiscs.sampling.streams import open_stream
+
+#: Times begin at 0 again after that many events of each disc, about: so they lose no digits.
+EPOCH = 64
+
+
+class Motion(NamedTuple):
+    """The discs on their way, arrays (N,) except the last two.
+
+    ``time`` is when a disc was at (x, y). ``contact`` is when it meets its ``partner``, unless the
+    number of ``events`` of that is no longer what it was when it was ``seen``. ``border`` is when a
+    disc leaves its cell, along y if ``upwards``. ``tree`` has the first of all times in its node 1,
+    that of disc i in the i-th node of its last half, and in any other the earlier of the two below.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    u: np.ndarray
+    v: np.ndarray
+    time: np.ndarray
+    contact: np.ndarray
+    border: np.ndarray
+    upwards: np.ndarray
+    partner: np.ndarray
+    seen: np.ndarray
+    events: np.ndarray
+    tree: np.ndarray
+    places: Places
+
+
+@compiled
+def new_motion(discs, grid):
+    """Return a ``Motion`` for so many discs, without any content."""
+    leaves = 1
+    while leaves < discs:
+        leaves *= 2
+    return Motion(
+        np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
+        np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
+        np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
+        np.full(2 * leaves, NEVER), new_places(discs, grid),
+    )  # fmt: skip
+
+
+# Times --------------------------------------------------------------------------------------------
+
+
+@inlined
+def find_contact(i, now, columns, rows, motion, grid, law):
+    """Return (time, partner) of the soonest contact of disc ``i`` with one in those cells.
+
+    ``columns`` and ``rows`` are the first and the last ones. The time is infinite without any.
+    """
+    x, y, u, v = motion.x[i], motion.y[i], motion.u[i], motion.v[i]
+    lag = now - motion.time[i]
+    x, y = x + u * lag, y + v * lag
+    gap, speed, partner = NEVER, 1.0, -1
+    across, up = grid.x.size - 1, grid.y.size - 1
+    first, last = columns_within(columns[0], columns[1], across, law.ring)
+    for column in range(first, last + 1):
+        start = around_columns(column, across, law.ring) * up
+        for cell in range(start + max(rows[0], 0), start + min(rows[1], up - 1) + 1):
+            k = motion.places.head[cell]
+            while k >= 0:
+                lag = now - motion.time[k]
+                dx = nearest(motion.x[k] + motion.u[k] * lag - x, law.ring)
+                dy = motion.y[k] + motion.v[k] * lag - y
+                other_gap, other_speed, approach = contact_quotient(
+                    dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma
+                )
+                # A disc does not approach itself; a speed that is not a number loses.
+                if approach & (other_gap * speed < gap * other_speed):
+                    gap, speed, partner = other_gap, other_speed, k
+                k = motion.places.after[k]
+    # Discs that overlap by a rounding and approach collide now.
+    return now + max(gap / speed, 0.0), partner
+
+
+@inlined
+def time_to(border, position, velocity):
+    """Return the time until a disc is at the ``border`` ahead; infinite for one that rests."""
+    return abs(border - position) / abs(velocity) if velocity != 0.0 else NEVER
+
+
+@inlined
+def find_border(i, motion, grid):
+    """Set when disc ``i`` leaves its cell, and along which axis."""
+    u, v = motion.u[i], motion.v[i]
+    side_x = grid.x[motion.places.column[i] + (1 if u > 0.0 else 0)]
+    side_y = grid.y[motion.places.row[i] + (1 if v > 0.0 else 0)]
+    until_x, until_y = time_to(side_x, motion.x[i], u), time_to(side_y, motion.y[i], v)
+    motion.upwards[i] = until_y < until_x
+    motion.border[i] = motion.time[i] + min(until_x, until_y)
+
+
+@inlined
+def look_around(i, now, motion, grid, law):
+    """Set the soonest contact of disc ``i`` with any of its neighbours."""
+    c, r = motion.places.column[i], motion.places.row[i]
+    time, partner = find_contact(i, now, (c - 1, c + 1), (r - 1, r + 1), motion, grid, law)
+    motion.contact[i], motion.partner[i] = time, partner
+    motion.seen[i] = motion.events[partner] if partner >= 0 else 0
+
+
+@inlined
+def enlist(i, motion):
+    """Put the first time of disc ``i`` into the tree."""
+    tree = motion.tree
+    node, time = tree.size // 2 + i, min(motion.contact[i], motion.border[i])
+    tree[node] = time
+    while node > 1:
+        time = min(time, tree[node ^ 1])
+        node >>= 1
+        tree[node] = time
+
+
+@inlined
+def first_disc(tree):
+    """Return the disc whose time is the first one, that of least number if there are more."""
+    node, leaves, time = 1, tree.size // 2, tree[1]
+    while node < leaves:
+        node *= 2
+        node += 1 if tree[node] != time else 0
+    return node - leaves
+
+
+# Events -------------------------------------------------------------------------------------------
+
+
+@optional(lambda i, at, now, positions, velocities, times, hops: 0)
+def hops_of(i, at, now, positions, velocities, times, hops):
+    """Return with how many discs disc ``i`` has changed order, which is ``at`` that place now."""
+    start, speed, since, count = positions[i], velocities[i], times[i], 0
+    # It has not changed order with itself.
+    positions[i] = -NEVER
+    for k in range(positions.size):
+        last = max(since, times[k])
+        then = positions[k] + velocities[k] * (last - times[k])
+        there = positions[k] + velocities[k] * (now - times[k])
+        count += 1 if crosses(start + speed * (last - since) - then, at - there) else 0
+    positions[i] = start
+    return count
+
+
+@inlined
+def put(i, x, y, now, motion, counts, hops, hops_x):
+    """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
+    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, motion.time, hops)
+    counts[HORIZONTAL] += hops_of(i, x, now, motion.x, motion.u, motion.time, hops_x)
+    motion.x[i], motion.y[i], motion.time[i] = x, y, now
+
+
+@inlined
+def fly(i, now, motion, counts, hops, hops_x):
+    """Advance disc ``i`` to the time ``now``."""
+    lag = now - motion.time[i]
+    x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
+    put(i, x, y, now, motion, counts, hops, hops_x)
+
+
+@inlined
+def collide(i, j, motion, law):
+    """Exchange the velocities of two discs along the line of their centres."""
+    dx, dy = nearest(motion.x[i] - motion.x[j], law.ring), motion.y[i] - motion.y[j]
+    du, dv = motion.u[i] - motion.u[j], motion.v[i] - motion.v[j]
+    square = dx * dx + dy * dy
+    exchange = (dx * du + dy * dv) / square if square > VANISHING else 0.0
+    motion.u[i] -= exchange * dx
+    motion.v[i] -= exchange * dy
+    motion.u[j] += exchange * dx
+    motion.v[j] += exchange * dy
+
+
+@optional(lambda i, column, columns, motion, laps, ring: column)
+def across_seam(i, column, columns, motion, laps, ring):
+    """Return the number of a column; a disc that has passed the seam of a ring is put back."""
+    step = 1.0 if column == columns else (-1.0 if column < 0 else 0.0)
+    motion.x[i] -= step * ring[0]
+    laps[i] += step
+    return around_columns(column, columns, ring)
+
+
+@optional(lambda ahead, columns, ring: ahead < 0 or ahead == columns)
+def is_wall(ahead, columns, ring):
+    """Say whether there is a wall before the column ``ahead``."""
+    return False
+
+
+@inlined
+def start_from(states, replica, motion, grid, law):
+    """Begin with a column of ``states`` (4N, replicas)."""
+    discs = motion.x.size
+    motion.places.head[:] = -1
+    motion.events[:] = 0
+    for i in range(discs):
+        motion.x[i], motion.y[i] = states[i, replica], states[discs + i, replica]
+        motion.u[i], motion.v[i] = states[2 * discs + i, replica], states[3 * discs + i, replica]
+        motion.time[i] = 0.0
+        column, row = interval_of(motion.x[i], grid.x), interval_of(motion.y[i], grid.y)
+        enter(i, column, row, motion.places, grid)
+    for i in range(discs):
+        look_around(i, 0.0, motion, grid, law)
+        find_border(i, motion, grid)
+        enlist(i, motion)
+
+
+@compiled
+def follow(duration, epoch, motion, laps, grid, law, counts, hops, hops_x):
+    """Follow the discs for a ``duration`` and add to ``counts`` (n,) what happens.
+
+    On a ring the rounds of the discs are added to ``laps`` (N,).
+    """
+    discs, tree = motion.x.size, motion.tree
+    columns, rows = grid.x.size - 1, grid.y.size - 1
+    while True:
+        end = min(duration, epoch)
+        while True:
+            now = tree[1]
+            if not now < end:
+                break
+            i = first_disc(tree)
+            j = i
+            if motion.border[i] <= motion.contact[i]:
+                upwards = motion.upwards[i]
+                step = 1 if (motion.v[i] if upwards else motion.u[i]) > 0.0 else -1
+                c, r = motion.places.column[i], motion.places.row[i]
+                ahead = (r if upwards else c) + step
+                stops = ahead < 0 or ahead == rows if upwards else is_wall(ahead, columns, law.ring)
+                if not stops:
+                    leave(i, motion.places, grid)
+                    if upwards:
+                        r = ahead
+                        wide, high = (c - 1, c + 1), (r + step, r + step)
+                    else:
+                        c = across_seam(i, ahead, columns, motion, laps, law.ring)
+                        wide, high = (c + step, c + step), (r - 1, r + 1)
+                    enter(i, c, r, motion.places, grid)
+                    time, partner = find_contact(i, now, wide, high, motion, grid, law)
+                    if time < motion.contact[i]:
+                        motion.contact[i], motion.partner[i] = time, partner
+                        motion.seen[i] = motion.events[partner]
+                    find_border(i, motion, grid)
+                    enlist(i, motion)
+                    continue
+                lag = now - motion.time[i]
+                x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
+                if upwards:
+                    y = grid.y[rows if step > 0 else 0]
+                else:
+                    x = grid.x[columns if step > 0 else 0]
+                put(i, x, y, now, motion, counts, hops, hops_x)
+                if upwards:
+                    motion.v[i] = -motion.v[i]
+                    counts[ABOVE] += 1
+                else:
+                    motion.u[i] = -motion.u[i]
+                    counts[BESIDE] += 1
+                motion.events[i] += 1
+            else:
+                j = motion.partner[i]
+                if motion.events[j] == motion.seen[i]:
+                    fly(i, now, motion, counts, hops, hops_x)
+                    fly(j, now, motion, counts, hops, hops_x)
+                    collide(i, j, motion, law)
+                    motion.events[i] += 1
+                    motion.events[j] += 1
+                    counts[COLLISIONS] += 1
+                else:
+                    j = i
+            while True:
+                look_around(i, now, motion, grid, law)
+                find_border(i, motion, grid)
+                enlist(i, motion)
+                if i == j:
+                    break
+                i = j
+        if end == duration:
+            break
+        duration -= end
+        for i in range(discs):
+            motion.time[i] -= end
+            motion.contact[i] -= end
+            motion.border[i] -= end
+            enlist(i, motion)
+    for i in range(discs):
+        fly(i, duration, motion, counts, hops, hops_x)
+
+
+@compiled
+def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, grid, hops, hops_x):
+    """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
+
+    Returns (sums, products) as ``lockstep.count_blocks`` does. ``hops`` and ``hops_x`` are None
+    where hops in y or in x are not counted.
+    """
+    discs = initial.discs
+    states, laps = np.zeros((4 * discs, replicas)), np.zeros(discs)
+    motion, count = new_motion(discs, grid), np.zeros(N, np.int64)
+    sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    for block in range(first, stop):
+        draw_states(open_stream(seed, block), initial, states)
+        for replica in range(replicas):
+            count[:] = 0
+            start_from(states, replica, motion, grid, law)
+            follow(duration, epoch, motion, laps, grid, law, count, hops, hops_x)
+            for e in range(N):
+                sums[e] += count[e]
+                for f in range(e, N):
+                    products[e, f] += count[e] * count[f]
+    return sums, products
+
+
+@compiled
+def advance_all(states, laps, time, epoch, law, grid):
+    """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
+
+    On a ring the rounds of discs are added to ``laps`` (N, replicas).
+    """
+    discs, replicas = laps.shape
+    motion, counts, rounds = new_motion(discs, grid), np.zeros(N, np.int64), np.zeros(discs)
+    for replica in range(replicas):
+        rounds[:] = 0.0
+        start_from(states, replica, motion, grid, law)
+        follow(time, epoch, motion, rounds, grid, law, counts, None, None)
+        for i in range(discs):
+            states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
+            states[2 * discs + i, replica] = motion.u[i]
+            states[3 * discs + i, replica] = motion.v[i]
+            laps[i, replica] += rounds[i]

@@ -1,0 +1,109 @@
+"""Cells of a box of N discs: only discs in the same cell or in neighbouring ones can touch.
+
+Their sides are longer than σ. Each disc has the numbers of its column and of its row; the discs of
+a cell are a list.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, inlined, optional
+
+#: The least side of a cell over the root of the area for a disc, and over σ.
+SPACING, LEAST_SIDE = 1.25, 1 + 2.0**-20
+
+#: The least number of columns around a ring: then the nearest image of a neighbour is the only one.
+LEAST_COLUMNS = 4
+
+
+class Grid(NamedTuple):
+    """Borders of the columns and rows of cells: the outermost ones are walls, or the seam."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+class Places(NamedTuple):
+    """Where discs are: ``column`` and ``row`` (N,), and the list of the discs of each cell.
+
+    It begins with ``head`` (cells,) and goes on with ``after`` (N,); −1 is its end.
+    """
+
+    column: np.ndarray
+    row: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    head: np.ndarray
+
+
+def grid_of(scene):
+    """Return the ``Grid`` of a ``Scene``; None on a ring too short for ``LEAST_COLUMNS``."""
+    a, b = scene.range_x, scene.range_y
+    side = max(LEAST_SIDE * scene.contact_distance, SPACING * math.sqrt(a * b / scene.discs))
+    columns, rows = max(1, int(a / side)), max(1, int(b / side))
+    if scene.periodic:
+        columns = max(columns, min(LEAST_COLUMNS, int(a / (LEAST_SIDE * scene.contact_distance))))
+        if columns < LEAST_COLUMNS:
+            return None
+    return Grid(_borders(a, columns), _borders(b, rows))
+
+
+def _borders(length, number):
+    # Symmetric, and the last ones are the walls exactly.
+    return np.array([(2 * k - number) / number * (length / 2) for k in range(number + 1)])
+
+
+@compiled
+def new_places(discs, grid):
+    """Return ``Places`` for so many discs, none of which is anywhere yet."""
+    cells = (grid.x.size - 1) * (grid.y.size - 1)
+    return Places(
+        np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
+        np.zeros(discs, np.int64), np.full(cells, -1),
+    )  # fmt: skip
+
+
+@inlined
+def interval_of(position, borders):
+    """Return the number of the interval between ``borders`` that holds a ``position``."""
+    number = borders.size - 1
+    k = np.int64((position - borders[0]) / (borders[number] - borders[0]) * number)
+    return min(max(k, 0), number - 1)
+
+
+@inlined
+def enter(i, column, row, places, grid):
+    """Put disc ``i`` at the head of the list of a cell."""
+    cell = column * (grid.y.size - 1) + row
+    other = places.head[cell]
+    places.column[i], places.row[i] = column, row
+    places.before[i], places.after[i], places.head[cell] = -1, other, i
+    if other >= 0:
+        places.before[other] = i
+
+
+@inlined
+def leave(i, places, grid):
+    """Take disc ``i`` out of the list of its cell."""
+    before, after = places.before[i], places.after[i]
+    if before >= 0:
+        places.after[before] = after
+    else:
+        places.head[places.column[i] * (grid.y.size - 1) + places.row[i]] = after
+    if after >= 0:
+        places.before[after] = before
+
+
+@optional(lambda column, columns, ring: column)
+def around_columns(column, columns, ring):
+    """Return the number of a column on a ring that may be counted beyond its seam."""
+    column -= columns if column >= columns else 0
+    return column + (columns if column < 0 else 0)
+
+
+@optional(lambda low, high, columns, ring: (max(low, 0), min(high, columns - 1)))
+def columns_within(low, high, columns, ring):
+    """Return the first and the last column; on a ring they may be beyond its seam."""
+    return low, high

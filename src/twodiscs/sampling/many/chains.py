@@ -1,0 +1,128 @@
+"""Event chains: many discs in a new arrangement, by moves that none of them refuses.
+
+A chain picks a disc and one of the four directions, all with the same probability. The disc moves
+until it touches another one, which then moves on in its place, or a wall, where it turns back; so
+on until all discs together have come as far as was drawn beforehand (Bernard, Krauth and Wilson,
+Phys. Rev. E 80, 056704 (2009)). A state of the chain is the centres, the disc that moves and its
+direction. For a given length the chain maps such states one to one onto each other, and it keeps
+their volume: a move is a translation, and at a contact or at a wall the disc that comes and the one
+that goes have the same flux. So centres that are uniform among all allowed ones stay uniform. The
+number of the chains and their lengths do not depend on the centres.
+"""
+
+import math
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, inlined, optional
+from twodiscs.sampling.many.cells import (
+    around_columns,
+    enter,
+    interval_of,
+    leave,
+    new_places,
+)
+from twodiscs.sampling.many.measures import around
+from twodiscs.sampling.streams import next_bits, uniform
+
+#: Contacts of each disc, and of a chain, about.
+CONTACTS, CONTACTS_OF_CHAIN = 512, 16
+
+
+def plan(scene):
+    """Return (number, mean length) of the chains that a new arrangement of a ``Scene`` takes.
+
+    Discs that fill the box at the radius r_max have the pressure Z − 1 ≈ r/(r_max − r), which is
+    also the number of contacts in a length (π/4) σ of chain.
+    """
+    room = (scene.largest_radius - scene.radius) / scene.radius
+    length = CONTACTS_OF_CHAIN * math.pi / 4 * scene.contact_distance * room
+    # Small discs hardly meet.
+    length = min(length, 4 * max(scene.width, scene.height))
+    return math.ceil(CONTACTS * scene.discs / CONTACTS_OF_CHAIN), length
+
+
+@optional(lambda column, columns, ring: column if 0 <= column < columns else -1)
+def column_of(column, columns, ring):
+    """Return the number of a column, −1 where there is none."""
+    return around_columns(column, columns, ring)
+
+
+@inlined
+def first_contact(i, axis, sign, left, centres, places, grid, initial):
+    """Return (distance, disc) of the first contact of disc ``i``; (``left``, −1) without one."""
+    sigma, ring = initial.sigma, initial.ring
+    columns, rows = grid.x.size - 1, grid.y.size - 1
+    borders = grid.x if axis == 0 else grid.y
+    along, across = (places.column[i], places.row[i])
+    if axis == 1:
+        along, across = across, along
+    at_x, at_y = centres[0, i], centres[1, i]
+    side = borders[1] - borders[0]
+    beyond = abs(borders[along + (1 if sign > 0.0 else 0)] - centres[axis, i]) - sigma
+    reach, disc = left, -1
+    for step in range(columns + rows):
+        # The nearest contact with a disc of the next cells.
+        if step > 0 and beyond + (step - 1) * side >= reach:
+            break
+        a = along + (step if sign > 0.0 else -step)
+        for b in range(across - 1, across + 2):
+            column = column_of(a if axis == 0 else b, columns, ring)
+            row = b if axis == 0 else a
+            if column < 0 or row < 0 or row >= rows:
+                continue
+            k = places.head[column * rows + row]
+            while k >= 0:
+                dx, dy = around(centres[0, k] - at_x, ring), centres[1, k] - at_y
+                ahead, apart = (dx, dy) if axis == 0 else (dy, dx)
+                square = (sigma - apart) * (sigma + apart)
+                if square > 0.0 and sign * ahead > 0.0:
+                    gap = sign * ahead - math.sqrt(square)
+                    if gap < reach:
+                        reach, disc = max(gap, 0.0), k
+                k = places.after[k]
+    return reach, disc
+
+
+@optional(lambda left, ring: left)
+def short_of_half(left, ring):
+    """Return how far a disc on a ring moves before it looks again, at most ``left``."""
+    return min(left, ring / 4)
+
+
+@optional(lambda axis, position, sign, half, ring: half - sign * position)
+def to_wall(axis, position, sign, half, ring):
+    """Return how far it is to the wall ahead; on a ring there is none of x."""
+    return math.inf if axis == 0 else half - sign * position
+
+
+@compiled
+def run_chains(state, initial, centres, number, length, grid):
+    """Move the discs of ``centres`` (2, N) by that ``number`` of chains of a mean ``length``."""
+    discs, places = initial.discs, new_places(initial.discs, grid)
+    for i in range(discs):
+        column, row = interval_of(centres[0, i], grid.x), interval_of(centres[1, i], grid.y)
+        enter(i, column, row, places, grid)
+    for _ in range(number):
+        axis = np.int64(next_bits(state) % np.uint64(2))
+        sign = 1.0 if next_bits(state) % np.uint64(2) == 0 else -1.0
+        i = np.int64(next_bits(state) % np.uint64(discs))
+        half = initial.half_x if axis == 0 else initial.half_y
+        left = 2 * length * uniform(state)
+        while left > 0.0:
+            position = centres[axis, i]
+            wall = to_wall(axis, position, sign, half, initial.ring)
+            limit = short_of_half(min(left, wall), initial.ring)
+            step, k = first_contact(i, axis, sign, limit, centres, places, grid, initial)
+            left -= step
+            bounces = k < 0 and limit == wall
+            centres[axis, i] = position + sign * step
+            centres[0, i] = around(centres[0, i], initial.ring)
+            if bounces:
+                centres[axis, i], sign = sign * half, -sign
+            column, row = interval_of(centres[0, i], grid.x), interval_of(centres[1, i], grid.y)
+            if column != places.column[i] or row != places.row[i]:
+                leave(i, places, grid)
+                enter(i, column, row, places, grid)
+            if k >= 0:
+                i = k

@@ -1,0 +1,199 @@
+"""Many discs: rates of the kernel of few discs and of theory, no lost hop, no overlap."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from twodiscs.dynamics.ensemble import relative_errors
+from twodiscs.dynamics.many import cells as many_cells
+from twodiscs.dynamics.many import kernels
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.events import SHELLS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.many import initial
+from twodiscs.sampling.many.cells import grid_of
+from twodiscs.theory.many import exact
+from twodiscs.theory.many.rates import rates, virial_weights
+
+
+def counts_of(scene, seed, replicas, events, epochs=7.3):
+    """Return (sums, products, duration) of ``many_cells``, whose times begin anew some times."""
+    duration = many.replica_duration(scene, events)
+    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    sums, products = many_cells.count_blocks(
+        np.uint64(seed), 0, 1, replicas, duration, duration / epochs, many.law_of(scene),
+        initial.initial_of(scene), grid_of(scene), True, hops_x,
+    )  # fmt: skip
+    return sums, products, duration
+
+
+def means(sums, products, duration, replicas):
+    """Return (rates, standard errors) of all classes."""
+    found = sums / replicas / duration
+    return found, found * np.where(sums > 0, relative_errors(sums, products, replicas), 0.0)
+
+
+THREE = [
+    Scene(1.5, 1.0, 0.15, discs=3),
+    Scene(1.5, 1.0, 0.26, discs=3),
+    Scene(1.0, 1.5, 0.24, discs=3),
+]
+
+
+@pytest.mark.parametrize(
+    "scene", [*THREE, Scene(3.5, 0.6, 0.18, discs=8), Scene(7.0, 0.6, 0.18, discs=16)], ids=repr
+)
+def test_rates_are_exact(scene):
+    """Five sigma on every class, with as few cells as there may be."""
+    found, errors = means(*counts_of(scene, 1, 4096, 256), 4096)
+    for event, rate in rates(scene, exact.measures(scene)).items():
+        k = [*SHELLS].index(event)
+        assert abs(found[k] - rate) <= 5 * errors[k], (event, found[k], rate, errors[k])
+
+
+#: At the border: where one kernel ends and the other one begins, and on rings.
+BORDER = [
+    Scene(15.0, 1.0, 0.1, discs=initial.LARGE),
+    Scene(4.0, 2.0, 0.2, discs=initial.LARGE),
+    Scene(8.0, 0.9, 0.2, discs=initial.LARGE),
+    Scene(4.0, 2.0, 0.15, discs=initial.LARGE, periodic="x"),
+]
+
+
+@pytest.mark.parametrize("scene", BORDER, ids=repr)
+def test_both_kernels_have_the_same_rates(scene):
+    """Five sigma on every class."""
+    replicas = 1024
+    found, errors = means(*counts_of(scene, 2, replicas, 1024), replicas)
+    duration = many.replica_duration(scene, 1024)
+    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    sums, products = many.count_blocks(
+        np.uint64(3), 0, 1, replicas, 64, duration, scene.discs, many.law_of(scene),
+        initial.initial_of(scene), hops_x,
+    )  # fmt: skip
+    other, spread = means(sums, products, duration, replicas)
+    assert np.all(np.abs(found - other) <= 5 * np.hypot(errors, spread)), (found, other)
+
+
+@pytest.mark.parametrize("scene", BORDER, ids=repr)
+def test_a_few_events_are_the_same_ones(scene):
+    """From the same states, before roundings have grown: the same counts, every one of them."""
+    replicas, duration = 256, many.replica_duration(scene, 2 * scene.discs)
+    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    given = many.law_of(scene), initial.initial_of(scene)
+    one = many_cells.count_blocks(
+        np.uint64(4), 0, 1, replicas, duration, duration / 3, *given, grid_of(scene), True, hops_x
+    )
+    other = many.count_blocks(
+        np.uint64(4), 0, 1, replicas, 64, duration, scene.discs, *given, hops_x
+    )
+    assert one[0].sum() > 10 * replicas
+    for some, same in zip(one, other, strict=True):
+        assert np.array_equal(some, same)
+
+
+def test_which_kernel_runs():
+    """By the number of discs; and a ring too short for cells has none."""
+    small, large = (Scene(15.0, 1.0, 0.1, discs=n) for n in (initial.LARGE - 1, initial.LARGE))
+    assert initial.large_grid(small) is None
+    assert initial.large_grid(large) is not None
+    assert initial.large_grid(Scene(0.7, 10.0, 0.1, discs=24, periodic="x")) is None
+    sums, _ = kernels.run_blocks(large, 5, 0, 1, 4.0, replicas=16)
+    short = Scene(0.7, 10.0, 0.1, discs=24, periodic="x")
+    assert kernels.run_blocks(short, 5, 0, 1, 0.5, replicas=16)[0][2:].sum() > 0
+    alone, _ = kernels.run_blocks(large, 5, 0, 1, 4.0, replicas=16, hops=False)
+    assert np.array_equal(sums[2:], alone[2:])
+    assert not alone[:2].any()
+
+
+def test_shards_add_up():
+    scene = BORDER[0]
+    whole = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=20)
+    parts = [kernels.run_blocks(scene, 7, a, b, 8.0, replicas=20) for a, b in ((0, 1), (1, 3))]
+    for one, *pieces in zip(whole, *parts, strict=True):
+        assert np.array_equal(one, sum(pieces))
+
+
+def test_the_virial_theorem_holds_for_many_discs():
+    """Five sigma, at a packing fraction of .5 in a box."""
+    side = math.sqrt(64 * math.pi * 0.01 / 0.5)
+    scene, replicas = Scene(side, side, 0.1, discs=64), 256
+    sums, products = kernels.run_blocks(
+        scene, 8, 0, 1, many.replica_duration(scene), replicas=replicas
+    )
+    duration = many.replica_duration(scene)
+    weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
+    second = np.triu(products) + np.triu(products, 1).T
+    covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
+    error = math.sqrt(weights @ covariance @ weights)
+    assert error < 0.01
+    assert abs(weights @ sums / replicas / duration - 1) < 5 * error
+
+
+@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], Scene(48.0, 1.0, 0.1, discs=64)], ids=repr)
+def test_advanced_states_are_those_of_the_other_kernel(scene):
+    """After some events of each disc, and there and back again; rounds of a ring as well."""
+    start = initial.states(scene, 20, 9)
+    duration = many.replica_duration(scene, 4 * scene.discs)
+    states, laps = start.copy(), np.zeros((scene.discs, 20))
+    kernels.advance_scene(scene, states, laps, duration)
+    other, rounds = start.copy(), np.zeros((scene.discs, 20))
+    many.advance_states(other, rounds, duration, many.law_of(scene))
+    assert np.array_equal(laps, rounds)
+    assert states == pytest.approx(other, abs=1e-7 * scene.width)
+    states[2 * scene.discs :] *= -1
+    kernels.advance_scene(scene, states, laps, duration)
+    states[2 * scene.discs :] *= -1
+    assert states == pytest.approx(start, abs=1e-7 * scene.width)
+
+
+#: Roundings of the box that an overlap may be, and |E − 1/2| after 1e8 events.
+GAP_BOUND, ENERGY_BOUND = 1e-14, 1e-11
+
+
+def check_conserved(scene, events):
+    """Follow one trajectory in pieces and check distances, ranges and the energy after each."""
+    n, states = scene.discs, initial.states(scene, 1, 1)
+    law, grid, epoch = (
+        many.law_of(scene),
+        grid_of(scene),
+        many.replica_duration(scene, 64 * scene.discs),
+    )
+    pieces, laps = 20, np.zeros((n, 1))
+    duration = many.replica_duration(scene, events / pieces)
+    for _ in range(pieces):
+        many_cells.advance_all(states, laps, duration, epoch, law, grid)
+        x, y, u, v = np.split(states[:, 0], 4)
+        half = law.ring[1] * (1 + 1e-15) if law.ring else scene.range_x / 2
+        assert np.max(np.abs(x)) <= half
+        assert np.max(np.abs(y)) <= scene.range_y / 2
+        i, j = np.array([*itertools.combinations(range(n), 2)]).T
+        dx = np.abs(x[i] - x[j])
+        dx = np.minimum(dx, scene.width - dx) if law.ring else dx
+        gap = np.min(np.hypot(dx, y[i] - y[j])) - scene.contact_distance
+        assert gap >= -GAP_BOUND * max(scene.width, scene.height)
+        assert abs(np.sum(u * u + v * v) - 1) / 2 < ENERGY_BOUND
+        if law.ring:
+            assert abs(np.sum(u)) < 1e-10
+    return states
+
+
+side = math.sqrt(256 * math.pi * 0.01 / 0.6)
+DENSE = [
+    Scene(side, side, 0.1, discs=256),
+    Scene(side, side, 0.1, discs=256, periodic="x"),
+    Scene(18.0, 0.6, 0.18, discs=64),
+]
+
+
+@pytest.mark.parametrize("scene", DENSE, ids=repr)
+def test_everything_is_conserved(scene):
+    check_conserved(scene, 1_000_000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", DENSE[:2], ids=repr)
+def test_everything_is_conserved_over_a_hundred_million_events(scene):
+    check_conserved(scene, 10**8)
