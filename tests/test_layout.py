@@ -87,7 +87,7 @@ def test_every_room_is_known_and_none_is_crowded(package):
 def test_initial_files_hold_a_docstring_only():
     """An ``__init__`` that imports would make every edit rerun every job."""
     for path in ROOT.rglob("__init__.py"):
-        if path.parent != ROOT / "twodiscs":
+        if path.parent.parent != ROOT:  # the packages themselves, on which nothing depends
             body = ast.parse(path.read_text(encoding="utf-8")).body
             assert len(body) == 1, path
             assert isinstance(body[0], ast.Expr), path
