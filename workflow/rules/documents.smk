@@ -142,13 +142,14 @@ rule provenance:
 
 
 rule explorer:
-    """Write the explorer: the discs as they move and are counted, beside exact values and points."""
+    """Write the explorer: the discs as they move and are counted, beside exact values and points that are built."""
     input:
+        # The page does without points: it takes those that are built, and is renewed with them.
         tables=[
             path
             for scene in CONFIGURATION.plain
             for name, path in FILES.tables(scene.name).items()
-            if name in ("volume", "areas", "mean_times")
+            if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],
         parts=[
             source(f"workflow/explorer/{name}")
@@ -156,10 +157,8 @@ rule explorer:
                 "explorer.html",
                 "theory.js",
                 "dynamics.js",
+                "plot.js",
                 "page.js",
-                "uPlot/uPlot.iife.min.js",
-                "uPlot/uPlot.min.css",
-                "uPlot/LICENSE",
             )
         ],
     output:
