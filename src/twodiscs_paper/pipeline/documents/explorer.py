@@ -69,6 +69,11 @@ def points(tables):
     }
 
 
+def data_of(scenes, seed):
+    """Return what the scripts read: ``scenes`` with their points, looks of events and the seed."""
+    return {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": seed}
+
+
 def explorer(parts, data, left_out=()):
     """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``.
 
@@ -101,9 +106,8 @@ def main():
         if not scene["effects"]
     ]
     left_out = [scene["name"] for scene in given if scene["effects"]]
-    data = {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": options.seed}
     parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
-    options.output.write_text(explorer(parts, data, left_out), encoding="utf-8", newline="\n")
+    options.output.write_text(explorer(parts, data_of(scenes, options.seed), left_out), encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
