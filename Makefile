@@ -32,6 +32,7 @@ test: .venv/ready
 	$(IN_VENV) pytest -n $(CORES) $(WHICH)
 
 docs: .venv/ready
+	rm -rf build/site
 	$(IN_VENV) python docs/make/website.py build/docs
 	@# A warning, as of a dead link, is an error.
 	$(IN_VENV) sphinx-build --fail-on-warning --keep-going --quiet --fresh-env build/docs build/site

@@ -2,8 +2,9 @@
 
     python docs/make/pages.py
 
-renews config/README.md, config/schema.json for editors, the end of results/README.md, the rows of studies in docs/pipeline.md, and what `twodiscs` prints in the pages of
-docs, in the folder where it is called.
+renews config/README.md, config/schema.json for editors, the end of results/README.md, the rows of
+studies in docs/pipeline.md, and what `twodiscs` prints in the pages of docs, in the folder where it
+is called.
 """
 
 import json
@@ -30,8 +31,8 @@ is one. The site has a page for each table with its columns; in Python, `attrs["
 `attrs["units"]` of a table that `td.load("results/paper")` returns say the same.\
 """
 
-#: What stands before and after the rows of studies in docs/pipeline.md; on lines of their own, comments
-#: would end the table.
+#: What stands before and after the rows of studies in docs/pipeline.md; on lines of their own,
+#: comments would end the table.
 MARKS = "<!-- studies --> |\n", "| <!-- end of studies -->"
 
 
@@ -48,7 +49,7 @@ def every_table():
 def described_tables(cell="`{}.csv`"):
     """Return the list of all tables as Markdown; ``cell`` is how a name is written there."""
     rows = (f"| {cell.format(n)} | {_plain(t.meaning())} |" for n, t in every_table().items())
-    return "\n".join([f"# Tables\n\n{INTRODUCTION}\n\n| table | its rows |\n|---|---|", *rows, ""])
+    return "\n".join([f"{INTRODUCTION}\n\n| table | its rows |\n|---|---|", *rows, ""])
 
 
 def described_table(name, table):
@@ -119,7 +120,7 @@ def pages(folder):
         **{name: COMMAND.sub(_tried, text) for name, text in shown.items() if COMMAND.search(text)},
         "config/README.md": document(),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
-        "results/README.md": renewed(results, described_tables(), "# Tables\n"),
+        "results/README.md": renewed(results, f"## Tables\n\n{described_tables()}", "## Tables\n"),
         "docs/pipeline.md": renewed(shown["docs/pipeline.md"], described_studies(), *MARKS),
     }
 

@@ -26,7 +26,6 @@ from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.configuration.schema import document
 from twodiscs_paper.pipeline.documents import explorer
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES, drawn
 from twodiscs_paper.pipeline.jobs.study import read_tables
@@ -61,7 +60,7 @@ CONTENTS = {
 
 
 def relinked(text, folder):
-    """Return the text of a page of the folder ``folder`` of the repository as a page of the site."""
+    """Return the text of a page in ``folder`` of the repository as a page of the site."""
     text = re.sub(r'(<img src=")docs/', r"\1", text)
     return re.sub(r"(!?)\[([^\]]*)\]\(([^)#\s]*)(#[^)]*)?\)", partial(_link, folder), text)
 
@@ -148,7 +147,7 @@ def in_python(name):
 
 
 def picture(name):
-    """Return a small picture of a figure of the expected tables, None if they do not have it all."""
+    """Return a small picture of a figure of the expected tables, None without all of them."""
     entry, folders = ENTRIES[name], (EXPECTED / "paper", EXPECTED)
     wanted = (*entry.tables, *entry.main_tables)
     found = {n: f / f"{n}.csv" for n in wanted for f in folders if (f / f"{n}.csv").exists()}
@@ -166,7 +165,7 @@ def gallery(pictures):
     lines = [
         "# Gallery",
         "Every figure of the pipeline, drawn for a box of 1.5 × 1. "
-        "In Python, start with `import twodiscs as td`; the names of figures are those of `figure=`.",
+        "In Python, start with `import twodiscs as td`; `figure=` takes the name of a figure.",
     ]
     for name, entry in ENTRIES.items():
         lines.append(f"## {entry.title}")
@@ -191,21 +190,26 @@ def live_explorer():
 EXPLORER = """\
 # The explorer
 
-<a href="explorer-page.html">A page of its own</a> has more room. `snakemake explorer` writes the same page for your
-own boxes, with the points of your build if there is one.
+<a href="explorer-page.html">A page of its own</a> has more room. `snakemake explorer` writes the
+same page for your own boxes, with the points of your build if there is one.
 
-<iframe src="explorer-page.html" title="The explorer" style="width: 100%; height: 90rem; border: 0"></iframe>
+<iframe src="explorer-page.html" title="The explorer"
+    style="width: 100%; height: 90rem; border: 0"></iframe>
 """
 
 
 def made():
     """Return {name: text or bytes} of all sources of the site."""
-    files = {"conf.py": (ROOT / "docs" / "make" / "conf.py").read_bytes()}
+    files = {
+        "conf.py": (ROOT / "docs" / "make" / "conf.py").read_bytes(),
+        "static/site.css": ".highlight, table.docutils { clear: both; }\n",
+    }
     for path in (ROOT / "docs").iterdir():
         if path.suffix == ".md":
             files[path.name] = path.read_text(encoding="utf-8")
         elif path.suffix in (".png", ".gif", ".svg"):
-            files[path.name] = path.read_bytes()
+            # Twice: what stands in HTML is not known to Sphinx.
+            files[path.name] = files[f"extra/{path.name}"] = path.read_bytes()
     files["python.md"], shown = notebook(ROOT / "docs" / "tutorial.ipynb")
     files |= {name: relinked(text, "docs") for name, text in files.items() if name.endswith(".md")}
     files["reference.md"] = reference(files["reference.md"])
@@ -215,7 +219,8 @@ def made():
     for title, names in CONTENTS.items():
         files["index.md"] += contents(title, names.split())
     tables = every_table()
-    files["tables.md"] = described_tables("[{0}.csv](tables/{0}.md)")
+    files["tables.md"] = "# The columns of the tables\n\n"
+    files["tables.md"] += described_tables("[{0}.csv](tables/{0}.md)")
     files["tables.md"] += contents("", (f"tables/{name}" for name in tables))
     for name, table in tables.items():
         more = f"\n## How to read it\n\n{check.__doc__}" if name == "check" else ""

@@ -107,7 +107,8 @@ def main():
     ]
     left_out = [scene["name"] for scene in given if scene["effects"]]
     parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
-    options.output.write_text(explorer(parts, data_of(scenes, options.seed), left_out), encoding="utf-8", newline="\n")
+    page = explorer(parts, data_of(scenes, options.seed), left_out)
+    options.output.write_text(page, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
