@@ -136,11 +136,15 @@ RESULTS = {
 }
 
 
+#: The one of a figure that takes a table of a build.
+BUILT = 'td.load("results/paper")["mean_times"]'
+
+
 def in_python(name):
     """Return the line of Python that draws a figure, None for those of studies."""
     if name in STUDY_FIGURES:
         return None
-    result = RESULTS[ENTRIES[name].tables]
+    result = BUILT if name == "pressure" else RESULTS[ENTRIES[name].tables]
     if name == "animation":
         return f'td.animate({result}, "animation.gif")'
     return f'td.plot({result}, figure="{name}")'
