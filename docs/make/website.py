@@ -52,7 +52,9 @@ CONTENTS = {
     "What is known": "results physics passages engine scaling",
     "The pipeline": "pipeline running reading-check add-a-box cluster configuration files tables",
     "Reference": "reference",
-    "Development": "contributing architecture data add-an-effect add-a-figure add-a-study site changes",
+    "Development": (
+        "contributing architecture data add-an-effect add-a-figure add-a-study site changes"
+    ),
 }
 
 
