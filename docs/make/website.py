@@ -183,7 +183,7 @@ def gallery(pictures):
         lines.append(f"## {entry.title}")
         if name in pictures:
             lines.append(f"![{entry.title}]({pictures[name]})")
-        lines.append(entry.full_caption().replace("|", "\\|").replace("<", "&lt;"))
+        lines.append(entry.caption().replace("|", "\\|").replace("<", "&lt;"))
         lines.append(f"```text\nsnakemake --cores 2 {name}\n```")
         if line := in_python(name):
             lines.append(f"```python\n{line}\n```")
