@@ -11,10 +11,10 @@ PYTHON ?=
 CANDIDATES = $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 python
 # What an activated .venv brings is gone when it is set up again.
 export PATH := $(subst $(CURDIR)/.venv/bin:,,$(PATH))
-PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check --no-compile
+PIP = .venv/bin/python -m pip install --quiet --disable-pip-version-check
 IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
-# Packages come as sources. Where Python is told to keep no bytecode, as in many containers, each of some hundred
-# processes would compile them anew: a second or two.
+# Packages are installed with their bytecode. Where Python is told to keep none, as in many containers, each of some
+# hundred processes would compile our own sources anew.
 export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: all test test-all docs
@@ -58,7 +58,7 @@ docs: .venv/ready
 	  { $(PIP) --require-hashes --requirement .venv/uv.lock || true; }; \
 	fi
 	@$(IN_VENV) VIRTUAL_ENV="$(CURDIR)/.venv" sh -c '\
-	  uv pip install --quiet --require-hashes --requirement requirements.lock 2> .venv/uv.log && \
+	  uv pip install --quiet --compile-bytecode --require-hashes --requirement requirements.lock 2> .venv/uv.log && \
 	  uv pip install --quiet --no-deps --no-build-isolation --editable . 2>> .venv/uv.log' || { \
 	  $(PIP) --require-hashes --requirement requirements.lock && \
 	  $(PIP) --no-deps --no-build-isolation --editable .; }

@@ -2,9 +2,9 @@
 include: "workflow/Snakefile"
 
 
+# Rules of an included file are not built without a target.
 rule default:
     """What is built without a target: everything that the configuration asks for."""
-    default_target: True
     input:
-        rules.all.input,
+        lambda w: ASKED_FOR,
     localrule: True

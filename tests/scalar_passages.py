@@ -12,8 +12,8 @@ import numpy as np
 
 
 @numba.njit
-def replica(w, h, r, inertia, ring, times, found):
-    """Follow one replica from x1 = x2; fill ``found`` with 1 + 2 Σ s_0 s_k at ``times``.
+def on_surface(w, h, r, inertia, ring):
+    """Return a state on x1 = x2: places, velocities, angular velocities times r.
 
     ``inertia`` is I/(m r²), 0 for smooth discs. On a ``ring`` the momentum of smooth discs is 0.
     """
@@ -33,11 +33,23 @@ def replica(w, h, r, inertia, ring, times, found):
         o1, o2 = np.random.randn() / math.sqrt(inertia), np.random.randn() / math.sqrt(inertia)
     norm = math.sqrt(u1**2 + v1**2 + u2**2 + v2**2 + inertia * (o1**2 + o2**2))
     u1, v1, u2, v2, o1, o2 = u1 / norm, v1 / norm, u2 / norm, v2 / norm, o1 / norm, o2 / norm
-    first = 1 if normal > 0 else -1
-    clock, k, total = 0.0, 0, 1
+    return x1, y1, x2, y2, u1, v1, u2, v2, o1, o2
+
+
+@numba.njit
+def follow(state, w, h, r, inertia, ring, times, found, gap):
+    """Follow a state from x1 = x2; fill ``found`` with 1 + 2 Σ s_0 s_k at ``times``.
+
+    With a ``gap`` and no times, return instead how many hops come after the first one, each within
+    the gap after the last.
+    """
+    x1, y1, x2, y2, u1, v1, u2, v2, o1, o2 = state
+    sigma, b = 2 * r, h / 2 - r
+    first = 1 if u1 > u2 else -1
+    clock, k, total, hops, latest = 0.0, 0, 1, 0, 0.0
     # The cell of u = x1 − x2, −∞ … ∞ on a ring; right after the hop at time 0.
     cell = 0 if first > 0 else -1
-    while k < times.size:
+    while k < times.size or clock - latest < gap:
         best, kind, image = math.inf, 0, 0.0
         if not ring:
             for t, c in (((math.copysign(w / 2 - r, u1) - x1) / u1, 1),
@@ -73,6 +85,9 @@ def replica(w, h, r, inertia, ring, times, found):
             step = 1 if du > 0 else -1
             cell += step
             total += 2 * first * step
+            if clock + until - latest >= gap > 0:
+                return hops
+            hops, latest = hops + 1, clock + until
         clock += best
         x1, y1, x2, y2 = x1 + u1 * best, y1 + v1 * best, x2 + u2 * best, y2 + v2 * best
         if kind == 1 or kind == 2 or kind == 3 or kind == 4:
@@ -112,6 +127,7 @@ def replica(w, h, r, inertia, ring, times, found):
                 push = -slip / (1 + 1 / inertia)
                 u1, v1, u2, v2 = u1 + push * tx, v1 + push * ty, u2 - push * tx, v2 - push * ty
                 o1, o2 = o1 - push / inertia, o2 - push / inertia
+    return hops
 
 
 @numba.njit
@@ -120,5 +136,19 @@ def replicas(seed, number, w, h, r, inertia, ring, times):
     np.random.seed(seed)
     found = np.zeros((number, times.size))
     for i in range(number):
-        replica(w, h, r, inertia, ring, times, found[i])
+        follow(on_surface(w, h, r, inertia, ring), w, h, r, inertia, ring, times, found[i], 0.0)
     return found
+
+
+@numba.njit
+def clusters(seed, number, w, h, r, inertia, gap):
+    """Return the sizes of the clusters in a box of ``number`` hops, to both sides in time."""
+    np.random.seed(seed)
+    sizes, none = np.ones(number), np.zeros(0)
+    for i in range(number):
+        x1, y1, x2, y2, u1, v1, u2, v2, o1, o2 = on_surface(w, h, r, inertia, False)
+        past = x1, y1, x2, y2, -u1, -v1, -u2, -v2, -o1, -o2
+        future = x1, y1, x2, y2, u1, v1, u2, v2, o1, o2
+        for state in (future, past):
+            sizes[i] += follow(state, w, h, r, inertia, False, none, none, gap)
+    return sizes

@@ -378,3 +378,14 @@ def test_who_reads_may_stop_reading(words, tmp_path):
     )  # fmt: skip
     os.close(writer)
     assert run.stderr == ""
+
+
+def test_a_density_that_the_bins_do_not_resolve_has_no_value():
+    """Near a threshold a bin is many flights wide, and the density falls within one of them."""
+    near = td.intervals(td.Scene(1.5, 1.0, 0.22), "horizontal_hop", 1).at_zero
+    assert (near.value, near.stderr, near.z, near.status) == (None, None, None, "not-resolved")
+    assert near.exact == pytest.approx(3 * math.sqrt(2) / (16 * (1.5 - 0.44)))
+    assert "not-resolved" in str(near)
+    far = td.intervals(td.Scene(1.5, 1.0, 0.15), "vertical_hop", 1e6).at_zero
+    assert far.status == "extrapolated"
+    assert abs(far.value - far.exact) < 5 * far.stderr

@@ -139,20 +139,20 @@ def scene_of(options):
 
 
 def box_arguments(box):
-    """Return the arguments that say what a ``Box`` is, as one text for a shell."""
+    """Return the arguments that say what a ``Box`` is, a list of words."""
     return words({"width": box.width, "height": box.height, **box.calls_for})
 
 
 def words(given):
-    """Return arguments, {name: value}, as one text for a shell."""
-    return " ".join(f"{_option(name)} {word(value)}" for name, value in given.items())
+    """Return arguments, {name: value}, as a list of words for a shell, which are not quoted."""
+    return [text for name, value in given.items() for text in (_option(name), *_texts(value))]
 
 
-def word(value):
-    """Return the text of a value, a list or a dict of values as an argument."""
+def _texts(value):
+    """Return the texts of a value, a list or a dict of values."""
     if isinstance(value, dict):
-        return " ".join(f"{name}={item!r}" for name, item in value.items())
-    return " ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+        return [f"{name}={item!r}" for name, item in value.items()]
+    return [*map(str, value)] if isinstance(value, list | tuple) else [str(value)]
 
 
 def _option(name):
@@ -166,14 +166,36 @@ def fail(message):
     raise SystemExit(2)
 
 
+#: The commands of which a build is a process.
+BUILDS = {"snakemake", "twodiscs"}
+
+
 def end_with_workflow():
     """End this process as soon as the workflow that started it is gone, however that ended.
 
-    The workflow's process is the one in the variable TWODISCS_WORKFLOW; without it nothing happens.
+    That is the nearest Snakemake among the processes that started this one; without it nothing
+    happens.
     """
-    pid = os.environ.get("TWODISCS_WORKFLOW", "")
-    if pid.isdecimal():
-        threading.Thread(target=_end_after, args=(int(pid),), daemon=True).start()
+    with suppress(OSError, ValueError):  # a process that ends while it is looked at
+        for pid, words in _ancestors():
+            if not BUILDS.isdisjoint(os.path.basename(word) for word in words[:4]):
+                threading.Thread(target=_end_after, args=(pid,), daemon=True).start()
+                return
+
+
+def _ancestors():
+    """Yield (id, words of its command) of those that started this process, the nearest first."""
+    if sys.platform != "linux":
+        with suppress(ImportError):
+            import psutil  # comes with Snakemake; what follows takes a tenth of its time
+
+            yield from ((process.pid, process.cmdline()) for process in psutil.Process().parents())
+        return
+    pid = os.getppid()
+    while pid > 1:
+        folder = Path("/proc", str(pid))
+        yield pid, (folder / "cmdline").read_text(errors="replace").split("\0")
+        pid = int((folder / "stat").read_text(errors="replace").rpartition(")")[2].split()[1])
 
 
 def _end_after(pid):

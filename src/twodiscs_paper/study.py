@@ -12,7 +12,10 @@ class Study:
 
     The first table is made by its function ``rows``, which takes the ``parameters`` of a
     ``Configuration`` and, as ``tables``, the rows of what it ``reads``: {name: (name of a scene or
-    None, table)}. Other tables have rules of their own.
+    None, table)}. Other tables have rules of their own. If the table takes long it has ``parts``,
+    {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
+
+    ``families`` are those of the scenes that it computes.
 
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
@@ -29,6 +32,8 @@ class Study:
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}
+    families: tuple = ("plain", "effects")
+    parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()
     shared: bool = True

@@ -236,6 +236,32 @@ def test_an_error_that_few_replicas_make_is_none(tail, honest):
     assert estimates.has_error_bar(total, squares, counts.size)
 
 
+@pytest.mark.parametrize(("bursting", "honest"), [(15, False), (20, False), (30, True)])
+def test_an_error_must_be_known_to_ten_per_cent(bursting, honest):
+    """If k replicas make all of the spread, the error is known to 1/(2√k)."""
+    counts = np.full(100_000, 1000)
+    counts[:bursting] = 20_000
+    total, squares = int(counts.sum()), int((counts**2).sum())
+    assert estimates.has_error_bar(total, squares, counts.size)
+    assert estimates.has_error_bar(total, squares, counts.size, in_octaves(counts)) == honest
+
+
+def test_weights_below_their_resolution_have_no_error():
+    """Squares of weights are rounded to units: 2^20 of them is one, here weights are of 2^−10."""
+    unit, samples = 2**20, 10**6
+    for weight, known in ((2.0**-4, True), (2.0**-12, False)):
+        total = round(1000 * weight * unit)
+        squares = 1000 * math.floor(weight * weight * unit)
+        estimate, effective = estimates.weighted_estimate(total, squares, unit, samples, 2.0)
+        assert estimate.value == pytest.approx(2e-3 * weight)
+        assert effective == (pytest.approx(1000) if known else 0.0)
+    # All of one weight, and none of a hundred without any.
+    assert estimates.effective_misses(unit * samples, unit * samples, unit, samples) == 0
+    hits = samples - 90
+    assert estimates.effective_misses(unit * hits, unit * hits, unit, samples) == pytest.approx(90)
+    assert estimates.effective_misses(5, 0, unit, samples) == 0
+
+
 def test_replicas_without_spread_have_an_error_of_no_error():
     assert estimates.error_of_error(300, 900, 100, [[0, 0, 100], [0, 0, 300], [0, 0, 900]]) == 0
 

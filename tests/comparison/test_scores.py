@@ -202,3 +202,30 @@ def test_scores_of_scores_see_shift_and_spread():
 @pytest.mark.parametrize("value", [0.0, 0.3, 7.0, 200.0])
 def test_the_probability_of_a_larger_chi_square(value, degrees):
     assert scores.chi2_p(value, degrees) == pytest.approx(chi2.sf(value, degrees), rel=1e-12)
+
+
+def test_two_shells_that_are_one_have_its_score():
+    """Every hit is one of both: the sum is twice one of them, and as far out."""
+    samples, p = 10**6, 0.01
+    hits = 10_400
+    z, test = scores.shells_z((hits, hits), hits, samples, (3.0, 3.0), (p, p))
+    alone, _ = scores.binomial_z(hits, samples, p)
+    assert test == "normal"
+    assert z == pytest.approx(alone, rel=0.03)
+    apart, _ = scores.shells_z((hits, hits), 0, samples, (3.0, 3.0), (p, p))
+    assert apart > 1.4 * alone
+
+
+@pytest.mark.parametrize("size", [5, 40, 300])
+def test_the_cluster_bound_knows_the_clusters_that_were_counted(size):
+    """Clusters of one size each: as many clusters are as far out, whatever the size."""
+    found, due, replicas = 40, 90, 10**5
+
+    def score(size):
+        exact = replicas / (due * size)
+        return scores.mean_time_z(found * size, found * size**2, replicas, 1.0, exact)
+
+    z, test = score(size)
+    assert test == "cluster-bound"
+    assert z == pytest.approx(score(4)[0], rel=1e-9)
+    assert 3 < z < 7

@@ -1,5 +1,7 @@
 """Long runs of N discs: energy, gaps and ranges hold, and nothing stands still."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -106,3 +108,18 @@ def test_a_disc_at_rest_and_discs_that_touch():
     assert counts[:, 0].tolist() == [0.0, 0.0, 1.0, 0.0, 0.0]
     assert counts[:, 1].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0]
     assert y[2, 1] == law.half_y
+
+
+@pytest.mark.parametrize(("width", "discs"), [(1.0, 3), (3.0, 8)])
+def test_a_flight_on_a_ring_ends_before_a_third_image_comes_near(width, discs):
+    """The largest relative speed is √2, and half the ring is the most between two looks."""
+    law = many.law_of(Scene(width, 1.0, 0.1, discs=discs, periodic="x"))
+    fastest = math.sqrt(2)
+    assert law.ring[2] * fastest == pytest.approx(width / 2, rel=1e-15)
+    # Two discs side by side, in opposite directions: they look again, then meet the next image.
+    x, y = np.zeros((discs, 1)), np.linspace(-0.35, 0.35, discs)[:, None].copy()
+    u, v = np.zeros((discs, 1)), np.zeros((discs, 1))
+    u[0], u[1] = 1 / fastest, -1 / fastest
+    left, times, codes, speeds = np.full(1, np.inf), np.zeros(1), np.zeros(1), np.zeros(1)
+    many.find_events(x, y, u, v, left, times, codes, speeds, law)
+    assert times[0] * fastest <= width / 2 * (1 + 1e-15)

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from scalar_passages import replicas
+from scalar_passages import clusters, replicas
 
 from twodiscs.comparison.measured.transmission import by_clusters, by_time
 from twodiscs.dynamics.ensemble import LANES
@@ -75,6 +75,24 @@ def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
     assert sizes[0] == 0
     assert sizes.sum() == 64 * passages.REPLICAS
     assert kappa.stderr * math.sqrt(kappa.n) < math.sqrt(kappa.value)
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5, 0.1])
+@pytest.mark.parametrize(("radius", "gap"), [(0.247, 0.6), (0.247, 6.0), (0.1, 0.4)])
+def test_clusters_to_both_sides_are_those_of_another_program(inertia, radius, gap):
+    """Spins are reversed with the velocities.
+
+    The gap is counted from each hop, not from the bounce after it: of small discs that is as late.
+    κ, the share of single hops and the mean size of clusters, up to 64 hops.
+    """
+    scene = Scene(1.5, 1.0, radius, moment_of_inertia=inertia)
+    counts, _ = passages.cluster_sizes(scene, HOP, gap, 512, 11)
+    own = np.repeat(np.arange(counts.size), counts)
+    other = clusters(12, 30_000, 1.5, 1.0, radius, inertia or 0.0, gap)
+    for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
+        values = [np.asarray(of(sizes), float) for sizes in (own, other)]
+        errors = [part.std() / math.sqrt(part.size) for part in values]
+        five(values[0].mean(), values[1].mean(), math.hypot(*errors))
 
 
 @pytest.mark.parametrize("inertia", [None, 0.5])

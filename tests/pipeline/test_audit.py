@@ -1,5 +1,7 @@
 """The audit: whatever was edited, cut short or deleted is named, and nothing else."""
 
+import json
+
 import pytest
 from fabricated import BOX, command
 
@@ -28,6 +30,8 @@ def results(tmp_path, monkeypatch):
     """A folder of results with its manifest."""
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "results"
+    folder.mkdir()
+    (folder / "configuration.json").write_text(json.dumps(CONFIGURATION))
     (scene,) = load(CONFIGURATION).scenes
     own = folder / "small"
     (own / "points" / "monte_carlo").mkdir(parents=True)
@@ -52,8 +56,7 @@ def certify(folder):
 
 
 def run(monkeypatch):
-    words = "--results", "results", "--configuration", CONFIGURATION
-    return command(monkeypatch, audit, *words)
+    return command(monkeypatch, audit, "--configuration", "results/configuration.json")
 
 
 def test_undamaged_results_pass(results, monkeypatch, capsys):

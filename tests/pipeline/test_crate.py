@@ -29,7 +29,7 @@ def results(tmp_path, monkeypatch):
     """A folder of results, by their jobs."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "results" / "figures").mkdir(parents=True)
-    box = box_arguments(BOX).split()
+    box = box_arguments(BOX)
     words = "theory", *box, "--radii", 0.1, "--output", "results/theory.csv"
     assert command(monkeypatch, table, *words) == 0
     drawn = [f"results/{name}" for name in FILES if "figures" in name]

@@ -232,8 +232,9 @@ def test_a_file_that_is_no_point_is_a_mistake(results, expected):
 
 
 def test_the_command_writes_compares_and_says_what_differs(results, tmp_path, monkeypatch, capsys):
-    expected, text = tmp_path / "expected", json.dumps(CONFIGURATION)
-    argv = ["verify", "--results", results, "--expected", expected, "--configuration", text]
+    expected, path = tmp_path / "expected", results / "configuration.json"
+    path.write_text(json.dumps(CONFIGURATION))
+    argv = ["verify", "--expected", expected, "--configuration", path]
     monkeypatch.setattr("sys.argv", list(map(str, argv)))
     with pytest.raises(ValueError, match="no results to compare with"):
         verify.main()

@@ -103,7 +103,13 @@ def test_parameters_are_plain_values_that_its_table_takes(study, default):
     signature = inspect.signature(study.tables[0].rows)
     handed = {name: value for name, value in HANDED.items() if name in signature.parameters}
     signature.bind(**given, **handed)
-    assert bool(study.reads(default)) == ("tables" in handed)
+    assert bool(study.reads(default) or study.parts(default)) == ("tables" in handed)
+
+
+@every_study
+def test_parameters_of_parts_are_plain_values(study, default):
+    for given in study.parts(default).values():
+        assert json.loads(json.dumps(given, allow_nan=False)) == given
 
 
 @every_study

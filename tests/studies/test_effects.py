@@ -30,7 +30,7 @@ from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.studies.effects import figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import SCENES
-from twodiscs_paper.studies.effects.table import Effects, EffectsCost
+from twodiscs_paper.studies.effects.table import Effects, EffectsCost, EffectsCurves
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]
@@ -219,7 +219,9 @@ def costs():
 def drawn(rows):
     """The figure of the six scenes."""
     with style.context():
-        return figure.draw(tables={"effects": rows, "effects_cost": costs()})
+        curves = [*EffectsCurves.rows(BOXES)]
+        tables = {"effects": rows, "effects_cost": costs(), "effects_curves": curves}
+        return figure.draw(tables=tables)
 
 
 def test_texts_of_the_figure_stand_clear(drawn):

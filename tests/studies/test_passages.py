@@ -9,7 +9,6 @@ import math
 import numba
 import numpy as np
 import pytest
-from fabricated import written
 from scipy.stats import chi2
 
 from twodiscs.comparison.estimates import mean_of
@@ -185,7 +184,7 @@ def test_bad_requests_are_refused(call, said):
 def test_two_discs_in_a_file_move_as_their_hops_are_correlated():
     """Against the exact rate, and D by correlations of hops, which another kernel counts."""
     scene = Box(1.5, 1.0, {"periodic": "x"}).scene(0.21875)
-    rows = list(measure.on_ring("ring", BOX, None, 2**18, 1))
+    rows = list(measure.one_ring("ring", BOX, None, 2**18, 1))
     due = next(row for row in rows if row["quantity"] == "diffusion" and row["method"] == "hops")
     assert due["radius"] == scene.radius
     moved, hops = file.diffusion(
@@ -232,14 +231,20 @@ def test_discs_that_cannot_pass_stay_in_their_file():
     assert np.median(flown) == pytest.approx(1, rel=1e-9)
 
 
-PARAMETERS = {"scenes": {"paper": BOX.parameters()}, "events": 2**18, "seed": 1}
+def joined(name, box, inertias=(0.5,)):
+    """Return the rows of all parts that there are for a box."""
+    own, rows = {"name": name, "box": box, "events": 2**18, "seed": 1}, {}
+    rows["near_threshold"] = Passages.part(part="near_threshold", inertias=inertias, **own)
+    for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
+        rows[part] = Passages.part(part=part, **own)
+    return Passages.rows(rows | {"on_lattice": Passages.part(part="on_lattice", seed=1)})
 
 
 @pytest.fixture
 def small(monkeypatch):
     """Make the study one of few distances and hops."""
     for name, value in {
-        "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4), "INERTIAS": (0.5, 1.0),
+        "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
         "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
         "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
     }.items():  # fmt: skip
@@ -249,7 +254,8 @@ def small(monkeypatch):
 def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypatch):
     seeds, seed_of = [], measure.seed_of
     monkeypatch.setattr(measure, "seed_of", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
-    rows = written(tmp_path, Passages, **PARAMETERS)
+    Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
+    rows = Passages.read(tmp_path / "passages.csv")
     assert len({*seeds}) == len(seeds) > 20  # every estimate has streams of its own
     z = [row["z"] for row in rows if row["z"] is not None]
     assert max(map(abs, z)) < 5
@@ -290,7 +296,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
 
 def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
-    rows = list(Passages.rows({"square": {"width": 1.0, "height": 4.0}}, 2**18, 1))
+    rows = list(joined("square", Box(1.0, 4.0)))
     events = {row["event"] for row in rows}
     assert events == {"vertical_hop", "swap"}
     with style.context():

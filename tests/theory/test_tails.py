@@ -96,6 +96,22 @@ def test_drifts_last_with_the_exact_probability(axis, radius):
     assert abs(found / n - due) < 5 * math.sqrt(due * (1 - due) / n)
 
 
+def test_the_law_of_drifts_begins_where_they_stay_in_their_square():
+    """At the least time it is exact; a little earlier it is refused, for it would be too large."""
+    scene, n = Scene(1.5, 1.0, 0.1), 2 * 10**5
+    height, sigma = scene.range_y, scene.contact_distance
+    least = 2 * (scene.height - 4 * scene.radius)
+    share = (scene.range_x * height) ** 2 / exact.volume(scene)
+    due = tails.drift_probability(scene, least) / share
+    assert tails.drift_probability(scene, 1.01 * least) < due * share
+    with pytest.raises(ValueError, match="time must be at least"):
+        tails.drift_probability(scene, 0.999 * least)
+    found = rows_apart(np.random.default_rng(4), height, sigma, least, n) / n
+    assert abs(found - due) < 5 * math.sqrt(due * (1 - due) / n)
+    early = rows_apart(np.random.default_rng(5), height, sigma, least / 2, n) / n
+    assert early < 0.99 * 4 * due
+
+
 def test_drifts_make_the_bound_of_the_tail():
     scene, time = Scene(1.5, 1.0, 0.1), 50.0
     both = sum(tails.drift_probability(scene, time, axis) for axis in "xy")

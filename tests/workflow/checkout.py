@@ -64,6 +64,7 @@ def forked(arguments, folder, sources):
                 os.dup2(error.fileno(), 2)
                 sys.stdout, sys.stderr = (os.fdopen(os.dup(fd), "w") for fd in (1, 2))
                 os.chdir(folder)
+                sys.argv = ["snakemake", *arguments]
                 os.environ["PYTHONPATH"] = sources
                 for name in [name for name in sys.modules if name.startswith("twodiscs")]:
                     del sys.modules[name]

@@ -1,9 +1,15 @@
 """Checkouts for the tests: one without results, one with all of them, and copies of that one."""
 
+import os
 import shutil
+import sys
+from pathlib import Path
 
 import pytest
 from checkout import Checkout, fresh
+
+# Jobs start as `python`, as where the environment of the tests is activated.
+os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
 #: The scenes with effects that are built: each compiles an engine of its own.
 EFFECTS = ("torus", "unequal")

@@ -4,7 +4,8 @@ from twodiscs_paper.studies.effects.study import SCENES
 
 FILES = sorted(SCENES)
 FIGURE = ("shared_figure", ("figure=effects",))
-MADE = [("effects_cost", ()), ("effects_table", ()), FIGURE]
+TABLE = ("study_table", ("study=effects",))
+MADE = [("effects_cost", ()), ("effects_curves", ()), TABLE, FIGURE]
 
 
 def of_effects(jobs, rule):
@@ -16,8 +17,8 @@ def of_effects(jobs, rule):
 def test_the_target_counts_every_scene_as_any_other(unbuilt):
     jobs = unbuilt.jobs("effects")
     assert {rule for rule, _ in jobs} == {
-        *("dynamics", "exact", "table", "effects", "effects_cost", "effects_table"),
-        "shared_figure",
+        *("dynamics", "exact", "table", "effects", "effects_cost", "effects_curves"),
+        *("study_table", "shared_figure"),
     }
     for rule in ("dynamics", "exact", "table"):
         assert of_effects(jobs, rule) == FILES
@@ -35,7 +36,7 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     jobs = built.jobs()
     assert of_effects(jobs, "dynamics") == ["torus"]
     assert {rule for rule, _ in jobs} == {
-        *("dynamics", "table", "effects_cost", "effects_table", "manifest"),
+        *("dynamics", "table", "effects_cost", "study_table", "manifest"),
         *FOLLOWING,
     }
 

@@ -16,8 +16,8 @@ def test_a_forecast_and_what_becomes_of_it(built):
         rows = list(csv.DictReader(file))
     assert {row["cores"] for row in rows} == {"2"}
 
-    # It is of the moment, so it is made again whenever it is asked for, and by nothing else.
-    assert built.jobs("forecast") == [("forecast", ())]
+    # It is made again of another configuration, or by force.
+    assert built.jobs("forecast") == []
     rerun = {job for job, _ in built.jobs()}
     assert rerun == {"table", "paper", "report", "provenance"}
     assert {w for job, w in built.jobs() if job == "table"} == {

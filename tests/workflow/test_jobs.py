@@ -48,8 +48,8 @@ def test_one_more_radius_runs_one_job_of_each_kind(built):
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
         *("monte_carlo", "dynamics", "exact", "table", "check"),
-        *("errata_table", "figure", "paper", "report", "manifest", "provenance"),
-        *("thresholds_table", "shared_figure"),
+        *("study_table", "figure", "paper", "report", "manifest", "provenance"),
+        *("configuration", "shared_figure"),
     }
 
 
@@ -61,12 +61,12 @@ COUNTED = {"monte_carlo", "dynamics", "intervals"}
 @pytest.mark.parametrize(
     ("module", "drawn"),
     [
-        ("figures/motion/animation.py", ("animate", SIX, "figure=animation")),
-        ("studies/tails/figure.py", ("shared_figure", "figure=tails")),
+        ("twodiscs/figures/motion/animation.py", ("animate", SIX, "figure=animation")),
+        ("twodiscs_paper/studies/tails/figure.py", ("shared_figure", "figure=tails")),
     ],
 )
 def test_edit_of_a_figure_redraws_that_figure_and_what_contains_it(built, module, drawn):
-    built.edit(f"src/twodiscs/{module}", CODE)
+    built.edit(f"src/{module}", CODE)
     # The manuscript shows no animation.
     contain = [job for job in DOCUMENTS if drawn[0] != "animate" or job != ("paper",)]
     assert built.jobs() == expected(drawn, *contain)
@@ -100,9 +100,9 @@ def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
 def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
     built.edit("src/twodiscs_paper/studies/tails/table.py", CODE)
     jobs = built.jobs()
-    assert {*expected(("tails_table",), ("shared_figure", "figure=tails"))} <= {*jobs}
+    assert {*expected(("study_table", "study=tails"), ("shared_figure", "figure=tails"))} <= {*jobs}
     assert {rule for rule, _ in jobs} == {rule for rule, *_ in DOCUMENTS} | {
-        *("tails_table", "shared_figure"),
+        *("study_table", "shared_figure"),
     }
 
 
@@ -128,7 +128,8 @@ def test_edit_of_the_engine_reruns_dynamics_and_what_follows(built, module):
     rules = {rule for rule, _ in jobs}
     # A trajectory follows the law of events and counts nothing.
     assert ("trajectory" in rules) == (module == "law")
-    assert {"dynamics", "effects_table", "check", "paper"} <= rules
+    assert {"dynamics", "check", "paper"} <= rules
+    assert ("study_table", ("study=effects",)) in jobs
     assert ("intervals" in rules) == (module == "law")
     assert not {"monte_carlo", "exact"} & rules
     assert len([job for job in jobs if job[0] == "dynamics" and SIX in job[1]]) == 6
@@ -151,7 +152,7 @@ def test_another_spelling_of_a_number_reruns_nothing(built):
         assert old in text
         text = text.replace(old, new)
     built.configuration.write_text(text)
-    assert {rule for rule, _ in built.jobs()} <= {"report"}
+    assert {rule for rule, _ in built.jobs()} <= {"configuration", "check", "report", "provenance"}
 
 
 def test_a_third_box_leaves_the_others_alone(built):

@@ -8,7 +8,7 @@ from twodiscs.comparison.digests import read_json, write_json
 
 
 def test_verification_is_one_job_whatever_there_is(unbuilt):
-    assert unbuilt.jobs("verify") == [("verify", ())]
+    assert unbuilt.jobs("verify") == [("configuration", ()), ("verify", ())]
 
 
 def test_results_out_of_date_are_verified_as_they_are(built):

@@ -1,12 +1,16 @@
 # What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
 import json
+import shutil
 import sys
 from dataclasses import replace
 
+from twodiscs.arguments import box_arguments, words
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
-from twodiscs.arguments import box_arguments, word, words
+from twodiscs.model.family import FAMILIES, module_of
+from twodiscs.model.sources import fingerprint
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs_paper.pipeline.configuration.files import (
     GATHERED,
     Files,
@@ -15,17 +19,32 @@ from twodiscs_paper.pipeline.configuration.files import (
 )
 from twodiscs_paper.pipeline.configuration.request import STAGES
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES
-from twodiscs.model.sources import fingerprint
-from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
+from twodiscs_paper.studies.effects.study import boxes
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
 
+# Jobs are started as `python`; with -P it does not look for modules in the folder of the run.
+found = shutil.which("python")
+if os.path.dirname(found or "") != os.path.dirname(sys.executable):
+    logger.warning(
+        f"Jobs start as python, which is {found} here, and not {sys.executable}, which"
+        " runs Snakemake: activate its environment if a job fails."
+    )
+
+# The threads of a job that measures how fast the machine is: it runs alone.
+ALONE = workflow.cores or 1
+
 
 def source(path):
-    """Return where a text of this workflow is: in a checkout, or where Snakemake fetched it to."""
+    """Return where a text of this workflow is: in a checkout, or where Snakemake fetched it to.
+
+    In a checkout the path is relative: if that is moved, nothing runs again.
+    """
     here = os.path.relpath(os.path.join(str(workflow.current_basedir), "../..", path))
-    return here if os.path.exists(here) else workflow.source_path(f"../../{path}")
+    if os.path.exists(here):
+        return local(here)  # not of a storage
+    return workflow.source_path(f"../../{path}")
 
 
 # The scenes of the configuration by their folders, and those of the study of effects.
@@ -51,17 +70,6 @@ if (days := cost.days(CONFIGURATION.scenes)) > 1:
         " snakemake forecast says it better."
     )
 
-# The Python that runs Snakemake also runs the jobs, which end when it does and import nothing from
-# the folder that they are run in.
-os.environ.update(
-    TWODISCS_WORKFLOW=str(os.getpid()),
-    TWODISCS_SNAKEFILE=workflow.main_snakefile,
-    PYTHONSAFEPATH="1",
-    PATH=os.pathsep.join(
-        [os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)]
-    ),
-)
-
 
 wildcard_constraints:
     scene="|".join(SCENES),
@@ -72,23 +80,41 @@ wildcard_constraints:
     stop="[0-9]+",
 
 
-def code(*modules, without=()):
-    """Return the fingerprint of the code that a job runs: modules, and all that they import.
+# The floors that have modules for families of scenes, from the lowest one up.
+FLOORS = ("model", "theory", "sampling", "dynamics")
 
-    Catalogues are left out: of them a job uses the entry that its parameters name.
+# Modules that compute nothing: a job uses the entry of a catalogue that its parameters name, and the
+# others refuse, read arguments, draw a bar or name sources.
+NOT_COMPUTING = (
+    "twodiscs.figures.catalogue",
+    "twodiscs_paper.catalogue",
+    "twodiscs.comparison.scene_tables",
+    "twodiscs.arguments",
+    "twodiscs.comparison.measured.progress",
+    "twodiscs.model.checks",
+    "twodiscs.model.plugins",
+    "twodiscs.model.sources",
+)
+
+
+def code(*modules, without=()):
+    """Return the fingerprint of the code that a job runs: modules, and all that they import."""
+    return fingerprint(*modules, without=(*NOT_COMPUTING, *without))
+
+
+def family_modules(floor, *families):
+    """Return the modules of families of scenes on a floor and on those that it stands on.
+
+    They are imported by a computed name, which a fingerprint does not follow.
     """
-    catalogues = (
-        "twodiscs.figures.catalogue",
-        "twodiscs_paper.catalogue",
-        "twodiscs.comparison.scene_tables",
-    )
-    return fingerprint(*modules, without=(*catalogues, *without))
+    floors = FLOORS[: FLOORS.index(floor) + 1]
+    return [module_of(one, family) for one in floors for family in families]
 
 
 def box(w):
     """Return the arguments that say what the box of the scene of a job is."""
     scene = SCENES[w.scene] if "scene" in w.keys() else MAIN
-    return box_arguments(scene.box) if scene else ""
+    return box_arguments(scene.box) if scene else []
 
 
 def minutes(stage=None):
@@ -108,18 +134,28 @@ def shards_of(stage):
 
 
 def work_of(stage):
-    """Return a function of the wildcards: what the job of a stage at a radius is told."""
+    """Return a function of the wildcards: the arguments of the job of a stage at a radius."""
     return lambda w: words(SCENES[w.scene].arguments(stage, w.radius))
 
 
-# The module of each stage is imported by its own jobs alone.
-POINT = {
-    stage: code(
-        "twodiscs_paper.pipeline.jobs.point",
-        without=tuple({*STAGES.values()} - {module}),
-    )
-    for stage, module in STAGES.items()
-}
+def point_code(stage=None):
+    """Return a function of the wildcards: the fingerprint of the code that makes a point or a shard.
+
+    The module of each stage is imported by its own jobs alone.
+    """
+
+    def of_job(w):
+        run = STAGES[stage or w.stage]
+        others = tuple({*STAGES.values()} - {run})
+        family = family_modules(run.split(".")[1], SCENES[w.scene].box.family)
+        return code("twodiscs_paper.pipeline.jobs.point", *family, without=others)
+
+    return of_job
+
+
+def says(table):
+    """Return what Snakemake's report says of a table."""
+    return {"table": table.name(), "what a row says": table.meaning()}
 
 
 def about(w):
@@ -130,21 +166,26 @@ def about(w):
 def origin(w):
     """Return what a figure says in its metadata of what made it."""
     scene = about(w)
-    return (f"scene {scene.name}, " if scene else "") + f"seed {CONFIGURATION.seed}"
+    start = f"scene {scene.name}, " if scene else ""
+    return f"{start}seed {CONFIGURATION.seed}, code {figure_code(w)}"
 
 
 def radius_of(w):
-    """Return the argument that says the radius of a trajectory, for figures of one."""
+    """Return the arguments that say the radius of a trajectory, for figures of one."""
     shown = "trajectory" in ENTRIES[w.figure].tables
-    return f"--radius {about(w).quantities.trajectory}" if shown else ""
+    return ["--radius", str(about(w).quantities.trajectory)] if shown else []
 
 
 def figure_code(w):
     """Return the fingerprint of the code that draws a figure."""
+    scene = about(w)
     return code(
         "twodiscs_paper.pipeline.jobs.figure",
         "twodiscs.figures.kit.style",
         ENTRIES[w.figure].module,
+        *family_modules(
+            "theory", *sorted({"plain", scene.box.family if scene else "plain"})
+        ),
     )
 
 
@@ -169,13 +210,27 @@ class Caption:
         return ENTRIES[self.figure].caption(shown)
 
 
-def study_table(table):
-    """Return the file of a table of a study, with its place in the report; the errata say more."""
-    name = table.name()
-    return report(
-        ensure(FILES.table(name), non_empty=True),
-        caption=f"../report/{'errata' if name == 'errata' else 'shared_table'}.rst",
-        category="Tables",
-        subcategory="all scenes",
-        labels={"table": name, "what a row says": table.meaning()},
+# The studies that the scenes allow, and their parts.
+ALLOWED = {
+    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
+}
+PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
+
+
+def of_study(w):
+    """Return the study of a job."""
+    return ALLOWED[w.study]
+
+
+def study_code(w):
+    """Return the fingerprint of the code that makes the table of a study, or a part of it."""
+    return code(
+        "twodiscs_paper.pipeline.jobs.study",
+        of_study(w).tables[0].__module__,
+        *family_modules("dynamics", *of_study(w).families),
     )
+
+
+def drawn(figure):
+    """Return the files of a figure in all scenes."""
+    return [FILES.figures(scene).get(figure, []) for scene in CONFIGURED]

@@ -2,20 +2,31 @@
 # expected; and what is measured of this machine, a forecast and the speed of the engines.
 from twodiscs_paper.pipeline.results.manifest import is_reproducible
 
+
+rule configuration:
+    """The whole configuration, however it was put together."""
+    output:
+        json=f"{RESULTS}/configuration.json",
+    log:
+        f"{RESULTS}/logs/configuration.log",
+    localrule: True
+    params:
+        configuration=json.dumps(config, indent=1, sort_keys=True),
+    shell:
+        "printf '%s\\n' {params.configuration:q} > {output.json:q} 2> {log:q}"
+
+
 if MAIN:
 
     rule paper:
-        """Typeset the manuscript; every number in it is read from these results."""
+        """The manuscript; every number in it is read from these results."""
         input:
             template=source("paper/paper.typ"),
             long_run=source("paper/long_run/mean_times.csv"),
             texts=[
-                source(name)
-                for name in (
-                    "paper/results.typ",
-                    "paper/references.bib",
-                    "CITATION.cff",
-                )
+                source("paper/results.typ"),
+                source("paper/references.bib"),
+                source("CITATION.cff"),
             ],
             figures=[
                 files[0]
@@ -43,30 +54,28 @@ if MAIN:
             f"{RESULTS}/benchmarks/paper.tsv"
         localrule: True
         params:
-            boxes=" ".join(
+            boxes=[
                 f"{scene.name}={scene.box.width}x{scene.box.height}"
                 for scene in CONFIGURATION.plain
-            ),
+            ],
             seed=CONFIGURATION.seed,
             configuration=FILES.configuration_hash(),
             code=code("twodiscs_paper.pipeline.documents.manuscript"),
         shell:
-            "python -m twodiscs_paper.pipeline.documents.manuscript {input.figures} {input.drawn} {input.tables}"
-            " {input.studied} --template {input.template} --boxes {params.boxes} --seed {params.seed}"
-            " --long-run {input.long_run} --configuration {params.configuration} --numbers {output.numbers} --output {output.pdf}"
-            " > {log} 2>&1"
+            "python -P -m twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
+            " {input.studied:q} --template {input.template:q} --boxes {params.boxes} --seed {params.seed}"
+            " --long-run {input.long_run:q} --configuration {params.configuration} --numbers {output.numbers:q}"
+            " --output {output.pdf:q} > {log:q} 2>&1"
 
 
-# The report, and behind it Snakemake's own. That one is written by a second Snakemake while the first one
-# still runs: it takes no lock, for it builds nothing, and finds the record of every job that has ended. It is
-# given the whole configuration, however that was put together.
+# Snakemake's own report is written after a build: profiles/default/config.yaml.
 
 
 report: "../report/workflow.rst"
 
 
 rule report:
-    """Write the report: verdict, agreement and key figures, with links to everything else."""
+    """The report: verdict, agreement and key figures, with links to everything else."""
     input:
         results=[
             rules.check.output,
@@ -77,35 +86,28 @@ rule report:
             ],
             [list(FILES.tables(scene).values()) for scene in CONFIGURED],
             [list(FILES.figures(scene).values()) for scene in CONFIGURED],
-            rules.animation.input,
+            [list(FILES.animation(scene)) for scene in CONFIGURED],
         ],
-        style=source("workflow/report/style.css"),
+        configuration=rules.configuration.output.json,
         front=source("workflow/report/front.html"),
+        graph=source("workflow/report/rules.svg"),
     output:
         html=f"{RESULTS}/report.html",
-        workflow=f"{RESULTS}/report-workflow.html",
-        configuration=f"{RESULTS}/configuration.json",
     log:
         f"{RESULTS}/logs/report.log",
     benchmark:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        configuration=json.dumps(config, indent=1, sort_keys=True),
         scenes=json.dumps(FILES.report()),
         code=code("twodiscs_paper.pipeline.documents.report"),
     shell:
-        "{{ printf '%s\\n' {params.configuration:q} > {output.configuration};"
-        ' again() {{ snakemake --snakefile "$TWODISCS_SNAKEFILE" --nolock --workflow-profile none'
-        ' "$@" --configfile {output.configuration} -- {input.results}; }};'
-        " again --report {output.workflow} --report-stylesheet {input.style} & whole=$!;"
-        " again --rulegraph dot | python -m twodiscs_paper.pipeline.documents.report {input.results}"
-        " --template {input.front} --scenes {params.scenes:q} --workflow report-workflow.html"
-        " --output {output.html} && wait $whole; }} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.documents.report {input.results:q} --template {input.front:q}"
+        " --graph {input.graph:q} --scenes {params.scenes:q} --output {output.html:q} > {log:q} 2>&1"
 
 
 rule manifest:
-    """List the SHA-256 of everything that holds no run times."""
+    """The SHA-256 of everything that holds no run times."""
     input:
         files=[path for path in rules.report.input.results if is_reproducible(path)],
     output:
@@ -118,12 +120,11 @@ rule manifest:
     params:
         code=code("twodiscs_paper.pipeline.results.manifest"),
     shell:
-        "python -m twodiscs_paper.pipeline.results.manifest {input.files} --output {output.manifest}"
-        " > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.results.manifest {input.files:q} --output {output.manifest:q} > {log:q} 2>&1"
 
 
 rule provenance:
-    """Say where and when the results came to be: all that differs between two runs of the same."""
+    """Where and when the results came to be: all that differs between two runs of the same."""
     input:
         files=rules.report.input.results,
     output:
@@ -137,12 +138,12 @@ rule provenance:
         sources=os.path.dirname(source("CITATION.cff")) or ".",
         code=code("twodiscs_paper.pipeline.results.provenance"),
     shell:
-        "python -m twodiscs_paper.pipeline.results.provenance {input.files} --sources {params.sources}"
-        " --output {output.json} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.results.provenance {input.files:q} --sources {params.sources:q}"
+        " --output {output.json:q} > {log:q} 2>&1"
 
 
 rule explorer:
-    """Write the explorer: the discs as they move and are counted, beside exact values and points that are built."""
+    """The explorer: the discs as they move and are counted, beside exact values and points that are built."""
     input:
         # The page does without points: it takes those that are built, and is renewed with them.
         tables=[
@@ -173,23 +174,30 @@ rule explorer:
         seed=CONFIGURATION.seed,
         code=code("twodiscs_paper.pipeline.documents.explorer"),
     shell:
-        "python -m twodiscs_paper.pipeline.documents.explorer {input.tables} --parts {input.parts}"
-        " --scenes {params.scenes:q} --seed {params.seed} --output {output.html} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.documents.explorer {input.tables:q} --parts {input.parts:q}"
+        " --scenes {params.scenes:q} --seed {params.seed} --output {output.html:q} > {log:q} 2>&1"
 
 
 rule crate:
-    """Describe the results as an RO-Crate, to be published."""
+    """The results described as an RO-Crate, to be published."""
     input:
         files=[
             rules.report.input.results,
             rules.report.output if "report" in CONFIGURATION.shared else [],
+            rules.configuration.output,
             rules.manifest.output,
         ],
         provenance=rules.provenance.output,
         citation=source("CITATION.cff"),
         texts=[
             source("workflow/Snakefile"),
-            *(source(f"workflow/rules/{name}.smk") for name in RULES),
+            source("workflow/rules/common.smk"),
+            source("workflow/rules/points.smk"),
+            source("workflow/rules/tables.smk"),
+            source("workflow/rules/figures.smk"),
+            source("workflow/rules/studies.smk"),
+            source("workflow/rules/documents.smk"),
+            source("workflow/rules/targets.smk"),
         ],
     output:
         json=f"{RESULTS}/ro-crate-metadata.json",
@@ -202,66 +210,69 @@ rule crate:
     params:
         code=code("twodiscs_paper.pipeline.documents.crate"),
     shell:
-        "python -m twodiscs_paper.pipeline.documents.crate {input.files} {input.provenance} --provenance {input.provenance}"
-        " --citation {input.citation} --texts {input.texts} --output {output.json} > {log} 2>&1"
-
-
-# What builds nothing has no output, so that it is done whenever it is asked for. Where the results are, the
-# path of its log says: a module of another workflow may prefix it.
+        "python -P -m twodiscs_paper.pipeline.documents.crate {input.files:q} {input.provenance:q}"
+        " --provenance {input.provenance:q} --citation {input.citation:q} --texts {input.texts:q}"
+        " --output {output.json:q} > {log:q} 2>&1"
 
 
 rule audit:
-    """Name every result that is no longer what its job wrote."""
+    """Name every result that is no longer what its job wrote. It has no output, so it runs when asked for."""
+    input:
+        configuration=rules.configuration.output.json,
     log:
         f"{RESULTS}/logs/audit.log",
     localrule: True
-    params:
-        configuration=json.dumps(config, sort_keys=True),
     shell:
-        "python -m twodiscs_paper.pipeline.results.audit --results $(dirname $(dirname {log}))"
-        " --configuration {params.configuration:q} 2> {log}"
+        "python -P -m twodiscs_paper.pipeline.results.audit --configuration {input.configuration:q} 2> {log:q}"
 
 
 rule verify:
     """Compare the results with those that are expected of the default configuration."""
+    input:
+        configuration=rules.configuration.output.json,
     log:
         f"{RESULTS}/logs/verify.log",
     localrule: True
     params:
-        configuration=json.dumps(config, sort_keys=True),
         # What is expected does not come with a wheel: there it says so.
         expected=os.path.join(os.path.dirname(source("paper/paper.typ")), "expected"),
     shell:
-        "python -m twodiscs_paper.pipeline.results.verify --results $(dirname $(dirname {log}))"
-        " --expected {params.expected} --configuration {params.configuration:q} 2> {log}"
+        "python -P -m twodiscs_paper.pipeline.results.verify --configuration {input.configuration:q}"
+        " --expected {params.expected:q} 2> {log:q}"
 
 
 rule forecast:
-    """Forecast what the configuration takes on this machine."""
+    """What the configuration will take on this machine; tables of costs are set against it."""
+    input:
+        configuration=rules.configuration.output.json,
+    output:
+        table=f"{RESULTS}/forecast.csv",
     log:
         f"{RESULTS}/logs/forecast.log",
     localrule: True
-    threads: 64  # all that there are
-    params:
-        configuration=json.dumps(config, sort_keys=True),
+    threads: ALONE
     shell:
-        "python -m twodiscs_paper.pipeline.forecast --configuration {params.configuration:q}"
-        " --cores {threads} --output $(dirname $(dirname {log}))/forecast.csv 2> {log}"
+        "python -P -m twodiscs_paper.pipeline.forecast --configuration @{input.configuration:q} --cores {threads}"
+        " --output {output.table:q} 2> {log:q}"
+
+
+# Costs are set against a forecast if there is one; a table of costs asks for none.
+FORECAST = rules.forecast.output if exists(rules.forecast.output.table) else []
 
 
 rule benchmark:
-    """Measure how fast the engines are on this machine."""
+    """How fast the engines are on this machine."""
     input:
-        scenes=rules.effects_cost.input.scenes,
+        scenes=EFFECT_FILES,
     output:
-        table=ensure(f"{RESULTS}/benchmark.csv", non_empty=True),
+        table=f"{RESULTS}/benchmark.csv",
     log:
         f"{RESULTS}/logs/benchmark.log",
     benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
-    threads: 64  # all that there are: it must run alone
+    threads: ALONE
     params:
-        code=code("twodiscs_paper.benchmark"),
+        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:
-        "python -m twodiscs_paper.benchmark --scenes {input.scenes} --output {output.table} > {log} 2>&1"
+        "python -P -m twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

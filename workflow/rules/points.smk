@@ -15,45 +15,85 @@ rule exact:
     localrule: True
     params:
         box=box,
-        radii=lambda w: word(SCENES[w.scene].exact_radii(w.table)),
-        code=code(
-            "twodiscs_paper.pipeline.jobs.table", "twodiscs.comparison.tables.exact"
+        radii=lambda w: SCENES[w.scene].exact_radii(w.table),
+        code=lambda w: code(
+            "twodiscs_paper.pipeline.jobs.table",
+            "twodiscs.comparison.tables.exact",
+            *family_modules("theory", SCENES[w.scene].box.family),
         ),
     shell:
-        "python -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box} --radii {params.radii}"
-        " --output {output.table} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
+        " --output {output.table:q} > {log:q} 2>&1"
 
 
-# What the loop sets is not known any more when a shell starts, so it is among the parameters.
-for stage in STAGES:
+rule monte_carlo:
+    """Volume and areas at one radius, by Monte Carlo."""
+    input:
+        shards=shards_of("monte_carlo"),
+    output:
+        point=f"{RESULTS}/{{scene}}/points/monte_carlo/{{radius}}.json",
+    log:
+        f"{RESULTS}/logs/{{scene}}/monte_carlo/{{radius}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/monte_carlo/{{radius}}.tsv"
+    resources:
+        runtime=minutes("monte_carlo"),
+    params:
+        box=box,
+        work=work_of("monte_carlo"),
+        shards=lambda w, input: braced(input.shards),
+        code=point_code("monte_carlo"),
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.point monte_carlo {params.box:q} --radius {wildcards.radius}"
+        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
 
-    rule:
-        """One radius: volume and areas by Monte Carlo, events counted, or intervals between hops."""
-        name:
-            stage
-        input:
-            shards=shards_of(stage),
-        output:
-            point=f"{RESULTS}/{{scene}}/points/{stage}/{{radius}}.json",
-        log:
-            f"{RESULTS}/logs/{{scene}}/{stage}/{{radius}}.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/{{scene}}/{stage}/{{radius}}.tsv"
-        resources:
-            runtime=minutes(stage),
-        params:
-            stage=stage,
-            box=box,
-            work=work_of(stage),
-            shards=lambda w, input: braced(input.shards),
-            code=POINT[stage],
-        shell:
-            "python -m twodiscs_paper.pipeline.jobs.point {params.stage} {params.box} --radius {wildcards.radius}"
-            " {params.work} --shards {params.shards} --output {output.point} > {log} 2>&1"
+
+rule dynamics:
+    """Mean times at one radius: events counted by molecular dynamics."""
+    input:
+        shards=shards_of("dynamics"),
+    output:
+        point=f"{RESULTS}/{{scene}}/points/dynamics/{{radius}}.json",
+    log:
+        f"{RESULTS}/logs/{{scene}}/dynamics/{{radius}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/dynamics/{{radius}}.tsv"
+    resources:
+        runtime=minutes("dynamics"),
+    params:
+        box=box,
+        work=work_of("dynamics"),
+        shards=lambda w, input: braced(input.shards),
+        code=point_code("dynamics"),
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.point dynamics {params.box:q} --radius {wildcards.radius}"
+        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
+
+
+rule intervals:
+    """The histogram of intervals between hops at one radius, by molecular dynamics."""
+    input:
+        shards=shards_of("intervals"),
+    output:
+        point=f"{RESULTS}/{{scene}}/points/intervals/{{radius}}.json",
+    log:
+        f"{RESULTS}/logs/{{scene}}/intervals/{{radius}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{scene}}/intervals/{{radius}}.tsv"
+    resources:
+        runtime=minutes("intervals"),
+    params:
+        box=box,
+        work=work_of("intervals"),
+        shards=lambda w, input: braced(input.shards),
+        code=point_code("intervals"),
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.point intervals {params.box:q} --radius {wildcards.radius}"
+        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
 
 
 rule shard:
-    """Do some blocks of the work of a point. Which accuracy is asked for is of no consequence to it."""
+    """Some blocks of the work of a point of any stage, which do not depend on the accuracy."""
     output:
         shard=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
     log:
@@ -65,15 +105,15 @@ rule shard:
     params:
         box=box,
         work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
-        code=lambda w: POINT[w.stage],
+        code=point_code(),
     shell:
-        "python -m twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box} --radius {wildcards.radius}"
-        " {params.work} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
-        " --output {output.shard} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box:q} --radius {wildcards.radius}"
+        " {params.work:q} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
+        " --output {output.shard:q} > {log:q} 2>&1"
 
 
 rule trajectory:
-    """Follow one trajectory, event by event."""
+    """One trajectory, event by event."""
     output:
         table=f"{RESULTS}/{{scene}}/trajectory.csv",
     log:
@@ -84,10 +124,11 @@ rule trajectory:
         box=box,
         radius=lambda w: SCENES[w.scene].quantities.trajectory,
         seed=lambda w: SCENES[w.scene].trajectory_seed,
-        code=code(
+        code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             "twodiscs.comparison.tables.trajectory",
+            *family_modules("dynamics", SCENES[w.scene].box.family),
         ),
     shell:
-        "python -m twodiscs_paper.pipeline.jobs.table trajectory {params.box} --radius {params.radius}"
-        " --seed {params.seed} --output {output.table} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"
+        " --seed {params.seed} --output {output.table:q} > {log:q} 2>&1"

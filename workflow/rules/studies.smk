@@ -1,68 +1,105 @@
-# The studies: a rule makes the first table of each.
-
-# Those that the scenes allow.
-ALLOWED = {
-    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
-}
+# The studies: the first table of each is made by one rule, of its parameters and of the tables that it reads.
+# A study that takes long has parts, which are jobs of their own; its table joins them.
 
 
-for name, study in ALLOWED.items():
+rule study_table:
+    """The table of a study."""
+    input:
+        tables=lambda w: FILES.study_reads(of_study(w)).values(),
+    output:
+        table=report(
+            f"{RESULTS}/{{study}}.csv",
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels=lambda w: says(of_study(w).tables[0]),
+        ),
+    log:
+        f"{RESULTS}/logs/{{study}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/{{study}}.tsv"
+    wildcard_constraints:
+        study="|".join(ALLOWED),
+    threads: lambda w: ALONE if w.study in of_study(w).timed else 1
+    resources:
+        runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
+    params:
+        parameters=lambda w: json.dumps(of_study(w).parameters(CONFIGURATION)),
+        tables=lambda w, input: assigned(FILES.study_reads(of_study(w)), input.tables),
+        code=study_code,
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --parameters {params.parameters:q}"
+        " --tables {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
 
-    rule:
-        """The table of a study."""
-        name:
-            f"{name}_table"
-        input:
-            tables=FILES.study_reads(study).values(),
-        output:
-            table=study_table(study.tables[0]),
-        log:
-            f"{RESULTS}/logs/{name}.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/{name}.tsv"
-        resources:
-            runtime=cost.study_minutes(study, CONFIGURATION),
-        params:
-            table=study.tables[0].name(),
-            parameters=json.dumps(study.parameters(CONFIGURATION)),
-            tables=lambda w, input, study=study: assigned(
-                FILES.study_reads(study), input.tables
-            ),
-            code=code(
-                "twodiscs_paper.pipeline.jobs.study",
-                study.tables[0].__module__,
-            ),
-        shell:
-            "python -m twodiscs_paper.pipeline.jobs.study {params.table} --parameters {params.parameters:q}"
-            " --tables {params.tables} --output {output.table} > {log} 2>&1"
+
+rule study_part:
+    """A part of the table of a study that takes long."""
+    output:
+        table=f"{RESULTS}/parts/{{study}}/{{part}}.csv",
+    log:
+        f"{RESULTS}/logs/parts/{{study}}-{{part}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/parts/{{study}}-{{part}}.tsv"
+    wildcard_constraints:
+        study="|".join(PARTS),
+        part="[a-z0-9_-]+",
+    resources:
+        runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
+    params:
+        parameters=lambda w: json.dumps(PARTS[w.study][w.part]),
+        code=study_code,
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --part --parameters {params.parameters:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
+
+
+rule effects_curves:
+    """The exact curves of the study of effects."""
+    output:
+        table=report(
+            f"{RESULTS}/effects_curves.csv",
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels=says(STUDIES["effects"].tables[2]),
+        ),
+    log:
+        f"{RESULTS}/logs/effects_curves.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/effects_curves.tsv"
+    params:
+        parameters=json.dumps({"scenes": boxes(CONFIGURATION)}),
+        code=code(
+            "twodiscs_paper.pipeline.jobs.study",
+            "twodiscs_paper.studies.effects.curves",
+            *family_modules("theory", "plain", "effects"),
+        ),
+    shell:
+        "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
+        " --output {output.table:q} > {log:q} 2>&1"
 
 
 rule effects_cost:
-    """Measure what each effect costs, in seconds for an event."""
+    """What each effect costs, in seconds for an event: speed is measured, so it runs alone."""
     input:
         scenes=EFFECT_FILES,
         # The compiler has run by then.
         tables=FILES.study_reads(STUDIES["effects"]).values(),
     output:
-        table=study_table(STUDIES["effects"].tables[1]),
+        table=report(
+            f"{RESULTS}/effects_cost.csv",
+            caption="../report/shared_table.rst",
+            category="Tables",
+            subcategory="all scenes",
+            labels=says(STUDIES["effects"].tables[1]),
+        ),
     log:
         f"{RESULTS}/logs/effects_cost.log",
     benchmark:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
+    threads: ALONE
     params:
-        code=code("twodiscs_paper.benchmark"),
+        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:
-        "python -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes}"
-        " --output {output.table} > {log} 2>&1"
-
-
-# A study's name is a target: its tables and figures.
-for name in ALLOWED:
-
-    rule:
-        """The tables and figures of a study."""
-        name:
-            name
-        input:
-            FILES.study(name),
-        localrule: True
+        "python -P -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
+        " --output {output.table:q} > {log:q} 2>&1"

@@ -3,22 +3,20 @@
 
 
 rule table:
-    """Gather the points of a scene into a table, beside the exact values."""
+    """The points of a scene in a table, beside the exact values."""
     input:
         theory=f"{RESULTS}/{{scene}}/theory.csv",
         monte_carlo=lambda w: FILES.points(w.scene, w.table, "monte_carlo"),
         dynamics=lambda w: FILES.points(w.scene, w.table, "dynamics"),
         intervals=lambda w: FILES.points(w.scene, w.table, "intervals"),
+        forecast=lambda w: FORECAST if w.table == "cost" else [],
     output:
         table=report(
-            ensure(f"{RESULTS}/{{scene}}/{{table}}.csv", non_empty=True),
+            f"{RESULTS}/{{scene}}/{{table}}.csv",
             caption="../report/table.rst",
             category="Tables",
             subcategory="{scene}",
-            labels=lambda w: {
-                "table": w.table,
-                "what a row says": SCENE_TABLES[w.table].meaning(),
-            },
+            labels=lambda w: says(SCENE_TABLES[w.table]),
         ),
     log:
         f"{RESULTS}/logs/{{scene}}/{{table}}.log",
@@ -29,23 +27,23 @@ rule table:
     localrule: True
     params:
         box=box,
-        areas=lambda w: word(SCENES[w.scene].quantities.areas),
+        areas=lambda w: SCENES[w.scene].quantities.areas,
         monte_carlo=lambda w, input: braced(input.monte_carlo),
         dynamics=lambda w, input: braced(input.dynamics),
         intervals=lambda w, input: braced(input.intervals),
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             SCENE_TABLES[w.table].__module__,
+            *family_modules("theory", SCENES[w.scene].box.family),
         ),
     shell:
-        "python -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box} --areas {params.areas}"
-        " --theory {input.theory} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
-        " --intervals {params.intervals} --results $(dirname $(dirname {output.table})) --output {output.table}"
-        " > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"
+        " --theory {input.theory:q} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
+        " --intervals {params.intervals} --forecast {input.forecast:q} --output {output.table:q} > {log:q} 2>&1"
 
 
 rule check:
-    """Say whether exact theory, Monte Carlo and dynamics agree; fail and name where they do not."""
+    """Do exact theory, Monte Carlo and dynamics agree? It fails and names where they do not."""
     input:
         tables=[
             FILES.table("check", scene)
@@ -57,6 +55,7 @@ rule check:
             for study in STUDIES.values()
             if study.checked and study.name in CONFIGURATION.shared
         ],
+        configuration=f"{RESULTS}/configuration.json",
     output:
         passed=f"{RESULTS}/check.passed",
     log:
@@ -65,8 +64,7 @@ rule check:
         f"{RESULTS}/benchmarks/check.tsv"
     localrule: True
     params:
-        configuration=json.dumps(config, sort_keys=True),
         code=code("twodiscs_paper.pipeline.results.verdict"),
     shell:
-        "python -m twodiscs_paper.pipeline.results.verdict {input.tables} --studies {input.studies}"
-        " --configuration {params.configuration:q} --output {output.passed} > {log} 2>&1"
+        "python -P -m twodiscs_paper.pipeline.results.verdict {input.tables:q} --studies {input.studies:q}"
+        " --configuration @{input.configuration:q} --output {output.passed:q} > {log:q} 2>&1"

@@ -30,6 +30,7 @@ from itertools import groupby
 from twodiscs.comparison import estimates, scores
 from twodiscs.comparison.points import by_radius
 from twodiscs.theory import virial
+from twodiscs.theory.exact import replicas_needed
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
@@ -74,6 +75,9 @@ def _sum_rule(scene, point):
     rule = estimates.sum_rule(scene, point["duration"], replicas, counts, point["products"])
     enough = min(counts[event] for event in SUM_RULE) >= scores.NORMAL
     stderr = z = None
+    if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
+        # Of rough discs the run may have missed crowds.
+        enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE)
     if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)

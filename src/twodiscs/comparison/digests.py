@@ -8,15 +8,23 @@ from twodiscs.model.checks import InputError
 
 KEY = "sha256"
 
+#: What a file has besides, which differs from run to run: no part of the content or of its digest.
+SECONDS = "seconds"
+
 
 def digest(*paths):
     """Return the SHA-256 of files, one after the other, in hexadecimal digits."""
     return sha256(b"".join(Path(path).read_bytes() for path in paths)).hexdigest()
 
 
-def write_json(path, content):
-    """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits."""
+def write_json(path, content, seconds=None):
+    """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits.
+
+    ``seconds`` say what it took, if that is known.
+    """
     content = content | {KEY: _digest_of(content)}
+    if seconds is not None:
+        content[SECONDS] = seconds
     text = json.dumps(content, sort_keys=True, indent=1, allow_nan=False)
     Path(path).write_text(f"{text}\n", encoding="utf-8", newline="\n")
 
@@ -28,12 +36,18 @@ def read_json(path):
     """
     try:
         content = json.loads(Path(path).read_bytes())
+        content.pop(SECONDS, None)
         written = content.pop(KEY) == _digest_of(content)
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         written = False
     if not written:
         raise InputError(f"{path} is not what its job wrote; delete it, and it is made again")
     return content
+
+
+def read_seconds(path):
+    """Return the seconds in a file of ``write_json``, None without any."""
+    return json.loads(Path(path).read_bytes()).get(SECONDS)
 
 
 def _digest_of(content):

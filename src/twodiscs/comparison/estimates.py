@@ -23,6 +23,9 @@ MIN_EVENTS = 100
 #: How well an error must itself be known, relatively, where counts may have a heavy tail.
 KNOWN = 0.1
 
+#: Weights of insertions are to be so many times the least one whose square is not rounded to 0.
+RESOLVED = 8
+
 #: Allowance for clusters where events are rare: a replica that sees any sees at most so many in the
 #: mean. A hop through a narrow gap may be undone soon: just below the thresholds of boxes from
 #: 1 × 1 to 3 × 1, replicas of length 10 and 50 gave Σ N²/Σ N between 1.0 and 1.8.
@@ -193,7 +196,8 @@ def weighted_estimate(total, squares, unit, samples, measure):
 
     ``total`` is Σ w and ``squares`` Σ w² over so many ``samples``, both in ``unit``, as points of
     insertions have them. As many samples of equal weight, (Σ w)²/Σ w², would be as precise where
-    few have any. None without any weight at all.
+    few have any. It is 0 where squares are too few units each to know the error by. None without
+    any weight at all.
     """
     total, squares = check_integer("total", total, 0), check_integer("squares", squares, 0)
     samples, measure = check_integer("samples", samples, 2), check_real("measure", measure)
@@ -201,7 +205,18 @@ def weighted_estimate(total, squares, unit, samples, measure):
         return None, 0.0
     mean, second = total / (unit * samples), squares / (unit * samples)
     error = math.sqrt(max(second - mean**2, 0.0) / samples)
-    return Estimate(measure * mean, measure * error, samples), total**2 / (squares * unit)
+    resolved = squares * math.sqrt(unit) >= RESOLVED * total
+    effective = total**2 / (squares * unit) if resolved else 0.0
+    return Estimate(measure * mean, measure * error, samples), effective
+
+
+def effective_misses(total, squares, unit, samples):
+    """Return how many samples without any weight would spread as much; arguments as above.
+
+    Squares are known to a ``unit``, so that no more samples than that count.
+    """
+    spread = 1 - total**2 / (squares * unit * samples) if squares else 0.0
+    return max(0.0, spread) * min(unit, samples)
 
 
 def _weights_of(point, weights):

@@ -17,6 +17,7 @@ from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.starts import require_room
+from twodiscs.theory.exact import replicas_needed
 
 COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
@@ -156,11 +157,21 @@ class CountingRun:
             )
             return sums if octaves is None else (*sums, octaves)
 
-        planned = max(replicas, default=0.0) / REPLICAS
         block_events = REPLICAS * expected_event_rate(scene) * duration
+        # Crowds that the budget has no chance to show are not waited for.
+        needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
+        needed = needed / REPLICAS
+        needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
+        planned = max(replicas, default=0.0) / REPLICAS
+        planned = max([planned, *needed])
+
+        def excess_of(sums, blocks):
+            errors = relative_errors(*sums[:2], blocks * REPLICAS)[index] / goals
+            return np.maximum(errors, np.sqrt(needed / blocks))
+
         return SequentialRun(
             work,
-            lambda sums, blocks: relative_errors(*sums[:2], blocks * REPLICAS)[index] / goals,
+            excess_of,
             lambda sums: max(1, simulated_events(sums[0])),
             block_events,
             budget,

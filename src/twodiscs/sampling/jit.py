@@ -11,6 +11,7 @@ the settings must precede the import.
 """
 
 import atexit
+import fcntl
 import gc
 import os
 import shutil
@@ -182,7 +183,35 @@ def compiled(function):
     finally:
         numba.config.CACHE_LOCATOR_CLASSES = usual
     kept._cache._cache_file.__class__ = CacheFile
+    _compile_once(kept._cache, function.__name__)
     return kept
+
+
+def _compile_once(cache, name):
+    """Let one process at a time compile the function of a ``cache``: others wait, and load it.
+
+    A function is locked before what it calls, so no two processes wait for each other.
+    """
+    load, save, held = cache.load_overload, cache.save_overload, []
+
+    def load_or_lock(signature, context):
+        found = load(signature, context)
+        if found is None and not held:
+            with suppress(OSError):  # a file system without locks: then both compile
+                held.append(os.open(Path(cache.cache_path, f"{name}.lock"), os.O_CREAT | os.O_RDWR))
+                fcntl.flock(held[0], fcntl.LOCK_EX)
+            if (found := load(signature, context)) is not None and held:
+                os.close(held.pop())
+        return found
+
+    def save_and_unlock(signature, data):
+        try:
+            save(signature, data)
+        finally:
+            if held:
+                os.close(held.pop())
+
+    cache.load_overload, cache.save_overload = load_or_lock, save_and_unlock
 
 
 def inlined(function):

@@ -170,6 +170,14 @@ def exact(scene: Scene) -> Exact:
     }
 
 
+def replicas_needed(scene, event, error):
+    """Return how many initial states show the crowds of an ``event``, for a relative ``error``.
+
+    That is 0 for smooth discs; see ``clusters``.
+    """
+    return of_family(scene, "theory", "replicas_needed")(scene, event, error)
+
+
 def free_fraction(scene):
     """Return the share of the prism in which the discs are free, weighted in a field."""
     ranges = (

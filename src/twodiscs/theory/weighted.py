@@ -313,10 +313,13 @@ def _sum_of_orders(axes, integral, *arguments):
 
 
 class _Space:
-    """The configuration space of a ``Scene`` with the weight (1 − U/E)₊^p."""
+    """The configuration space of a ``Scene`` with the weight (1 − U/E)₊^p.
 
-    def __init__(self, scene, power):
-        self.scene, self.power = scene, power
+    ``level`` is {axis: the largest separation of the centres along it}, for a part of that space.
+    """
+
+    def __init__(self, scene, power, level=None):
+        self.scene, self.power, self.level = scene, power, level or {}
         self.sigma = scene.exact_contact
         self.order = sorted(scene.axes, key="yxz".index)
         # Many integrals share them.
@@ -333,6 +336,7 @@ class _Space:
 
     def axis(self, axis, farthest=None):
         """Return {``Branch``: how often} of ``axis``."""
+        farthest = self.level.get(axis) if farthest is None else farthest
         if axis in self.scene.walled:
             return _walled(*self.intervals(axis), self.power, farthest)
         return _periodic(self.scene.side(axis), farthest)
@@ -374,7 +378,7 @@ class _Space:
         else:
             own = own._replace(high=min(own.high, own.low + thickness))
         both[disc] = own
-        return self.beyond(**{axis: _walled(*both, self.power)})
+        return self.beyond(**{axis: _walled(*both, self.power, self.level.get(axis))})
 
 
 def _walls(scene, event):
@@ -409,6 +413,12 @@ def volume(scene):
     Without a field it is the volume of configuration space.
     """
     return _Space(scene, scene.velocity_components / 2 - 1).beyond()
+
+
+def areas_near(scene, axis, distance):
+    """Return ``areas`` of the part with a separation of at most ``distance`` along ``axis``."""
+    space = _Space(scene, (scene.velocity_components - 1) / 2, {axis: Fraction(distance)})
+    return {event: _area(space, event) for event in EVENTS}
 
 
 def areas(scene):

@@ -8,13 +8,14 @@ import pytest
 from fabricated import BOX, RADII, Laws, command, scenes
 
 from twodiscs.arguments import box_arguments
-from twodiscs.comparison.digests import write_json
+from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDY_TABLES
 from twodiscs_paper.pipeline.jobs import figure, study, table
 
-WORDS = box_arguments(BOX).split()
+WORDS = box_arguments(BOX)
 
 
 @pytest.fixture
@@ -48,24 +49,27 @@ def test_a_table_is_made_of_points(run, points, name):
     assert [row["radius"] for row in SCENE_TABLES["grid"].read("grid.csv")] == [*RADII]
 
 
-def test_cost_is_what_snakemake_measured_and_may_be_missing(run, points, tmp_path):
-    folder = tmp_path / "benchmarks" / "scene" / "dynamics"
-    folder.mkdir(parents=True)
-    for name, seconds in (
-        ("0.1", 2.5),
-        ("0.2_all-0-64", 3.0),
-        ("0.2_all-64-70", 1.0),
-        ("0.2", 0.5),
-    ):
-        (folder / f"{name}.tsv").write_text(f"s\th:m:s\n{seconds}\t0:00:02\n")
+def test_cost_is_what_jobs_took_and_may_be_missing(run, points, tmp_path):
+    """It stands in the files of the points, beside the digest, and is no part of their content."""
+    took = {0.1: 2.5, 0.2: 4.5}
+    for path in points[points.index("--dynamics") + 1 :]:
+        content = read_json(path)
+        write_json(path, content, took.get(content["radius"]))
+        assert read_json(path) == content
     (tmp_path / "scene").mkdir()
-    words = *points, "--results", ".", "--output", "scene/cost.csv"
-    assert run(table, "cost", *WORDS, *words) == 0
+    assert run(table, "cost", *WORDS, *points, "--output", "scene/cost.csv") == 0
     rows = {(r["stage"], r["radius"]): r for r in SCENE_TABLES["cost"].read("scene/cost.csv")}
     assert rows["dynamics", 0.1]["seconds"] == 2.5
     assert rows["dynamics", 0.2]["seconds"] == 4.5
     assert rows["dynamics", 0.3]["seconds"] is None
     assert rows["monte_carlo", 0.1]["events"] == 10**7
+    forecast = {"scene": "scene", "stage": "dynamics", "radius": 0.2, "seconds": 1.5}
+    Forecast.write(tmp_path / "forecast.csv", [Forecast.empty(**forecast)])
+    words = "--forecast", "forecast.csv", "--output", "scene/cost.csv"
+    assert run(table, "cost", *WORDS, *points, *words) == 0
+    rows = {(r["stage"], r["radius"]): r for r in SCENE_TABLES["cost"].read("scene/cost.csv")}
+    assert rows["dynamics", 0.2]["ratio"] == 3.0
+    assert rows["total", None]["seconds"] == 4.5
 
 
 def test_an_edited_point_is_refused_in_a_sentence(run, points, capsys):

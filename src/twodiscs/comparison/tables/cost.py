@@ -16,7 +16,7 @@ class Cost(Table):
     events: COUNT
     """events simulated, configurations or intervals drawn"""
     seconds: SECONDS
-    """how long the job took, and its shards, as Snakemake measured it; empty where it did not"""
+    """processor time of the job and of its shards; empty where it is not known"""
     forecast_seconds: SECONDS
     """processor time that was forecast before the run; empty without a forecast"""
     ratio: NUMBER

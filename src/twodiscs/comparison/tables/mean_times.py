@@ -46,8 +46,8 @@ class MeanTimes(Table):
     status: TEXT
     """
     reached: the target; budget: stopped by the event budget; too-few: under 100 replicas or 100
-    effective events (clusters count once), no honest error; none-seen; impossible: blocked by
-    geometry
+    effective events (clusters count once), or too few initial states to show the crowds of events
+    of rough discs, no honest error; none-seen; impossible: blocked by geometry
     """
     bound: TIME
     """
@@ -104,8 +104,9 @@ def _row(scene, event, point, exact, strip=None):
     """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
     from twodiscs.comparison import estimates, scores  # which need numpy and scipy
     from twodiscs.sampling.blocks.strata import mean_of
+    from twodiscs.theory.exact import replicas_needed
 
-    mean = octaves = None
+    mean, octaves, target = None, None, point["target"][event]
     if strip is None:
         octaves = point.get("octaves", {}).get(event)
         count, squares = point["counts"][event], point["products"][f"{event}*{event}"]
@@ -130,6 +131,11 @@ def _row(scene, event, point, exact, strip=None):
             status = "too-few"
             if estimates.has_error_bar(count, squares, replicas):
                 z = test = None  # no law is known for bursts of which the largest are yet to come
+    if strip["share"] == 1 and scene.is_possible(event):
+        error = min(target, estimate.relative_stderr) if estimate else target
+        if replicas < replicas_needed(scene, event, error):
+            # The run may have missed the crowds, and its sample would not show that.
+            status, z, test, bound = "too-few" if count else status, None, None, None
     shown = estimate if status != "too-few" else None
     return {
         "radius": point["radius"],
@@ -143,7 +149,7 @@ def _row(scene, event, point, exact, strip=None):
         "replicas": replicas,
         "duration": duration,
         "relative_stderr": shown and shown.relative_stderr,
-        "target": point["target"][event],
+        "target": target,
         "status": status,
         "bound": bound,
         "test": test,

@@ -144,13 +144,11 @@ def _weighted_row(point, quantity, exact):
     """Return the row of a quantity of a point of insertions."""
     from twodiscs.comparison import estimates
 
-    part, samples = point["quantities"][quantity], point["samples"]
-    return _of_estimate(
-        point, quantity, exact,
-        *estimates.weighted_estimate(
-            part["sum"], part["squares"], point["unit"], samples, part["measure"]
-        ),
-    )  # fmt: skip
+    part, unit, samples = point["quantities"][quantity], point["unit"], point["samples"]
+    sums = part["sum"], part["squares"], unit, samples
+    estimate, effective = estimates.weighted_estimate(*sums, part["measure"])
+    misses = estimates.effective_misses(*sums)
+    return _of_estimate(point, quantity, exact, estimate, effective, misses)
 
 
 def _all_walls_row(scene, point, exact):
@@ -161,21 +159,27 @@ def _all_walls_row(scene, point, exact):
     if not {*walls} <= point["quantities"].keys():
         return []
     weights = {wall: scene.multiplicity(wall.removesuffix("_area")) for wall in walls}
-    return [_of_estimate(point, "any_wall_area", exact, *estimates.sampled_sum(point, weights))]
+    sums = [
+        (point["quantities"][w]["sum"], point["quantities"][w]["squares"], point["unit"])
+        for w in walls
+    ]
+    misses = min(estimates.effective_misses(*one, point["samples"]) for one in sums)
+    found = estimates.sampled_sum(point, weights)
+    return [_of_estimate(point, "any_wall_area", exact, *found, misses)]
 
 
-def _of_estimate(point, quantity, exact, estimate, effective):
-    """Return the row of an unbiased estimate with an ``effective`` number of samples."""
+def _of_estimate(point, quantity, exact, estimate, effective, misses):
+    """Return the row of an unbiased estimate with effective numbers of samples and of misses."""
     from twodiscs.comparison import estimates, scores
 
     z = test = None
-    status = "sampled" if effective >= estimates.MIN_EVENTS else "too-few"
+    status = "sampled" if min(effective, misses) >= estimates.MIN_EVENTS else "too-few"
     if exact == 0:
         z, test = scores.impossible_z(0 if estimate is None else 1)
         z, status = abs(z), "impossible"
     elif estimate is None:
         status = "none-seen"
-    elif exact is not None and effective >= scores.NORMAL:
+    elif exact is not None and min(effective, misses) >= scores.NORMAL:
         z = scores.student_deviate((estimate.value - exact) / estimate.stderr, estimate.n - 1)
         test = "normal"
     return {

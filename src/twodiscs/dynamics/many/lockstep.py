@@ -413,14 +413,16 @@ def expected_rates(scene):
     """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
 
     Exact where that is known, and else from some insertions (``measures.expected``), within a few
-    per cent. Where these have no room, of wall hits and collisions a guess (``replica_duration``).
+    per cent. Where these have no room, or see no wall hits or collisions, those are a guess
+    (``replica_duration``).
     """
     known = exact.measures(scene) or measures.expected(scene)
+    guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
     if known is None:
-        return {"disc_collision": _guessed_rate(scene) / 2, "any_wall": _guessed_rate(scene) / 2}
+        return guess
     by_class = rates(scene, known)
     summed = {event: sum(by_class[name] for name in parts) for event, parts in PARTS.items()}
-    return {event: rate for event, rate in summed.items() if rate and event in scene.events}
+    return guess | {e: rate for e, rate in summed.items() if rate and e in scene.events}
 
 
 def expected_event_rate(scene):

@@ -252,7 +252,7 @@ def estimate(scene, sums, products, samples):
     log_volume = n * math.log(a * b) + math.log(box_of(scene).typical) + math.log(mean[0])
     return (
         Measures(log_volume, *map(float, factors * ratios)),
-        Measures(math.sqrt(covariance[0, 0]) / mean[0], *map(float, factors * errors)),
+        Measures(math.sqrt(max(covariance[0, 0], 0.0)) / mean[0], *map(float, factors * errors)),
     )
 
 

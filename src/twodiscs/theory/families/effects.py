@@ -2,12 +2,13 @@
 
 from twodiscs.model.events import DECLARED
 from twodiscs.theory import weighted
+from twodiscs.theory.families.clusters import replicas_needed
 from twodiscs.theory.flux import constant
 from twodiscs.theory.weighted import shell_expectation
 
 __all__ = [
-    "fraction_near", "passing_rate", "rate", "shell_expectation", "shells", "volume_and_areas",
-    "work_per_event",
+    "fraction_near", "passing_rate", "rate", "replicas_needed", "shell_expectation", "shells",
+    "volume_and_areas", "work_per_event",
 ]  # fmt: skip
 
 #: Times that discs may leave their periodic cell between two events before that counts as work.

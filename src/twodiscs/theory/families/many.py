@@ -2,7 +2,7 @@
 
 from twodiscs.theory.many.exact import event_rates, volume_and_areas
 
-__all__ = ["rate", "volume_and_areas", "work_per_event"]
+__all__ = ["rate", "replicas_needed", "volume_and_areas", "work_per_event"]
 
 
 def rate(scene, event, volume, areas):
@@ -13,3 +13,8 @@ def rate(scene, event, volume, areas):
 def work_per_event(scene, event_rate):
     """Return 1: the kernel of N discs looks again only after half a period."""
     return 1.0
+
+
+def replicas_needed(scene, event, error):
+    """Return 0: smooth discs have no crowds of events."""
+    return 0.0

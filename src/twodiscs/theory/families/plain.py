@@ -7,7 +7,8 @@ from twodiscs.theory import plain
 from twodiscs.theory.plain import shell_expectation
 
 __all__ = [
-    "fraction_near", "rate", "shell_expectation", "shells", "volume_and_areas", "work_per_event",
+    "fraction_near", "rate", "replicas_needed", "shell_expectation", "shells",
+    "volume_and_areas", "work_per_event",
 ]  # fmt: skip
 
 
@@ -35,3 +36,8 @@ def fraction_near(scene, hop, distance, volume):
     """Return the share of configuration space within a ``distance`` of level, see ``exact``."""
     epsilon = distance / math.sqrt(2)
     return 2 * epsilon * shell_expectation(scene, hop, epsilon) / volume
+
+
+def replicas_needed(scene, event, error):
+    """Return 0: smooth discs have no crowds of events."""
+    return 0.0

@@ -1,5 +1,6 @@
 """Which files a configuration calls for: the Snakefile imports this."""
 
+import shlex
 from hashlib import blake2b
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
@@ -63,10 +64,11 @@ class Files:
         return [*tables, *(_drawn(f"{self.folder}/figures/{figure}") for figure in study.figures)]
 
     def study_reads(self, study):
-        """Return {name: path} of the tables that a study reads."""
+        """Return {name: path} of the tables that a study reads, its own parts among them."""
+        parts = {name: (f"parts/{study.name}", name) for name in study.parts(self.configuration)}
         return {
             name: self.table(table, scene)
-            for name, (scene, table) in study.reads(self.configuration).items()
+            for name, (scene, table) in (parts | study.reads(self.configuration)).items()
         }
 
     def figure_reads(self, entry, scene=None):
@@ -107,7 +109,7 @@ def _drawn(path, first="pdf"):
 
 def assigned(names, paths):
     """Return arguments NAME=PATH. Paths are the inputs of a job: a module may prefix them."""
-    return " ".join(f"{name}={path}" for name, path in zip(names, paths, strict=True))
+    return [f"{name}={path}" for name, path in zip(names, paths, strict=True)]
 
 
 def braced(paths):
@@ -117,4 +119,4 @@ def braced(paths):
     folders, names = zip(*(str(path).rsplit("/", 1) for path in paths), strict=True)
     stems = [name.removesuffix(".json") for name in names]
     listed = f"{{{','.join(stems)}}}" if len(stems) > 1 else stems[0]
-    return f"{folders[0]}/{listed}.json"
+    return f"{shlex.quote(folders[0])}/{listed}.json"

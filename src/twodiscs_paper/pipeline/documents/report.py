@@ -1,15 +1,13 @@
 """The report that is opened first: verdict, agreement, a section a scene; Snakemake's is behind it.
 
 It is one HTML file with its pictures in it; tables, figures as PDF and Snakemake's report are links
-to the files beside it. Standard input is the graph of rules that ``snakemake --rulegraph`` prints.
+to the files beside it.
 """
 
 import json
 import re
-import sys
 from base64 import b64encode
 from datetime import date
-from graphlib import CycleError, TopologicalSorter
 from io import BytesIO
 from pathlib import Path, PurePosixPath
 
@@ -43,9 +41,6 @@ SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
 
 #: The first sentence of a caption, which says what is drawn: its end is no decimal point.
 SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
-
-#: Pixels of the graph: from column to column, from row to row, width and height of a rule.
-ACROSS, DOWN, WIDE, HIGH = 136, 62, 126, 24
 
 
 def agreement(folder, scene):
@@ -148,57 +143,11 @@ def section(folder, paths, scenes, scene=None):
     }
 
 
-def direct(feeds):
-    """Return ``feeds`` without the arrows that a chain of others makes up for."""
-
-    def reached(rule):
-        return {below for next_rule in feeds[rule] for below in ({next_rule} | reached(next_rule))}
-
-    return {
-        rule: [later for later in below if not any(later in reached(o) for o in below)]
-        for rule, below in feeds.items()
-    }
-
-
-def rules(dot):
-    """Return the graph of rules that ``snakemake --rulegraph`` says, a text, placed in rows.
-
-    {"rules": {name: (x, y)}, "arrows": [((x, y), (x, y))], "width": …, "height": …, "size": …} in
-    pixels; None where a rule feeds itself by way of others, so that there are no rows.
-    """
-    names = dict(re.findall(r'(\d+)\[label = "(\w+)"', dot))
-    feeds = {name: [] for name in sorted(names.values())}
-    for source, target in sorted(re.findall(r"(\d+) -> (\d+)", dot)):
-        feeds[names[target]].append(names[source])
-    try:
-        order = tuple(TopologicalSorter(feeds).static_order())
-    except CycleError:
-        return None
-    row = {}
-    for name in order:
-        row[name] = max((row[source] + 1 for source in feeds[name]), default=0)
-    lines = [[n for n in feeds if row[n] == i] for i in range(max(row.values()) + 1)]
-    width = ACROSS * max(map(len, lines))
-    places = {}
-    for i, line in enumerate(lines):
-        # Each rule as near as may be to what it reads.
-        line.sort(key=lambda name: sum(places[s][0] for s in feeds[name]) / (len(feeds[name]) or 1))
-        for j, name in enumerate(line):
-            places[name] = (round((j + 0.5) * width / len(line)), DOWN * i + HIGH)
-    return {
-        "arrows": [(places[s], places[t]) for t, some in direct(feeds).items() for s in some],
-        "height": DOWN * (len(lines) - 1) + 2 * HIGH,
-        "rules": places,
-        "width": width,
-        "size": (WIDE, HIGH),
-    }
-
-
-def contents(folder, files, scenes, dot, workflow):
+def contents(folder, files, scenes, graph):
     """Return what the template shows of the ``files`` in ``folder``; all paths are relative to it.
 
-    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}], ``dot`` is the graph of
-    rules as Snakemake says it, ``workflow`` its own report.
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}], ``graph`` is a picture
+    of the rules, a text in SVG.
     """
     by_name = {scene["name"]: scene for scene in scenes}
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
@@ -213,10 +162,9 @@ def contents(folder, files, scenes, dot, workflow):
         "commit": commit(Path(__file__).parent),
         "date": date.today(),
         "paper": "paper.pdf" in files,
-        "graph": rules(dot),
+        "graph": Markup(graph),
         "sections": sections,
         "versions": versions(),
-        "workflow": workflow,
     }
 
 
@@ -245,13 +193,13 @@ def main():
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="all results")
     parser.add_argument("--template", required=True, type=Path, help="the page, for Jinja")
     parser.add_argument("--scenes", required=True, help="the scenes, JSON")
-    parser.add_argument("--workflow", required=True, help="Snakemake's report, beside this one")
+    parser.add_argument("--graph", required=True, type=Path, help="a picture of the rules, SVG")
     parser.add_argument("--output", required=True, type=Path, metavar="HTML")
     options = parser.parse_args()
     folder = options.output.parent
     files = [path.relative_to(folder).as_posix() for path in options.files]
     scenes = json.loads(options.scenes)
-    shown = contents(folder, files, scenes, sys.stdin.read(), options.workflow)
+    shown = contents(folder, files, scenes, options.graph.read_text(encoding="utf-8"))
     text = page(options.template.read_text(encoding="utf-8"), shown)
     options.output.write_text(text, encoding="utf-8", newline="\n")
 

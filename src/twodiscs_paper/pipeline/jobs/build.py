@@ -3,10 +3,12 @@
 Quick to import: the Snakefile reads this.
 """
 
+import os
 import shlex
 import shutil
 import signal
 import sys
+from contextlib import suppress
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -107,6 +109,27 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     return [*words, "--", *targets] if targets else words
 
 
+def report_of(words):
+    """Return where Snakemake's own report goes after the command ``words``; None if it has none.
+
+    It is about what is built, so only a build of everything that the configuration at hand asks
+    for has one. Files of configurations are read here as the Snakefile reads them.
+    """
+    from snakemake.cli import get_argument_parser
+
+    name, *arguments = words
+    if Path(name).name not in ("snakemake", "__main__.py"):  # Snakemake as a library
+        return None
+    given, _ = get_argument_parser().parse_known_args(arguments)
+    if given.dryrun or given.touch or not {*given.targets} <= {"all"}:
+        return None
+    results = "results"
+    for path in ("config/config.yaml", *(given.configfile or ())):
+        with suppress(ConfigError):
+            results = read(path).get("results", results)
+    return f"{results}/report-workflow.html"
+
+
 def check_targets(path, targets, configuration):
     """Raise ``InputError`` for a target that has nothing to show of a ``Configuration``."""
     files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
@@ -136,6 +159,8 @@ def build(path, targets, cores=None, dry_run=False):
     # In this very process: what ends one of them ends both. Its profile looks at sys.argv.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = words
+    folders = [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
+    os.environ["PATH"] = os.pathsep.join(folders)  # of the python that jobs start as
     try:
         snakemake()
     except SystemExit as end:

@@ -3,11 +3,13 @@
     python -m twodiscs_paper.pipeline.jobs.point dynamics --width 1.5 --height 1 --radius 0.2 \\
         --target vertical_hop=1e-3 disc_collision=1e-3 --budget 1e9 --seed 1 --output 0.2.json
 
-A point is a JSON object of counts and sums, with a digest of them. Where it is more work than one
+A point is a JSON object of counts and sums, with a digest of them, and of the processor time that
+they took. Where it is more work than one
 job should do, it is the sum of shards: jobs of their own, with ``--part`` and ``--blocks``.
 """
 
 import inspect
+import time
 from pathlib import Path
 
 from twodiscs.arguments import (
@@ -19,7 +21,7 @@ from twodiscs.arguments import (
     scene_of,
     whole_number,
 )
-from twodiscs.comparison.digests import read_json, write_json
+from twodiscs.comparison.digests import read_json, read_seconds, write_json
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.model.checks import InputError
 
@@ -109,7 +111,8 @@ def main():
     else:
         with progress_bar(None, options.stage) as progress:
             content = work.run(progress)
-    write_json(options.output, content)
+    of_shards = sum(read_seconds(path) or 0.0 for path in options.shards)
+    write_json(options.output, content, round(time.process_time() + of_shards, 2))
 
 
 if __name__ == "__main__":

@@ -23,12 +23,16 @@ class Tables(dict):
 
 
 def read_tables(texts):
-    """Return {name: rows} of arguments NAME=CSV; the stem of a file says which table it is."""
+    """Return {name: rows} of arguments NAME=CSV.
+
+    The stem of a file says which table it is; of a part of a table, its folder does.
+    """
     tables = Tables()
     for name, path in named(texts, "--tables").items():
-        if (table := Path(path).stem) not in TABLES:
+        names = Path(path).stem, Path(path).parent.name
+        if not (found := [table for table in names if table in TABLES]):
             raise InputError(f"{path} must be one of the tables {', '.join(TABLES)}")
-        tables[name] = TABLES[table].read(path)
+        tables[name] = TABLES[found[0]].read(path)
     return tables
 
 
@@ -36,13 +40,15 @@ def main():
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
     parser.add_argument("table", choices=STUDY_TABLES)
     parser.add_argument("--parameters", default="{}", metavar="JSON")
+    parser.add_argument("--part", action="store_true", help="a part of the table")
     parser.add_argument("--tables", nargs="*", default=[], metavar="NAME=CSV")
     parser.add_argument("--output", required=True, metavar="CSV")
     options = parser.parse_args()
     table, given = STUDY_TABLES[options.table], parameters(options.parameters)
     if "box" in given:
         given["box"] = Box(**given["box"])
-    signature, tables = inspect.signature(table.rows), read_tables(options.tables)
+    work = table.part if options.part else table.rows
+    signature, tables = inspect.signature(work), read_tables(options.tables)
     if "tables" in signature.parameters:
         given["tables"] = tables
     try:
@@ -50,7 +56,7 @@ def main():
     except TypeError as error:
         raise InputError(f"parameters of {options.table}: {error}") from None
     try:
-        rows = table.rows(*bound.args, **bound.kwargs)
+        rows = work(*bound.args, **bound.kwargs)
     except InputError as error:
         # The configuration was accepted, so the mistake is the study's: the traceback says where.
         raise RuntimeError(f"the study of {options.table} asks for what is not allowed") from error

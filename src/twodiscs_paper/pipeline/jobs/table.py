@@ -5,12 +5,11 @@
         --output results/paper/mean_times.csv
 """
 
-import csv
 import inspect
 from pathlib import Path
 
 from twodiscs.arguments import Parser, add_box, box_of, number, run, whole_number
-from twodiscs.comparison.digests import read_json
+from twodiscs.comparison.digests import read_json, read_seconds
 from twodiscs.comparison.points import checked_point
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
@@ -22,27 +21,11 @@ def read_points(stage, paths):
     return [checked_point(stage, read_json(path), path) for path in paths]
 
 
-def measured(results, scene):
-    """Return {(stage, radius): seconds} that the jobs of a scene took, as Snakemake measured them.
-
-    A point in shards took what all of them did. ``results`` is the folder of all results.
-    """
-    points = {}
-    for path in Path(results, "benchmarks", scene).glob("*/*.tsv"):
-        stage, radius = path.parent.name, float(path.stem.split("_")[0])
-        with open(path, encoding="utf-8", newline="") as file:
-            seconds = sum(float(row["s"]) for row in csv.DictReader(file, delimiter="\t"))
-        points[stage, radius] = points.get((stage, radius), 0.0) + seconds
-    return points
-
-
-def forecast(results, scene):
-    """Return {(stage, radius): seconds} of the last forecast of a scene; empty without one."""
-    path = Path(results, "forecast.csv")
-    rows = Forecast.read(path) if path.exists() else []
+def forecast(path, scene):
+    """Return {(stage, radius): seconds} of a scene in the forecast at ``path``, if there is one."""
     return {
         (row["stage"], row["radius"]): row["seconds"]
-        for row in rows
+        for row in (Forecast.read(path) if path else [])
         if row["scene"] == scene and row["radius"] is not None
     }
 
@@ -64,17 +47,21 @@ def main():
     parser.add_argument("--theory", metavar="CSV", help="the exact values")
     for stage in STAGES:
         parser.add_argument(f"--{stage}", nargs="*", default=[], metavar="JSON", help="points")
-    parser.add_argument("--results", help="cost: the folder of all results")
+    parser.add_argument("--forecast", nargs="?", metavar="CSV", help="cost: what was forecast")
     parser.add_argument("--output", required=True, type=Path, metavar="CSV")
     options = parser.parse_args()
     given = {name: getattr(options, name) for name in ("radii", "radius", "seed", "areas")}
     given["box"] = box_of(options)
     given["theory"] = options.theory and SCENE_TABLES["theory"].read(options.theory)
-    given["points"] = {stage: read_points(stage, getattr(options, stage)) for stage in STAGES}
-    if options.results:
-        scene = options.output.parent.name
-        given["seconds"] = measured(options.results, scene)
-        given["forecast"] = forecast(options.results, scene)
+    paths = {stage: getattr(options, stage) for stage in STAGES}
+    given["points"] = {stage: read_points(stage, some) for stage, some in paths.items()}
+    if options.table == "cost":
+        given["seconds"] = {
+            (stage, point["radius"]): read_seconds(path)
+            for stage, some in given["points"].items()
+            for point, path in zip(some, paths[stage], strict=True)
+        }
+        given["forecast"] = forecast(options.forecast, options.output.parent.name)
     table = SCENE_TABLES[options.table]
     table.write(options.output, rows_of(table, **given))
 

@@ -1,6 +1,6 @@
 """Which results are not what their jobs wrote.
 
-    python -m twodiscs_paper.pipeline.results.audit --results results --configuration '{…}'
+    python -m twodiscs_paper.pipeline.results.audit --configuration results/configuration.json
 
 Files are held against ``manifest.sha256``, points and shards against the digests that they carry,
 and the tables of a scene are made again from its points: so an edited table is named even where a
@@ -93,12 +93,14 @@ def audit(folder, configuration):
 
 def main():
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
-    parser.add_argument("--results", required=True, type=Path, metavar="FOLDER")
-    parser.add_argument("--configuration", required=True, metavar="JSON")
-    options = parser.parse_args()
-    if not (options.results / "manifest.sha256").exists():
-        raise InputError(f"{options.results} has no manifest.sha256: results are built by make")
-    wrong, files = audit(options.results.resolve(), load(parameters(options.configuration)))
+    parser.add_argument(
+        "--configuration", required=True, type=Path, help="that in the folder of the results"
+    )
+    path = parser.parse_args().configuration
+    results = path.parent
+    if not (results / "manifest.sha256").exists():
+        raise InputError(f"{results} has no manifest.sha256: results are built by make")
+    wrong, files = audit(results.resolve(), load(parameters(f"@{path}")))
     said = f"all {files} files are what their jobs wrote"
     if wrong:
         said = f"{len(wrong)} of {files} files are not what their jobs wrote; "

@@ -275,20 +275,20 @@ def main():
         prog=__spec__.name,
         description="Compare results with the expected.",
     )
-    parser.add_argument("--results", type=Path, default=Path("results"), metavar="FOLDER")
     parser.add_argument("--expected", type=Path, default=Path("paper/expected"), metavar="FOLDER")
     parser.add_argument(
         "--configuration",
-        metavar="JSON",
-        help="that of the results, JSON or @path; theirs if absent",
+        type=Path,
+        default=Path("results/configuration.json"),
+        help="that in the folder of the results",
     )
     parser.add_argument("--write", action="store_true", help="renew what is expected instead")
     options = parser.parse_args()
 
-    results, expected = options.results, options.expected
+    results, expected = options.configuration.parent, options.expected
     if not any(path.is_dir() for path in results.glob("*/points")):
         raise InputError(f"{results} holds no results to verify: they are built by make")
-    configuration = parameters(options.configuration or f"@{results / 'configuration.json'}")
+    configuration = parameters(f"@{options.configuration}")
     if options.write:
         write(results, expected, configuration)
         print(f"{expected} is now what {results} is")

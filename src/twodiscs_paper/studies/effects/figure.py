@@ -4,7 +4,7 @@ import ast
 
 import numpy as np
 
-from twodiscs.figures.kit import curves, drawing, panels
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import (
@@ -18,7 +18,7 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs.theory.exact import mean_times
+from twodiscs_paper.studies.effects.curves import SHOWN_EVENTS
 
 #: Inches: the width of two columns, that of a panel of times, of the panel of costs and of the room
 #: for its names; margins, gaps, the panels of the curves and of the residuals, the legend.
@@ -26,8 +26,7 @@ WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
 MAIN, LOWER, LEGEND = 1.95, 0.75, 0.5
 
-#: The events whose mean times are shown, a panel each, and what is called otherwise here.
-SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
+#: What is called otherwise here.
 NAMES_OF = {"any_wall": "wall hits"}
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
@@ -38,14 +37,12 @@ SHOWN = (0.22, 22)
 
 
 def draw(box=None, *, tables):
-    """Draw the rows of effects.csv and effects_cost.csv, which name their boxes; not ``box``."""
+    """Draw the rows of effects.csv, which name their boxes, and the curves; not ``box``."""
     rows = [row for row in tables["effects"] if row["quantity"] != "never_met_share"]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
     plain = Box(rows[0]["width"], rows[0]["height"])
     ends = limits(plain)
-    others = [radius for radius, _ in ends]
-    exact = {name: curves.exact(box, others) for name, box in boxes.items()}
 
     figure = new_figure(BOTTOM + LOWER + JOINT + MAIN + TOP + LEGEND, WIDTH)
     for i, event in enumerate(SHOWN_EVENTS):
@@ -54,9 +51,7 @@ def draw(box=None, *, tables):
         lower = panels.add_panel(figure, BOTTOM, LOWER, left, ACROSS)
         for name, look in looks.items():
             own = [r for r in rows if r["scene"] == name and r["quantity"] == f"{event}_time"]
-            radii, values = exact[name]
-            ratio = values[f"{event}_time"] / _plain_times(plain, radii, event)
-            main.plot(radii, ratio, color=look[0], zorder=5)
+            main.plot(*_curve(tables["effects_curves"], name, event), color=look[0], zorder=5)
             panels.estimates(main, list(map(_relative, own)), *look)
             panels.residuals(lower, own, *look)
         main.axhline(1, color=GREY, lw=0.5, zorder=0)
@@ -107,13 +102,10 @@ def _box(row):
     return Box(row["width"], row["height"], ast.literal_eval(row["effects"]))
 
 
-def _plain_times(box, radii, event):
-    """Return the mean times of plain discs in a ``Box``, NaN where there is none."""
-    times = [
-        mean_times(box.scene(float(r)))[event] if r > 0 and box.fits(float(r)) else None
-        for r in radii
-    ]
-    return np.array(times, float)
+def _curve(rows, scene, event):
+    """Return the radii and ratios of the curve of an event, NaN where it is broken."""
+    own = [row for row in rows if (row["scene"], row["event"]) == (scene, event)]
+    return np.array([[row["radius"], row["ratio"]] for row in own], float).reshape(-1, 2).T
 
 
 def _relative(row):

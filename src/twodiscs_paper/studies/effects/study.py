@@ -1,16 +1,20 @@
 """What each effect does to the mean times, and what it costs."""
 
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.studies.effects.table import Effects, EffectsCost
+from twodiscs_paper.studies.effects.table import Effects, EffectsCost, EffectsCurves
 from twodiscs_paper.study import Study
 
 #: The files of config/scenes, a scene each.
 SCENES = ("balls", "channel", "field", "rough", "torus", "unequal")
 
 
+def boxes(configuration):
+    """Return the scenes, {name: parameters of a box}."""
+    return {scene.name: scene.box.parameters() for scene in configuration.effect_scenes}
+
+
 def _parameters(configuration):
-    boxes = {scene.name: scene.box.parameters() for scene in configuration.effect_scenes}
-    return {"scenes": boxes, "seed": configuration.seed}
+    return {"scenes": boxes(configuration), "seed": configuration.seed}
 
 
 def _reads(configuration):
@@ -23,7 +27,7 @@ def _reads(configuration):
 STUDY = Study(
     "effects",
     builds="what each effect does to the mean times, and what it costs",
-    tables=(Effects, EffectsCost),
+    tables=(Effects, EffectsCost, EffectsCurves),
     seconds=80.0,
     order=7,
     figures={
@@ -31,7 +35,7 @@ STUDY = Study(
             "What each effect does",
             DYNAMICS,
             "twodiscs_paper.studies.effects.figure",
-            tables=("effects", "effects_cost"),
+            tables=("effects", "effects_cost", "effects_curves"),
         ),
     },
     parameters=_parameters,

@@ -60,6 +60,32 @@ class Effects(Table):
         return list(measure.rows(tables, scenes, seed))
 
 
+class EffectsCurves(Table):
+    """One row per scene with effects, radius and event: the exact curves that the figure shows.
+
+    A row without a radius stands between two regimes, where a curve is broken.
+    """
+
+    scene: TEXT
+    """its name; that of its file in config/scenes"""
+    radius: LENGTH
+    """radius of disc 1"""
+    event: TEXT
+    """the event"""
+    ratio: NUMBER
+    """
+    exact mean time over that of plain discs of this radius in the same sides; empty where one of
+    them does not exist
+    """
+
+    @staticmethod
+    def rows(scenes):
+        """Yield the rows of ``scenes``, {name: parameters of a box}."""
+        from twodiscs_paper.studies.effects import curves
+
+        yield from curves.rows(scenes)
+
+
 class EffectsCost(Table):
     """As benchmark.csv, the rows on effects alone, from a short run."""
 

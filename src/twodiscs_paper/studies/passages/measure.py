@@ -33,8 +33,8 @@ from twodiscs_paper.studies.passages import exclusion, file
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
 
-#: Moments of inertia of rough discs: all of them in the first box, one everywhere.
-INERTIAS, ONE_INERTIA = (0.1, 0.25, 0.5, 1.0), 0.5
+#: The moment of inertia of rough discs, where there is one.
+ONE_INERTIA = 0.5
 
 #: No more hops are followed for one estimate, and no fewer.
 MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
@@ -193,7 +193,7 @@ class _Hop:
         yield self.said("diffusion", "states", moved, 2 * time, correlated)
 
 
-def near_threshold(name, box, hop, halvings, inertia, events, seed):
+def one_hop(name, box, hop, halvings, inertia, events, seed):
     """Yield the rows of one hop of a plain ``Box`` at distances that are halved.
 
     ``inertia`` is that of rough discs, None for smooth ones; ``events`` are about how many wall and
@@ -235,7 +235,7 @@ def _exponents(measured):
         yield measured[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
-def on_ring(name, box, inertia, events, seed):
+def one_ring(name, box, inertia, events, seed):
     """Yield the rows of diffusion along x, where a ``Box`` is closed to a ring."""
     effects = {"periodic": "x"} | ({} if inertia is None else {"moment_of_inertia": inertia})
     limit = box.height / 4
@@ -244,7 +244,7 @@ def on_ring(name, box, inertia, events, seed):
         yield from _Hop(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
-def in_file(name, box, discs, events, seed):
+def one_file(name, box, discs, events, seed):
     """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
     for n in RING:
         pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
@@ -292,24 +292,40 @@ def on_lattice(seed):
         yield said("diffusion", swap, diffusion, free, **rate)
 
 
-def rows(scenes, events, seed):
-    """Yield the rows of passages.csv, without their empty cells.
+def near_threshold(name, box, inertias, events, seed):
+    """Yield the rows of all hops of a plain ``Box`` near the radii where they become blocked.
 
-    ``scenes`` is {name: parameters of a plain box}; rough discs with all moments of inertia and the
-    ring are in the first of them. ``events`` are about how many wall and disc events an estimate
-    may take. Every estimate has random streams of its own, derived from the ``seed``.
+    ``inertias`` are those of rough discs at the last of these radii.
+    """
+    limits = thresholds(box)
+    for hop in limits:
+        yield from one_hop(name, box, hop, SMOOTH, None, events, seed)
+        for inertia in inertias if hop == [*limits][-1] else (ONE_INERTIA,):
+            yield from one_hop(name, box, hop, ROUGH, inertia, events, seed)
+
+
+def on_ring(name, box, events, seed):
+    """Yield the rows of two discs on a ring, smooth ones and rough ones."""
+    for inertia in (None, ONE_INERTIA):
+        yield from one_ring(name, box, inertia, events, seed)
+
+
+def in_file(name, box, events, seed):
+    """Yield the rows of files of several discs on a ring."""
+    for discs in FILES:
+        yield from one_file(name, box, discs, 2 * events, seed)
+
+
+PARTS = {part.__name__: part for part in (near_threshold, on_ring, in_file, on_lattice)}
+
+
+def rows(part, seed, events=1, **given):
+    """Return the rows of a ``part`` of passages.csv, without their empty cells.
+
+    ``events`` are about how many wall and disc events an estimate may take. Every estimate has
+    random streams of its own, derived from the ``seed``.
     """
     check_integer("seed", seed, 0), check_integer("events", events)
-    for index, (name, parameters) in enumerate(scenes.items()):
-        box = Box(**parameters)
-        limits = thresholds(box)
-        for hop in limits:
-            yield from near_threshold(name, box, hop, SMOOTH, None, events, seed)
-            for inertia in INERTIAS if index == 0 and hop == [*limits][-1] else (ONE_INERTIA,):
-                yield from near_threshold(name, box, hop, ROUGH, inertia, events, seed)
-        if index == 0 and box.fits(box.height / 4):
-            for inertia in (None, ONE_INERTIA):
-                yield from on_ring(name, box, inertia, events, seed)
-            for discs in FILES:
-                yield from in_file(name, box, discs, 2 * events, seed)
-    yield from on_lattice(seed)
+    if part != "on_lattice":
+        given["events"] = events
+    return PARTS[part](seed=seed, **given)

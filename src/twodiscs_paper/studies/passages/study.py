@@ -4,17 +4,27 @@ from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.studies.passages.table import Passages
 from twodiscs_paper.study import Study, scaled
 
+#: Moments of inertia of rough discs, in the first box and in others.
+INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
-def _parameters(configuration):
-    return {
-        "events": scaled(configuration.main.event_budget, 160, 2**19, 2**25),
-        "scenes": {scene.name: scene.box.parameters() for scene in configuration.plain},
-        "seed": configuration.seed,
-    }
+
+def _parts(configuration):
+    """Return {name: parameters} of the parts, which have random streams of their own."""
+    parts, seed = {}, {"seed": configuration.seed}
+    events = {"events": scaled(configuration.main.event_budget, 160, 2**19, 2**25)}
+    for scene in configuration.plain:
+        own = {"name": scene.name, "box": scene.box.parameters()} | events | seed
+        first = scene == configuration.main
+        inertias = {"inertias": INERTIAS if first else OTHERS}
+        parts[f"near_threshold_{scene.name}"] = {"part": "near_threshold"} | own | inertias
+        if first and scene.box.fits(scene.box.height / 4):
+            parts |= {part: {"part": part} | own for part in ("on_ring", "in_file")}
+    return parts | {"on_lattice": {"part": "on_lattice"} | seed}
 
 
 STUDY = Study(
     "passages",
+    families=("plain", "effects", "many"),
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
     seconds=60.0,
@@ -33,6 +43,6 @@ STUDY = Study(
             tables=("passages",),
         ),
     },
-    parameters=_parameters,
+    parts=_parts,
     checked=True,
 )

@@ -69,9 +69,16 @@ class Passages(Table):
     """wall hits and disc collisions that were simulated for it"""
 
     @staticmethod
-    def rows(scenes, events, seed):
-        """Return the rows for the plain boxes of ``scenes``, {name: parameters of a ``Box``}."""
-        from twodiscs_paper.studies.passages import fits, measure
+    def part(**given):
+        """Yield the rows of a part of the table; the arguments are those of ``measure.rows``."""
+        from twodiscs_paper.studies.passages import measure
 
-        rows = [Passages.empty(**row) for row in measure.rows(scenes, events, seed)]
+        yield from (Passages.empty(**row) for row in measure.rows(**given))
+
+    @staticmethod
+    def rows(tables):
+        """Return the rows of all parts, one part after the other, and those of fits to them."""
+        from twodiscs_paper.studies.passages import fits
+
+        rows = [row for part in tables.values() for row in part]
         return rows + [Passages.empty(**row) for row in fits.fits(rows)]

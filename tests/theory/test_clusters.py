@@ -1,0 +1,93 @@
+"""Regions in which events come in crowds: their shares by quadrature of another kind."""
+
+import math
+from itertools import pairwise
+
+import pytest
+from scipy.integrate import dblquad, quad
+
+from twodiscs.model.scene import Scene
+from twodiscs.theory.families import clusters
+
+BOX = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
+RING = Scene(1.0, 2.0, 0.2495, moment_of_inertia=0.01, periodic="x")
+
+
+def densities(scene):
+    """Return the densities of |x1 − x2| and |y1 − y2| and their ranges."""
+    a, b, w = scene.range_x, scene.range_y, scene.width
+    if scene.periodic:
+        return (lambda u: 2 * w), w / 2, (lambda v: 2 * (b - v)), b
+    return (lambda u: 2 * (a - u)), a, (lambda v: 2 * (b - v)), b
+
+
+def shares(scene, axis, within):
+    """Return the shares of the volume and of collisions that are level within a distance."""
+    f, a, g, b = densities(scene)
+    sigma = scene.contact_distance
+    if axis == "y":
+        f, a, g, b = g, b, f, a  # now u is what is small
+
+    def volume(most):
+        def lowest(u):
+            return min(b, math.sqrt(max(sigma**2 - u * u, 0.0)))
+
+        ends = [u for u in (0.0, math.sqrt(max(sigma**2 - b * b, 0.0)), sigma) if u < most]
+        ends.append(most)
+        options = {"epsabs": 0.0, "epsrel": 1e-10}
+        return sum(
+            dblquad(lambda v, u: f(u) * g(v), low, high, lowest, b, **options)[0]
+            for low, high in pairwise(ends)
+        )
+
+    def contact(most):
+        low = math.acos(min(1.0, b / sigma))
+        high = math.asin(min(1.0, min(most, a) / sigma))
+        return quad(lambda t: f(sigma * math.sin(t)) * g(sigma * math.cos(t)), low, high)[0]
+
+    return volume(within) / volume(a), contact(within) / contact(a)
+
+
+@pytest.mark.parametrize("scene", [BOX, RING])
+def test_shares_of_regions_are_those_of_another_quadrature(scene):
+    regions = clusters.regions(scene)
+    assert len(regions) > 1
+    for region in regions:
+        volume, contact = shares(scene, region.axis, region.within)
+        assert region.volume == pytest.approx(volume, rel=1e-8)
+        assert region.rates["disc_collision"] == pytest.approx(contact, rel=1e-8)
+    for small, large in pairwise(regions):
+        if small.axis == large.axis:
+            assert large.within == 2 * small.within
+            assert all(0 <= small.rates[e] <= large.rates[e] <= 1 + 1e-12 for e in small.rates)
+    # A hop has all of its rate where the discs are level.
+    hops = {"x": "horizontal_hop", "y": "vertical_hop"}
+    assert all(r.rates.get(hops[r.axis], 1.0) == pytest.approx(1.0) for r in regions)
+
+
+def test_the_neck_has_twice_the_room():
+    for scene in (BOX, RING):
+        region = clusters.regions(scene)[0]
+        other = {"x": "y", "y": "x"}[region.axis]
+        reach, sigma = float(scene.reach(other)), scene.contact_distance
+        room = reach - math.sqrt(sigma**2 - region.within**2)
+        assert room == pytest.approx(2 * (reach - sigma), rel=1e-9)
+
+
+def test_who_needs_how_many_initial_states():
+    """None for smooth discs, and none far from a threshold; more for smaller errors, to a limit."""
+    assert clusters.regions(Scene(1.5, 1.0, 0.24)) == ()
+    far = Scene(1.5, 1.0, 0.1, moment_of_inertia=0.5)
+    assert clusters.replicas_needed(far, "disc_collision", 1e-4) == 0
+    needed = [clusters.replicas_needed(RING, "disc_collision", e) for e in (1.0, 0.1, 1e-2, 1e-4)]
+    assert needed[0] < needed[1] < needed[2] <= needed[3]
+    least = clusters.regions(RING)[0].volume
+    assert needed[3] == clusters.VISITS / least
+    assert clusters.replicas_needed(RING, "right_wall", 1e-4) == 0
+
+
+@pytest.mark.parametrize("radius", [0.25, 0.25 * (1 + 1e-9), 0.25 * (1 - 1e-9), 0.26])
+def test_at_a_threshold_there_are_regions_of_every_size(radius):
+    regions = clusters.regions(Scene(1.5, 1.0, radius, moment_of_inertia=0.2))
+    assert 1 <= len(regions) <= 50
+    assert all(0 < r.volume <= 1 + 1e-12 for r in regions)
