@@ -1,6 +1,7 @@
 # make            sets up .venv, then builds everything that config/config.yaml asks for
 # make test       the same set-up, then what decides whether a change is good
 # make test-all   that, and what takes long and seldom fails: coverage of intervals, other processors, Slurm
+# make docs       the same set-up, then the site, in build/site
 #
 # CONFIG=my.yaml builds that configuration instead. CORES=n says on how many cores (2), PYTHON=path with which Python (the first that is new enough).
 
@@ -16,7 +17,7 @@ IN_VENV = PATH="$(CURDIR)/.venv/bin:$$PATH"
 # hundred processes would compile our own sources anew.
 export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: all test test-all
+.PHONY: all test test-all docs
 
 all: .venv/ready $(CONFIG)
 	$(IN_VENV) $(if $(CONFIG),twodiscs run --cores $(CORES) $(CONFIG),snakemake --cores $(CORES))
@@ -29,6 +30,12 @@ test: .venv/ready
 	$(IN_VENV) ruff format --check src tests
 	$(IN_VENV) snakefmt --check Snakefile workflow
 	$(IN_VENV) pytest -n $(CORES) $(WHICH)
+
+docs: .venv/ready
+	rm -rf build/site
+	$(IN_VENV) python docs/make/website.py build/docs
+	@# A warning, as of a dead link, is an error.
+	$(IN_VENV) sphinx-build --fail-on-warning --keep-going --quiet --fresh-env build/docs build/site
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.

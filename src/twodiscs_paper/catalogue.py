@@ -1,7 +1,7 @@
 """Every study: an analysis with a folder, tables and figures of its own.
 
 Each folder of ``studies``, and ``errata``, declares one or several in its module ``study``. Target,
-key in the configuration, forecast, report and README follow from that. Standard library only: the
+key in the configuration, forecast, report and page follow from that. Standard library only: the
 Snakefile imports this.
 """
 

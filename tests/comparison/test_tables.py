@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pages import described_tables
+from pages import described_table, described_tables
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import base
@@ -106,18 +106,21 @@ def test_every_table_and_every_column_say_what_they_mean(table):
 
 
 def test_every_column_is_described_on_a_line_of_its_own():
-    text = described_tables()
+    shown = [described_tables()]
     for name, table in EVERY_TABLE.items():
         assert table.name() == name
-        assert f"## {name}.csv\n\n{table.meaning()}\n" in text
+        assert f"| `{name}.csv` | {table.meaning()} |\n" in shown[0]
+        text = described_table(name, table)
+        shown.append(text)
+        assert text.startswith(f"# {name}.csv\n\n{table.meaning()}\n")
         for column, meaning in table.meanings().items():
             meaning = meaning.replace("|", "\\|").replace("<", "&lt;")
             unit = table.columns()[column].unit or "–"
             assert f"| `{column}` | {unit} | {meaning} |\n" in text
-    for line in text.splitlines():
-        if line.startswith("|"):
-            assert line.replace("\\|", "").count("|") == 4
-    assert "How to read check.csv" in text
+    for text, bars in zip(shown, [3] + [4] * len(EVERY_TABLE), strict=True):
+        for line in text.splitlines():
+            if line.startswith("|"):
+                assert line.replace("\\|", "").count("|") == bars
 
 
 def test_every_table_of_a_scene_is_known_and_makes_its_rows():

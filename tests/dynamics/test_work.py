@@ -94,7 +94,7 @@ def test_small_discs_on_a_torus_end():
     scene = Box(1.5, 1.0, {"periodic": "xy"}).scene(1e-9)
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found["replicas"] * found["duration"])
-    block = counting.REPLICAS * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
+    block = lockstep.REPLICAS * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
     assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
     assert found["status"] == {"disc_collision": "budget"}
 

@@ -176,4 +176,5 @@ def test_the_explorer_is_made_when_asked_for_of_scenes_without_effects(built):
     built.snakemake("--cores", "1", "explorer")
     page = (built.path / "results" / "explorer.html").read_text(encoding="utf-8")
     assert '"name": "six"' in page
+    assert '"dynamics": [[' in page
     assert built.jobs("explorer") == []

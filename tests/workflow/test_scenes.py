@@ -179,3 +179,7 @@ def test_scenes_of_another_file_do_not_inherit_what_is_built_once(unbuilt, tmp_p
     # A file without scenes is laid over config.yaml, which asks for the manuscript.
     path.write_text("seed: 5\n")
     assert "paper" in {rule for rule, _ in unbuilt.jobs("--configfile", str(path))}
+
+
+def test_the_explorer_needs_no_points(unbuilt):
+    assert [rule for rule, _ in unbuilt.jobs("explorer")] == ["explorer"]

@@ -34,8 +34,8 @@ def test_every_rule_keeps_a_log_and_a_benchmark():
 @pytest.mark.parametrize(
     "page",
     [
-        *("results/README.md", "config/README.md", "config/schema.json", "README.md"),
-        *("docs/reference.md", "docs/physics.md", "docs/reading-check.md"),
+        *("results/README.md", "config/README.md", "config/schema.json", "docs/pipeline.md"),
+        *("docs/physics.md", "docs/reading-check.md"),
     ],
 )
 def test_pages_made_from_declarations_are_up_to_date(page):
@@ -44,8 +44,8 @@ def test_pages_made_from_declarations_are_up_to_date(page):
 
 
 def test_the_reference_has_every_public_name():
-    described = [name for names in pages.REFERENCE.values() for name in names]
-    assert sorted(described) == sorted(twodiscs.__all__)
+    page = (REPOSITORY / "docs" / "reference.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^\* `td\.(\w+)`$", page, re.M)) == sorted(twodiscs.__all__)
 
 
 CONFIGURATIONS = [*REPOSITORY.glob("config/**/*.yaml"), *REPOSITORY.glob("tests/**/*.yaml")]
@@ -62,8 +62,8 @@ def test_editors_find_the_schema_of_a_configuration(path):
     assert [error.message for error in validator.iter_errors(yaml.safe_load(numbers))] == []
 
 
-def test_readme_lists_every_target():
-    page = (REPOSITORY / "README.md").read_text()
+def test_the_page_lists_every_target():
+    page = (REPOSITORY / "docs" / "pipeline.md").read_text()
     targets = (
         "all",
         "check",

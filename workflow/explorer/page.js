@@ -3,11 +3,10 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 
-/** What may stand behind # in the address: #width=3&height=1&radius=0.24&seed=7&runs=5000, where
- *  counting ends after so many runs. */
-const ASKED = new URLSearchParams(location.hash.slice(1));
-const SEED = Number(ASKED.get("seed") ?? DATA.seed);
-const MOST_RUNS = Number(ASKED.get("runs") ?? Infinity);
+/** The address holds the scene: #width=3&height=1&radius=0.24. Behind these, seed=7 chooses other
+ *  random numbers and runs=5000 ends the counting after 5000 runs. */
+const KEYS = ["width", "height", "radius", "seed", "runs"];
+const SIDES = ["width", "height"], LENGTHS = [...SIDES, "radius"];
 
 /** Units per second that the drawn pair moves. */
 const SPEED = 0.6;
@@ -35,6 +34,9 @@ const NAMES = {
 };
 const GLYPHS = { o: "●", s: "■", "^": "▲", P: "✚", D: "◆", v: "▼" };
 
+/** The events that lend the discs their colours. */
+const DISCS = ["vertical_hop", "horizontal_hop"];
+
 const at = (id) => document.getElementById(id);
 const colour = (event) => DATA.looks[event][0];
 const key = (event) =>
@@ -53,7 +55,9 @@ const inUnits = (value) => Number((value / unit).toPrecision(15));
 
 const state = { paused: matchMedia("(prefers-reduced-motion: reduce)").matches };
 
+let asked; // {name: number} of the address
 let runs; // the statistics of the scene
+let curves; // the exact mean times of its box
 let drawn; // the run that is shown: {pair, time, trail, flash}
 
 // Controls -----------------------------------------------------------------------------------
@@ -73,20 +77,52 @@ function choose(box) {
   }
 }
 
-function prepareControls() {
+/** Read the address; a part of it that this page cannot show is named. */
+function readAddress() {
+  const given = [...new URLSearchParams(location.hash.slice(1))];
+  const taken = ([name, text]) => KEYS.includes(name) && text !== ""
+    && (LENGTHS.includes(name) ? Number(text) > 0 && Number(text) < Infinity : Number(text) >= 0);
+  const wrong = given.filter((pair) => !taken(pair)).map((pair) => pair.join("="));
+  at("problem").textContent = wrong.length
+    ? `The address asks for ${wrong.join(", ")}: this page knows ${KEYS.join(", ")}, each a number.` : "";
+  asked = Object.fromEntries(given.filter(taken).map(([name, text]) => [name, Number(text)]));
   const first = DATA.scenes[0] ?? { width: 1.5, height: 1 };
-  choose({
-    width: Number(ASKED.get("width") ?? first.width),
-    height: Number(ASKED.get("height") ?? first.height),
-  });
+  choose({ width: asked.width ?? first.width, height: asked.height ?? first.height });
   // Discs of this radius can hop either way, whatever the box.
-  const usual = (Math.min(state.width, state.height) / 5).toFixed(3);
-  state.radius = ASKED.has("radius") ? inUnits(ASKED.get("radius")) : Number(usual);
+  const usual = Number((Math.min(state.width, state.height) / 5).toFixed(3));
+  state.radius = "radius" in asked ? inUnits(asked.radius) : usual;
+  changed();
+}
+
+/** Write the scene into the address, so that a copy of it shows the same. */
+function writeAddress() {
+  const lengths = LENGTHS.map((name) => [name, short(unit * state[name], 12)]);
+  history.replaceState(null, "", `#${new URLSearchParams({ ...asked, ...Object.fromEntries(lengths) })}`);
+}
+
+/** Take a length that was typed; a box far from the old one gets sliders of its own. */
+function typed(name, value) {
+  if (value > 0 && value < Infinity) {
+    const lengths = Object.fromEntries(LENGTHS.map((each) => [each, unit * state[each]]));
+    lengths[name] = value;
+    if (SIDES.includes(name)) choose(lengths);
+    state.radius = inUnits(lengths.radius);
+  }
+  changed();
+}
+
+function prepareControls() {
   at("radius").min = 0.01;
-  for (const name of ["width", "height", "radius"]) {
-    at(name).addEventListener("input", () => {
-      state[name] = Number(at(name).value);
+  for (const name of LENGTHS) {
+    const slider = at(name), field = slider.nextElementSibling;
+    slider.addEventListener("input", () => {
+      state[name] = Number(slider.value);
       changed();
+    });
+    slider.addEventListener("change", writeAddress);
+    field.addEventListener("change", () => {
+      typed(name, field.valueAsNumber);
+      writeAddress();
     });
   }
   for (const scene of DATA.scenes) {
@@ -97,6 +133,7 @@ function prepareControls() {
     button.addEventListener("click", () => {
       choose(scene);
       changed();
+      writeAddress();
     });
     at("buttons").append(button);
   }
@@ -105,6 +142,7 @@ function prepareControls() {
     showPause();
   });
   at("hop").addEventListener("change", renew);
+  addEventListener("hashchange", readAddress);
 }
 
 function showPause() {
@@ -113,11 +151,11 @@ function showPause() {
 
 function showControls() {
   at("radius").max = lastRadius();
-  for (const name of ["width", "height", "radius"]) {
-    const shown = short(unit * state[name], 12);
-    at(name).value = state[name];
-    at(name).ariaValueText = shown;
-    at(name).nextElementSibling.value = shown;
+  for (const name of LENGTHS) {
+    const slider = at(name), shown = short(unit * state[name], 12);
+    slider.value = state[name];
+    slider.ariaValueText = shown;
+    Object.assign(slider.nextElementSibling, { value: shown, step: short(unit * slider.step, 12) });
   }
 }
 
@@ -126,12 +164,13 @@ function changed() {
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
   showControls();
   at("duration").textContent = short(unit * DURATION);
-  runs = new Runs(state.width, state.height, state.radius, SEED);
+  runs = new Runs(state.width, state.height, state.radius, asked.seed ?? DATA.seed);
   show(runs.current);
   const possible = [0, 1].filter((hop) => runs.exact.times[COUNTED[hop]] !== null);
   if (possible.length === 1) at("hop").value = possible[0];
-  timesPlot.setData(exactCurves());
-  at("points").textContent = builtScene()
+  curves = exactCurves();
+  at("points").textContent = Object.values(builtScene()?.points ?? {}).some(
+    ({ dynamics, monte_carlo }) => dynamics.length + monte_carlo.length)
     ? "small symbols are points of this build, filled by molecular dynamics, open by Monte Carlo."
     : "the build has no points of this box.";
   renew();
@@ -166,19 +205,22 @@ function draw() {
   const [wide, high] = [canvas.clientWidth, canvas.clientHeight];
   canvas.width = wide * density;
   canvas.height = high * density;
-  const scale = Math.min((wide - 8) / state.width, (high - 8) / state.height);
-  context.setTransform(scale * density, 0, 0, -scale * density, canvas.width / 2, canvas.height / 2);
+  // The name of a hop is written above the box, not on the discs.
+  const above = 22, middle = (high + above) / 2;
+  const scale = Math.min((wide - 8) / state.width, (high - above - 8) / state.height);
+  context.setTransform(
+    scale * density, 0, 0, -scale * density, canvas.width / 2, middle * density);
   const line = 1 / scale;
   const { pair, trail, flash, time } = drawn;
   const discs = [
-    [pair.x1, pair.y1, colour("vertical_hop"), "1"],
-    [pair.x2, pair.y2, colour("horizontal_hop"), "2"],
+    [pair.x1, pair.y1, colour(DISCS[0])],
+    [pair.x2, pair.y2, colour(DISCS[1])],
   ];
 
-  context.fillStyle = "#f7f7f7";
+  context.fillStyle = ink("--inside");
   context.fillRect(-state.width / 2, -state.height / 2, state.width, state.height);
   context.lineWidth = 3 * line;
-  context.strokeStyle = "#1b1b1b";
+  context.strokeStyle = ink("--ink");
   context.strokeRect(-state.width / 2, -state.height / 2, state.width, state.height);
 
   context.lineWidth = 1.5 * line;
@@ -202,39 +244,23 @@ function draw() {
     context.stroke();
   }
 
+  const age = flash ? time - flash.since : Infinity;
+  if (age >= 0.35) return;
+  // The line on which both centres were, drawn where they are now.
+  const upright = flash.name === "horizontal hop";
+  const x = (pair.x1 + pair.x2) / 2, y = (pair.y1 + pair.y2) / 2;
+  context.globalAlpha = 1 - age / 0.35;
+  context.setLineDash([6 * line, 4 * line]);
+  context.strokeStyle = ink("--ink");
+  context.beginPath();
+  context.moveTo(upright ? x : -state.width / 2, upright ? -state.height / 2 : y);
+  context.lineTo(upright ? x : state.width / 2, upright ? state.height / 2 : y);
+  context.stroke();
   context.setTransform(density, 0, 0, density, 0, 0);
   context.textAlign = "center";
-  context.textBaseline = "middle";
-  context.fillStyle = "#000";
+  context.fillStyle = ink("--ink");
   context.font = "600 14px system-ui, sans-serif";
-  const pixels = (x, y) => [wide / 2 + scale * x, high / 2 - scale * y];
-  if (scale * state.radius > 8) {
-    for (const [x, y, , name] of discs) context.fillText(name, ...pixels(x, y));
-  }
-  const age = flash ? time - flash.since : Infinity;
-  if (age < 0.35) {
-    // The line on which both centres were, drawn where they are now.
-    const upright = flash.name === "horizontal hop";
-    const x = (pair.x1 + pair.x2) / 2, y = (pair.y1 + pair.y2) / 2;
-    const ends = upright
-      ? [[x, -state.height / 2], [x, state.height / 2]]
-      : [[-state.width / 2, y], [state.width / 2, y]];
-    context.globalAlpha = 1 - age / 0.35;
-    context.setLineDash([6, 4]);
-    context.lineWidth = 1.5;
-    context.strokeStyle = "#000";
-    context.beginPath();
-    context.moveTo(...pixels(...ends[0]));
-    context.lineTo(...pixels(...ends[1]));
-    context.stroke();
-    context.setLineDash([]);
-    const above = high / 2 - (scale * state.height) / 2 + 16;
-    context.strokeStyle = "#fff";
-    context.lineWidth = 4;
-    context.strokeText(flash.name, wide / 2, above);
-    context.fillText(flash.name, wide / 2, above);
-    context.globalAlpha = 1;
-  }
+  context.fillText(flash.name, wide / 2, middle - (scale * state.height) / 2 - 7);
 }
 
 // The table ----------------------------------------------------------------------------------
@@ -282,7 +308,7 @@ function showTable() {
 
 // The plots ----------------------------------------------------------------------------------
 
-/** [radii, mean times of each event]: dense where curves bend, towards the ends of each regime. */
+/** {radii, times: {event: mean times}}: dense where curves bend, towards the ends of each regime. */
 function exactCurves() {
   const ends = thresholds(state.width, state.height).map(([radius]) => radius);
   const edges = [0, ...ends, largestRadius(state.width, state.height)];
@@ -290,164 +316,104 @@ function exactCurves() {
     edges[i] + (high - edges[i]) * Math.sin((Math.PI / 2) * ((j + 0.5) / DENSE)) ** 2));
   const computed = radii.map((radius) => [radius, exact(state.width, state.height, radius)]);
   const kept = computed.filter(([, numbers]) => numbers !== null);
-  return [
-    kept.map(([radius]) => radius),
-    ...COUNTED.map((event) => kept.map(([, { times }]) => times[event])),
-  ];
-}
-
-const MARKERS = {
-  o: (c, x, y, s) => c.arc(x, y, s, 0, 2 * Math.PI),
-  s: (c, x, y, s) => c.rect(x - 0.85 * s, y - 0.85 * s, 1.7 * s, 1.7 * s),
-  "^": (c, x, y, s) => polygon(c, x, y, [[0, -1.15], [1, 0.75], [-1, 0.75]], s),
-  v: (c, x, y, s) => polygon(c, x, y, [[0, 1.15], [1, -0.75], [-1, -0.75]], s),
-  D: (c, x, y, s) => polygon(c, x, y, [[0, -1.2], [1.2, 0], [0, 1.2], [-1.2, 0]], s),
-  P: (c, x, y, s) => polygon(c, x, y, [
-    [-0.4, -1.1], [0.4, -1.1], [0.4, -0.4], [1.1, -0.4], [1.1, 0.4], [0.4, 0.4],
-    [0.4, 1.1], [-0.4, 1.1], [-0.4, 0.4], [-1.1, 0.4], [-1.1, -0.4], [-0.4, -0.4],
-  ], s),
-};
-
-function polygon(context, x, y, corners, size) {
-  for (const [u, v] of corners) context.lineTo(x + u * size, y + v * size);
-  context.closePath();
+  return {
+    radii: kept.map(([radius]) => radius),
+    times: Object.fromEntries(
+      COUNTED.map((event) => [event, kept.map(([, { times }]) => times[event])])),
+  };
 }
 
 /** The tables of the build for the box of the sliders, if it is one of its scenes. */
 const builtScene = () => DATA.scenes.find(
   ({ width, height }) => inUnits(width) === state.width && inUnits(height) === state.height);
 
-/** Draw points with errors on the curves: those of the build, and what this page has counted. */
-function drawPoints(plot) {
-  const { ctx: context, bbox } = plot;
-  const pixel = devicePixelRatio || 1;
-  const x = (value) => plot.valToPos(value, "x", true);
-  const y = (value) => plot.valToPos(value, "y", true);
-  const point = (event, [radius, time, error], size, filled) => {
-    context.strokeStyle = colour(event);
-    context.fillStyle = filled ? colour(event) : "rgba(255, 255, 255, 0.6)";
-    context.beginPath();
-    MARKERS[DATA.looks[event][1]](context, x(radius), y(time), size * pixel);
-    context.fill();
-    context.stroke();
-    if (error && error < time) {
-      context.beginPath();
-      context.moveTo(x(radius), y(time - error));
-      context.lineTo(x(radius), y(time + error));
-      context.stroke();
-    }
-  };
-  context.save();
-  context.beginPath();
-  context.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-  context.clip();
-
-  context.strokeStyle = "#8a8a8a";
-  context.fillStyle = "#444";
-  context.lineWidth = pixel;
-  context.font = `${12 * pixel}px system-ui, sans-serif`;
-  context.textAlign = "right";
-  context.textBaseline = "top";
-  context.setLineDash([4 * pixel, 4 * pixel]);
-  for (const [radius, name] of thresholds(state.width, state.height)) {
-    context.beginPath();
-    context.moveTo(x(radius), bbox.top);
-    context.lineTo(x(radius), bbox.top + bbox.height);
-    context.stroke();
-    context.fillText(`${name} `, x(radius), bbox.top + 3 * pixel);
+/** Draw the curves, and points with errors: those of the build, and what this page has counted. */
+function paintTimes(plot) {
+  for (const [radius] of thresholds(state.width, state.height)) {
+    plot.line(radius, ink("--grid"), [4, 4]);
   }
-  context.setLineDash([]);
-  const built = builtScene();
+  for (const event of COUNTED) plot.curve(curves.radii, curves.times[event], colour(event));
+  const symbol = (event, [radius, time, error], size, fill, line = 1) => plot.point(
+    radius, time, error, { marker: DATA.looks[event][1], size, colour: colour(event), fill, line });
+  const built = builtScene(), open = `${ink("--page")}99`;
   for (const event of COUNTED) {
     const { monte_carlo, dynamics } = built?.points[event] ?? { monte_carlo: [], dynamics: [] };
-    for (const row of monte_carlo) point(event, row.map(inUnits), 4.2, false);
-    for (const row of dynamics) point(event, row.map(inUnits), 1.9, true);
+    for (const row of monte_carlo) symbol(event, row.map(inUnits), 4.2, open);
+    for (const row of dynamics) symbol(event, row.map(inUnits), 1.9, colour(event));
   }
-  context.lineWidth = 2.5 * pixel;
   COUNTED.forEach((event, i) => {
     const { time, error } = runs.measured(i);
-    if (time !== null) point(event, [state.radius, time, error], 7, false);
+    if (time !== null) symbol(event, [state.radius, time, error], 7, open, 2.5);
   });
-  context.restore();
 }
 
-const AXIS = {
-  font: "13px system-ui, sans-serif",
-  grid: { stroke: "#eee", width: 1 },
-  labelFont: "14px system-ui, sans-serif",
-  labelGap: 2,
-  labelSize: 22,
-  values: (plot, ticks) => ticks.map((tick) => (tick === null ? "" : short(tick))),
-};
-const multiplied = (plot, ticks) => AXIS.values(plot, ticks.map((tick) => tick && unit * tick));
-const COMMON = {
-  cursor: { show: false },
-  height: 320,
-  legend: { show: false },
-  padding: [10, 12, 0, 0],
-  pxAlign: false,
-};
-
-const timesPlot = new uPlot({
-  ...COMMON,
-  width: 300,
-  scales: {
-    x: { time: false, range: () => [0, 1.03 * largestRadius(state.width, state.height)] },
-    y: { distr: 3, range: () => SHOWN_TIMES },
+const timesPlot = new Plot(at("times"), {
+  x: {
+    label: "radius r (length)",
+    range: () => [0, 1.03 * largestRadius(state.width, state.height)],
+    text: (tick) => short(unit * tick),
+    marks: () => thresholds(state.width, state.height),
   },
-  axes: [
-    { ...AXIS, values: multiplied, label: "radius r (length)", size: 32 },
-    { ...AXIS, values: multiplied, label: "mean time τ (length/speed)", size: 54 },
-  ],
-  series: [{}, ...COUNTED.map((event) => (
-    { stroke: colour(event), width: 2, points: { show: false } }))],
-  hooks: { draw: [drawPoints] },
-}, [[], ...COUNTED.map(() => [])], at("times"));
-
-const intervalsPlot = new uPlot({
-  ...COMMON,
-  width: 300,
-  scales: {
-    x: { time: false, range: () => [0, REACH] },
-    y: { distr: 3, range: (plot, low, high) => [1e-3, Math.max(3, 1.5 * (high ?? 0))] },
+  y: {
+    label: "mean time τ (length/speed)",
+    log: true,
+    range: () => SHOWN_TIMES,
+    text: (tick) => short(unit * tick),
   },
-  axes: [
-    { ...AXIS, label: "interval t/τ, τ the exact mean time", size: 32 },
-    { ...AXIS, label: "probability density × τ", size: 54 },
-  ],
-  series: [
-    {},
-    {
-      stroke: () => colour(COUNTED[at("hop").value]),
-      fill: () => `${colour(COUNTED[at("hop").value])}40`,
-      width: 1.5,
-      paths: uPlot.paths.bars({ size: [1, Infinity] }),
-      points: { show: false },
-    },
-    { stroke: "#000", width: 2, dash: [7, 4], points: { show: false } },
-  ],
-}, [[], [], []], at("intervals"));
+  paint: paintTimes,
+  read: (radius) => {
+    const numbers = radius > 0 && exact(state.width, state.height, radius);
+    if (!numbers) return `r = ${short(unit * radius)}: the discs do not fit`;
+    const times = COUNTED.map((event) => {
+      const time = numbers.times[event];
+      return `${NAMES[event]} ${time === null ? "never" : short(unit * time)}`;
+    });
+    return `r = ${short(unit * radius)}: ${times.join(", ")}`;
+  },
+});
+
+/** The hop whose intervals are shown: its event, and its bins as densities, null for an empty one. */
+function intervals() {
+  const hop = Number(at("hop").value), { bins, mean, total } = runs.histograms[hop];
+  const width = REACH / BINS;
+  const density = Array.from(bins, (count) => (count ? count / (total * width) : null));
+  return { event: COUNTED[hop], density, mean, total, width };
+}
+
+const intervalsPlot = new Plot(at("intervals"), {
+  x: { label: "interval t/τ, τ the exact mean time", range: () => [0, REACH], text: short },
+  y: {
+    label: "probability density × τ",
+    log: true,
+    range: () => [1e-3, Math.max(3, 1.5 * Math.max(...intervals().density))],
+    text: short,
+  },
+  paint: (plot) => {
+    const { event, density, mean, width } = intervals();
+    plot.bars(density.map((_, i) => (i + 0.5) * width), density, width, colour(event));
+    if (mean !== null) plot.curve([0, REACH], [1, Math.exp(-REACH)], ink("--ink"), [7, 4]);
+  },
+  read: (x) => {
+    const { density, mean, width } = intervals(), bin = Math.min(Math.floor(x / width), BINS - 1);
+    const counted = density[bin] === null ? "none" : short(density[bin], 3);
+    return mean === null ? "" : `t/τ = ${short(x, 3)}: counted ${counted}, exponential ${short(Math.exp(-x), 3)}`;
+  },
+});
 
 function showIntervals() {
-  const hop = Number(at("hop").value), event = COUNTED[hop];
-  const { bins, mean, total } = runs.histograms[hop];
-  const width = REACH / BINS;
-  const centres = Array.from(bins, (_, i) => (i + 0.5) * width);
-  const density = Array.from(bins, (count) => (count ? count / (total * width) : null));
-  intervalsPlot.setData([
-    centres, density, centres.map((x) => (mean === null ? null : Math.exp(-x))),
-  ]);
+  const { event, mean, total } = intervals();
+  intervalsPlot.draw();
   at("said").textContent = mean === null
     ? `In this box discs of this radius make no ${NAMES[event]}.`
-    : `Bars are ${whole(total)} intervals, drawn without errors; the dashed line is the exponential`
-      + ` of the exact mean, τ = ${short(unit * mean)}, which independent hops would follow.`;
+    : `Bars are ${whole(total)} intervals; the dashed line is the exponential of the exact mean,`
+      + ` τ = ${short(unit * mean)}, which independent hops would follow.`;
 }
 
 /** Renew all numbers. */
 function renew() {
   showTable();
   showIntervals();
-  timesPlot.redraw();
+  timesPlot.draw();
 }
 
 function prepareTexts() {
@@ -455,6 +421,9 @@ function prepareTexts() {
   at("boxes").textContent = DATA.scenes.length ? "Boxes of the build:" : "";
   const named = COUNTED.map((event) => `<span class="name">${key(event)} ${NAMES[event]}</span>`);
   at("legend").innerHTML = named.join(" ");
+  at("discs").innerHTML = DISCS.map((event, i) => (
+    `<span class="name"><span class="key" style="color: ${colour(event)}">●</span> disc ${i + 1}</span>`
+  )).join(" ");
 }
 
 // Time ---------------------------------------------------------------------------------------
@@ -466,7 +435,7 @@ function frame(now) {
     // After a pause of the browser's own, in a hidden page, nothing is made up for.
     move((SPEED * Math.min(now - (before ?? now), 50)) / 1000);
     const begun = performance.now();
-    for (let i = 0; i < CHUNKS && performance.now() - begun < SHARE; i++) runs.advance(CHUNK, MOST_RUNS);
+    for (let i = 0; i < CHUNKS && performance.now() - begun < SHARE; i++) runs.advance(CHUNK, asked.runs);
     draw();
     if (now - renewed > RENEWED) {
       renew();
@@ -477,17 +446,16 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 
-function fit() {
-  for (const plot of [timesPlot, intervalsPlot]) {
-    plot.setSize({ width: plot.root.parentElement.clientWidth, height: COMMON.height });
-  }
-  draw();
-}
-
 prepareControls();
 prepareTexts();
-changed();
+readAddress();
 showPause();
-fit();
-addEventListener("resize", fit);
+for (const [target, event] of [
+  [window, "resize"], [matchMedia("(prefers-color-scheme: dark)"), "change"],
+]) {
+  target.addEventListener(event, () => {
+    renew();
+    draw();
+  });
+}
 requestAnimationFrame(frame);

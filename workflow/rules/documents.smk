@@ -143,13 +143,14 @@ rule provenance:
 
 
 rule explorer:
-    """The explorer: the discs as they move and are counted, beside exact values and points."""
+    """The explorer: the discs as they move and are counted, beside exact values and points that are built."""
     input:
+        # The page does without points: it takes those that are built, and is renewed with them.
         tables=[
             path
             for scene in CONFIGURATION.plain
             for name, path in FILES.tables(scene.name).items()
-            if name in ("volume", "areas", "mean_times")
+            if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],
         parts=[
             source(f"workflow/explorer/{name}")
@@ -157,10 +158,8 @@ rule explorer:
                 "explorer.html",
                 "theory.js",
                 "dynamics.js",
+                "plot.js",
                 "page.js",
-                "uPlot/uPlot.iife.min.js",
-                "uPlot/uPlot.min.css",
-                "uPlot/LICENSE",
             )
         ],
     output:

@@ -417,8 +417,9 @@ def hopping_along(scene, hop, axis):
 
     ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). In a field, where axes
     cannot be exchanged, both are returned as they are. One compiled kernel then serves both hops.
+    Raises ``InputError`` for a hop that is unknown.
     """
-    if AXIS[hop] == axis or scene.field:
+    if AXIS[check_choice("hop", hop, HOPS)] == axis or scene.field:
         return scene, hop
     return scene.turned(), next(other for other in HOPS if other != hop)
 

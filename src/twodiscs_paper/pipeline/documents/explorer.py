@@ -1,7 +1,7 @@
 """The explorer: one HTML file in which the discs move and are counted, beside exact mean times.
 
-It brings its own theory and dynamics, in JavaScript, the points of the scenes without effects, and
-the library that draws the plots; it asks for nothing else.
+It brings its own theory, dynamics and plots, in JavaScript, and the points of the scenes without
+effects that are built; it asks for nothing else.
 """
 
 import json
@@ -14,8 +14,8 @@ from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.events import DECLARED
 
-#: The scripts of the page in their order; the first one is the library.
-SCRIPTS = ("uPlot.iife.min.js", "theory.js", "dynamics.js", "page.js")
+#: The scripts of the page in their order.
+SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")
 
 #: The events that the page counts.
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
@@ -69,6 +69,11 @@ def points(tables):
     }
 
 
+def data_of(scenes, seed):
+    """Return what the scripts read: ``scenes`` with their points, looks of events and the seed."""
+    return {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": seed}
+
+
 def explorer(parts, data, left_out=()):
     """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``.
 
@@ -79,9 +84,6 @@ def explorer(parts, data, left_out=()):
     shown = {
         "data": json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
         "left_out": left_out,
-        "scenes": data["scenes"],
-        "library_style": parts["uPlot.min.css"],
-        "licence": parts["LICENSE"],
         "scripts": [parts[name] for name in SCRIPTS],
     }
     environment = Environment(undefined=StrictUndefined, trim_blocks=True)
@@ -104,9 +106,9 @@ def main():
         if not scene["effects"]
     ]
     left_out = [scene["name"] for scene in given if scene["effects"]]
-    data = {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": options.seed}
     parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
-    options.output.write_text(explorer(parts, data, left_out), encoding="utf-8", newline="\n")
+    page = explorer(parts, data_of(scenes, options.seed), left_out)
+    options.output.write_text(page, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":
