@@ -211,7 +211,7 @@ def test_a_trajectory_is_made_of_straight_lines_and_keeps_to_the_box(tmp_path):
             i, j = int(row.first) - 1, int(row.second) - 1
             assert at[i, 1] == pytest.approx(at[j, 1], abs=1e-12)
         elif row.event.startswith("wall"):
-            k = "xy".index(row.event[-1])
+            k = "xy".index(row.event[-2])
             assert abs(at[int(row.first) - 1, k]) == pytest.approx(reach[k], rel=1e-12)
     # The energy is 1/2 in every flight, and it lasts as long as was asked for.
     steps, times = np.diff(places, axis=0), np.diff(frame["time"])

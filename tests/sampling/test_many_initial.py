@@ -147,7 +147,7 @@ def test_each_disc_is_any_of_them(name):
 def test_who_waits_hears_how_many_states_are_drawn():
     """In pieces, which go on with the streams; more of them than one are told."""
     scene, told = GASES["chain"], []
-    initial.labelled(scene, 200, 6, watch=lambda done, number: told.append((done, number)))
+    initial.labelled(scene, 200, 6, progress=lambda done, number: told.append((done, number)))
     done = [drawn for drawn, _ in told if drawn is not None]
     assert (done, done[-1]) == (sorted(done), 200)
     assert len(done) > 5

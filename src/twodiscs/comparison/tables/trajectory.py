@@ -64,7 +64,8 @@ def _of_discs(table, discs):
     numbers, known, texts = range(1, discs + 1), table.columns(), table.meanings()
     centres = [f"{axis}{disc}" for disc in numbers for axis in "xy"]
     names = ["time", *centres, "event", *(f"z{disc}" for disc in numbers), "first", "second"]
-    meanings = {name: texts.get(name, f"disc {name[1:]}, as {name[0]}1") for name in names}
+    own = {n: texts[f"{n[0]}1"].replace("1", n[1:]) for n in names if n[0] in "xyz"}
+    meanings = {name: texts.get(name) or own[name] for name in names}
     content = {
         "__annotations__": {name: known.get(name, LENGTH) for name in names},
         "__doc__": table.__doc__,

@@ -96,6 +96,11 @@ def agrees(z, off, test):
     return abs(z - off) <= room
 
 
+def _of_parts(row):
+    """Say whether z is that of the parts of an area, two shells that overlap, each with a tail."""
+    return row.get("quantity") == "any_wall_area" and row.get("test") == "exact-tail"
+
+
 def judged(rows, alarm, name):
     """Yield a sentence on each of the comparisons ``rows`` that fails, or is not as it should be.
 
@@ -112,7 +117,7 @@ def judged(rows, alarm, name):
         bound, passed = (None, None) if z is None else (common, abs(z) <= common)
         if passed is False:
             yield f"{name(row)} has z = {z:.3g}, beyond the bound {bound:.3g}"
-        elif z is not None and off is not None and not agrees(z, off, row.get("test")):
+        elif None not in (z, off) and not _of_parts(row) and not agrees(z, off, row.get("test")):
             yield f"{name(row)} has z = {z:.3g}, but its estimate is {off:.3g} standard errors off"
         if row.get("passed", passed) is not passed:
             said, true = ANSWERS[row["passed"]], ANSWERS[passed]
