@@ -264,14 +264,14 @@ def test_a_build_ends_with_verdict_and_report(tmp_path):
 
 
 def test_a_build_that_fails_leaves_no_verdict_and_says_if_its_disk_is_full(tmp_path, monkeypatch):
-    assert build.failing(tmp_path / "none") == ""
+    assert build.failing(tmp_path / "none", ["all"]) == ""
     (tmp_path / "check.passed").write_text("a: 3 comparisons passed\n")
     usage = build.shutil.disk_usage(tmp_path)
     monkeypatch.setattr(build.shutil, "disk_usage", lambda path: usage._replace(free=10**9))
-    assert build.failing(tmp_path) == ""
+    assert build.failing(tmp_path, ["all"]) == ""
     assert not any(tmp_path.iterdir())
     monkeypatch.setattr(build.shutil, "disk_usage", lambda path: usage._replace(free=76000))
-    assert build.failing(tmp_path).startswith(f"The disk of {tmp_path} has 0.076 MB left; ")
+    assert build.failing(tmp_path, ["all"]).startswith(f"The disk of {tmp_path} has 0.076 MB left; ")
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,9 @@ def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
 
 def test_edit_of_a_caption_counts_nothing_again(built):
     built.replace(
-        "src/twodiscs_paper/studies/distributions/study.py", "How often a hop", "How often hops"
+        "src/twodiscs_paper/studies/distributions/figure.py",
+        "(a) Rate of hops",
+        "(a) Rate of the hops",
     )
     jobs = built.jobs()
     assert ("shared_figure", ("figure=distributions",)) in jobs

@@ -182,13 +182,14 @@ def closing(results):
     return "".join(f"{line}\n" for line in said)
 
 
-def failing(results):
-    """Return what else there is to say of a build that failed: that its disk is full.
+def failing(results, targets):
+    """Return a sentence if the disk of a failed build is full, else "".
 
-    The verdict on what was there before is removed, for it says nothing of what is there now.
+    If the ``targets`` build anything, the verdict on the old results is removed.
     """
     folder = Path(results)
-    (folder / "check.passed").unlink(missing_ok=True)
+    if not {*targets} & {"audit", "verify"}:
+        (folder / "check.passed").unlink(missing_ok=True)
     free = shutil.disk_usage(folder).free if folder.is_dir() else ROOM
     if free >= ROOM:
         return ""
