@@ -271,7 +271,9 @@ def test_a_build_that_fails_leaves_no_verdict_and_says_if_its_disk_is_full(tmp_p
     assert build.failing(tmp_path, ["all"]) == ""
     assert not any(tmp_path.iterdir())
     monkeypatch.setattr(build.shutil, "disk_usage", lambda path: usage._replace(free=76000))
-    assert build.failing(tmp_path, ["all"]).startswith(f"The disk of {tmp_path} has 0.076 MB left; ")
+    assert build.failing(tmp_path, ["all"]).startswith(
+        f"The disk of {tmp_path} has 0.076 MB left; "
+    )
 
 
 @pytest.mark.parametrize(
