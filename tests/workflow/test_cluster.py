@@ -97,6 +97,7 @@ def kill_a_job(jobs):
 
 
 @needs_queue
+@pytest.mark.slow
 def test_a_queue_of_scripts(local, unbuilt, tmp_path, monkeypatch):
     """A job of it that is killed is submitted once more."""
     jobs = tmp_path / "jobs"
@@ -126,6 +127,7 @@ rule short:
 
 
 @needs_queue
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["queue", "slurm"])
 def test_two_short_jobs_at_once_run_where_one_logs_in(tmp_path, name):
     if name == "slurm" and find_spec("snakemake_executor_plugin_slurm") is None:

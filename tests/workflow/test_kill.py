@@ -54,7 +54,9 @@ def begun(checkout, *words):
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
-@pytest.mark.parametrize("name", ["SIGKILL", "SIGTERM", "SIGINT"])
+@pytest.mark.parametrize(
+    "name", ["SIGKILL", "SIGINT", pytest.param("SIGTERM", marks=pytest.mark.slow)]
+)
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     checkout = fresh(tmp_path / "checkout")
     checkout.configuration.write_text(yaml.safe_dump({"shared": [], "scenes": [ENDLESS]}))
