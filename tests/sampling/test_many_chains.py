@@ -99,7 +99,9 @@ def test_much_longer_chains_of_single_moves_agree(scene):
     check(one, moments(scene, drawn(scene, 24, 2, chain=one_by_one(scene, 16_000))))
 
 
-@pytest.mark.parametrize("scene", [box(64, 0.6), box(256, 0.6)], ids=repr)
+@pytest.mark.parametrize(
+    "scene", [box(64, 0.6), pytest.param(box(256, 0.6), marks=pytest.mark.slow)], ids=repr
+)
 def test_longer_event_chains_are_no_different(scene, monkeypatch):
     number = 2**16 // scene.discs
     one = moments(scene, drawn(scene, number, 1))
