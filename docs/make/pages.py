@@ -31,8 +31,8 @@ is one. The site has a page for each table with its columns; in Python, `attrs["
 `attrs["units"]` of a table that `td.load("results/paper")` returns say the same.\
 """
 
-#: What stands before and after the rows of studies in docs/pipeline.md; on lines of their own,
-#: comments would end the table.
+#: Marks before and after the rows of studies in docs/pipeline.md. Comments on lines of their own
+#: would end the table.
 MARKS = "<!-- studies --> |\n", "| <!-- end of studies -->"
 
 

@@ -155,7 +155,7 @@ def in_python(name):
 def picture(name):
     """Return a small picture of a figure of the expected tables, None without all of them.
 
-    Of two tables only some rows are kept there: their figures are what their line of Python draws.
+    Two tables keep only some of their rows there: the figures of these are drawn by Python.
     """
     entry, folders = ENTRIES[name], (EXPECTED / "paper", EXPECTED)
     wanted = (*entry.tables, *entry.main_tables)

@@ -2,10 +2,12 @@
 
 import math
 
+import numpy as np
 import pytest
 from effect_scenes import SCENES
 
 from twodiscs.comparison.tables.trajectory import Trajectory
+from twodiscs.dynamics import trajectory
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import event_rate, mean_times
@@ -37,3 +39,11 @@ def test_rows_are_those_of_the_table(name, tmp_path):
     deep = scene.depth is not None
     assert all((row["z1"] is not None) == (row["z2"] is not None) == deep for row in rows)
     assert {row["event"] for row in rows} >= {"start", "disc_collision", "vertical_hop", "end"}
+
+
+def test_cells_are_the_periods_that_centres_have_gone_on():
+    scene = Scene(1.5, 1.0, 0.1, periodic="x")
+    x1 = np.array([row[1] for row in trajectory.trajectory(scene, 3, duration=40.0)])
+    cells = trajectory.cell_of(scene.width, x1)
+    assert len(set(cells.tolist())) > 1
+    assert np.abs(x1 - scene.width * cells).max() <= scene.width / 2

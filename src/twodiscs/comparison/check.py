@@ -76,7 +76,7 @@ def _sum_rule(scene, point):
     enough = min(counts[event] for event in SUM_RULE) >= scores.NORMAL
     stderr = z = None
     if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
-        # Of rough discs the run may have missed crowds.
+        # A run of rough discs may have missed the crowds of events.
         enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE)
     if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
         stderr = rule.stderr

@@ -8,7 +8,7 @@ from twodiscs.model.checks import InputError
 
 KEY = "sha256"
 
-#: What a file has besides, which differs from run to run: no part of the content or of its digest.
+#: A key of a file that differs from run to run: it is no part of the content or of its digest.
 SECONDS = "seconds"
 
 

@@ -82,7 +82,7 @@ def _wall_seen(event):
 
 
 SEEN = by_kind(
-    "dynamics/counting.py",
+    "dynamics/two/lockstep.py",
     {
         "hop": _hop_seen,
         "collision": lambda event: lambda code, a, b, identical, gravity: code == DISC,
@@ -92,8 +92,8 @@ SEEN = by_kind(
     },
 )
 
-#: What is not tracked (None) is not compiled; this says which entry of ``tracked`` is that of a
-#: kind: hops, walls, the hits of all walls, and what is always tracked.
+#: The entry of ``tracked`` for each kind: hops, walls, the hits of all walls, and collisions, which
+#: are always tracked. An entry that is None is not compiled.
 TRACKED = {"hop": 0, "wall": 1, "walls": 2, "collision": 3}
 
 N = len(EVENTS)
@@ -104,7 +104,7 @@ BESIDE, ABOVE = EVENTS.index("right_wall"), EVENTS.index("top_wall")
 #: the events that the first one has no room for.
 FIELDS = 6
 if N > 2 * FIELDS:
-    raise TypeError(f"dynamics/counting.py has room for {2 * FIELDS} events, not for {N}")
+    raise TypeError(f"dynamics/two/lockstep.py has room for {2 * FIELDS} events, not for {N}")
 
 
 def _and(add, event, unit):

@@ -61,7 +61,7 @@ def advance(state, law):
 def time_to_next(state, law, hop, longest):
     """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
 
-    Where it is more than ``longest``, some such time is returned.
+    If it is more than ``longest``, the returned time is only known to be longer than that.
     """
     elapsed = 0.0
     while elapsed <= longest:
