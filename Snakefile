@@ -1,10 +1,10 @@
-# `snakemake` in this folder builds everything; the workflow itself stands in workflow/Snakefile.
+# `snakemake` in this folder builds everything; the workflow itself is workflow/Snakefile.
 include: "workflow/Snakefile"
 
 
 # Rules of an included file are not built without a target.
 rule default:
-    """What is built without a target: everything that the configuration asks for."""
+    """The build without a target: all targets of the configuration."""
     input:
         lambda w: ASKED_FOR,
     localrule: True

@@ -14,7 +14,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
 ABSENT = f"no Chromium is installed, none of {', '.join(BROWSERS)}"
 
-#: What keeps the browser from the network, and from asking for anything.
+#: Options that keep the browser from the network and from questions.
 OPTIONS = (
     *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
@@ -110,8 +110,8 @@ class Page:
 
 @contextmanager
 def browser(folder):
-    """Yield a ``Page`` of a browser of its own, whose files are in ``folder``."""
-    # The browser reads from 3 and writes to 4; what is moved there must not be one of the two.
+    """Yield a ``Page`` of a new browser, whose files are in ``folder``."""
+    # The browser reads from 3 and writes to 4; the pipes that become these must have other numbers.
     pipes = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (*os.pipe(), *os.pipe())]
     orders, order, said, say = pipes
 

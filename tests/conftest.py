@@ -1,17 +1,18 @@
-"""What all tests share: one thread for each product of matrices, and who runs beside whom."""
+"""The settings of all tests: one thread for products of matrices, and the order of the files."""
 
 import os
 
-import pytest
-
 # Threads of OpenBLAS wait for each other by spinning: small products take ten times as long where
-# other processes have work for the cores. Only what is not imported yet hears of it.
+# other processes have work for the cores. Only modules that are imported later use the setting.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def pytest_collection_modifyitems(items):
-    """Keep the tests of a file, and those of the one build, in one process; the build begins."""
-    items.sort(key=lambda item: "complete" not in item.fixturenames)
-    for item in items:
-        group = "build" if "complete" in item.fixturenames else item.nodeid.partition("::")[0]
-        item.add_marker(pytest.mark.xdist_group(group))
+    """The file that begins the one build comes first, the others that look at it come last."""
+
+    def file_of(item):
+        return item.nodeid.partition("::")[0]
+
+    built = {file_of(item) for item in items if "complete" in item.fixturenames}
+    first = min(built, key=lambda file: ("test_build" not in file, file), default=None)
+    items.sort(key=lambda item: (file_of(item) != first, file_of(item) in built))

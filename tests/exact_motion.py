@@ -14,11 +14,11 @@ WALLS = ("wall_x1", "wall_y1", "wall_x2", "wall_y2")
 
 
 def exact_path(scene, state):
-    """Yield (time, name) of all that happens, hops included, for ever.
+    """Yield (time, name) of all events, hops included, for ever.
 
     ``state`` is (x1, y1, x2, y2, u1, v1, u2, v2); it and the ranges of the centres are doubles,
-    taken for exactly what they are. Names are those of ``trajectory.follow``. Of events at the same
-    time, walls come first. Call it under ``mpmath.workdps``.
+    taken without rounding. Names are as in ``trajectory.follow``. If events have the same time,
+    walls come first. Call it under ``mpmath.workdps``.
     """
     x, v = [mpf(float(q)) for q in state[:4]], [mpf(float(q)) for q in state[4:]]
     limits = [mpf(scene.range_x / 2), mpf(scene.range_y / 2)] * 2

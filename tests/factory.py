@@ -1,12 +1,164 @@
-"""Rows of any table, made from its class: a test says the columns that it is about."""
+"""Points, rows and tables for tests, made from their classes: by simple laws, or as a test says."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from twodiscs.comparison.tables.exact import Theory
+from twodiscs.model.box import Box
+from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.points.dynamics import DynamicsPoint
+from twodiscs.points.intervals import IntervalsPoint, WideBins
+from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
+from twodiscs.theory import exact
+
+BOX = Box(1.5, 1.0)
+RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
 
 
-def row(table, **given):
-    """Return a row of a ``table`` with what is ``given``; other columns are empty.
+def scenes(radii=RADII):
+    return [BOX.scene(radius) for radius in radii]
 
-    Raises ``TypeError`` for a column that the table does not have.
-    """
-    columns = table.columns()
-    if unknown := given.keys() - columns.keys():
-        raise TypeError(f"{table.name()}.csv has no {', '.join(sorted(unknown))}")
-    return dict.fromkeys(columns) | given
+
+def theory_rows(radii=RADII):
+    """Return the rows of theory.csv."""
+    return Theory.rows(BOX, radii)
+
+
+def rows_of(values):
+    """Return the rows of theory.csv that say ``values``, {(radius, quantity): exact value}."""
+    return [Theory.empty(radius=r, quantity=q, exact=value) for (r, q), value in values.items()]
+
+
+# As a test says -------------------------------------------------------------------------------
+
+
+def hits_point(radius=0.1, samples=1000, **hits):
+    """Return a Monte Carlo point with some ``hits`` by quantity; the measure is 1, ε is 0.1."""
+    quantities = {quantity: Hits(number, 1.0, 0.1) for quantity, number in hits.items()}
+    return MonteCarloPoint(radius, "monte_carlo", samples, quantities)
+
+
+def counts_point(radius=0.37, event="vertical_hop", total=0, squares=0, **fields):
+    """Return a dynamics point with Σ N and Σ N² of one event, and other ``fields``."""
+    given = {
+        **{"radius": radius, "duration": 10.0, "replicas": 2048, "rounds": 1, "events": 10**6},
+        **{"counts": {event: total}, "products": {f"{event}*{event}": squares}, "strips": {}},
+        **{"target": {event: 3e-4}, "status": {event: "budget"}},
+    }
+    return DynamicsPoint(**given | fields)
+
+
+def bins_point(radius=0.1, counts=(7, 5, 0), **fields):
+    """Return a point of intervals of the vertical hop, a chain each, and other ``fields``."""
+    found = {"counts": [*counts], "squares": [*counts]}
+    given = {
+        **{"radius": radius, "event": "vertical_hop", "bin_width": 0.125, "overflow": 0},
+        **{"intervals": sum(counts), "chains": sum(counts), "mean": 0.5, "stderr": 0.1},
+        **{"wide": WideBins(edges=[*range(len(counts) + 1)], **found)},
+    }
+    return IntervalsPoint(**given | found | fields)
+
+
+# By laws ----------------------------------------------------------------------------------------
+
+
+class Laws:
+    """The exact numbers behind the points of one radius, computed once."""
+
+    def __init__(self, scene, shell=0.02):
+        self.scene, self.shell = scene, shell
+        self.times = {e: t for e, t in exact.mean_times(scene).items() if t is not None}
+
+    @cached_property
+    def parts(self):
+        """{quantity: (probability of a hit, measure, ε)} in a plain scene."""
+        scene, epsilon = self.scene, self.shell * self.scene.radius
+        prism = (scene.range_x * scene.range_y) ** 2
+        parts = {"volume": (exact.volume(scene) / prism, prism, None)}
+        for event in SHELLS:
+            measure = prism / (epsilon * (2 if event in HOPS else 1))
+            expectation = exact.shell_expectation(scene, event, epsilon)
+            parts[f"{event}_area"] = (expectation / measure, measure, epsilon)
+        return parts
+
+    def monte_carlo(self, rng, samples):
+        """Return a Monte Carlo point; the shells are hit independently of each other."""
+        found = {
+            quantity: Hits(int(rng.binomial(samples, p)), measure, epsilon)
+            for quantity, (p, measure, epsilon) in self.parts.items()
+        }
+        right, top = (found[f"{event}_area"].hits for event in ("right_wall", "top_wall"))
+        share = self.parts["top_wall_area"][0]
+        # Given the hits of both shells, their overlap is hypergeometric; binomial serves here.
+        both = min(right, top, int(rng.binomial(right, share)))
+        return MonteCarloPoint(self.scene.radius, "monte_carlo", samples, found, both)
+
+    def dynamics(self, rng, replicas=1024, relative=3e-4, events=EVENTS):
+        """Return a dynamics point; counts are Poisson, as precise as ``relative`` or more."""
+        slowest = max(self.times[event] for event in events if event in self.times)
+        duration = 2 * slowest / (relative**2 * replicas)
+        counts = {}
+        for event in events:
+            mean = 0.0
+            if event in self.times:
+                mean = self.scene.multiplicity(event) * duration / self.times[event]
+            counts[event] = rng.poisson(mean, replicas)
+        if not self.scene.has_effects:  # as symmetry has it
+            first = {}
+            for wall in (event for event in events if event in WALLS):
+                counts[wall] = counts[first.setdefault(AXIS[wall], wall)]
+            if "any_wall" in events and len(first) == 2:
+                counts["any_wall"] = sum(counts[wall] for wall in first.values())
+        events = [event for event in EVENTS if event in events]
+        return DynamicsPoint(
+            radius=self.scene.radius,
+            duration=duration,
+            replicas=replicas,
+            rounds=1,
+            events=10**6,
+            counts={event: int(counts[event].sum()) for event in events},
+            products={
+                f"{a}*{b}": int((counts[a] * counts[b]).sum())
+                for i, a in enumerate(events)
+                for b in events[i:]
+            },
+            target=dict.fromkeys(events, relative),
+            status={e: "reached" if e in self.times else "impossible" for e in events},
+            strips={},
+        )
+
+    def intervals(self, rng, chains=1024, relative=3e-4):
+        """Return an intervals point of the vertical hop, with exponential intervals."""
+        mean = self.times["vertical_hop"]
+        stderr = relative * mean
+        width, intervals = mean / 4, math.ceil(relative**-2)
+        edges = np.exp(-0.25 * np.arange(13))
+        counts = rng.multinomial(intervals, [*-np.diff(edges), edges[-1]])
+
+        def of_chains(counts):
+            """Return counts and sums of squares of chains that hold them by Poisson's law."""
+            whole = [int(n) for n in counts]
+            return {"counts": whole, "squares": [n + -(-n * n // chains) for n in whole]}
+
+        wide = [0, 1, 2, 4, 8, 12]
+        return IntervalsPoint(
+            radius=self.scene.radius,
+            event="vertical_hop",
+            bin_width=width,
+            **of_chains(counts[:-1]),
+            wide=WideBins(edges=wide, **of_chains(np.add.reduceat(counts[:-1], wide[:-1]))),
+            overflow=int(counts[-1]),
+            intervals=intervals,
+            chains=chains,
+            mean=mean + stderr * rng.standard_normal(),
+            stderr=stderr,
+        )
+
+
+def written(folder, table, **given):
+    """Return the rows that a ``table`` makes of the ``given`` arguments, written and read again."""
+    path = folder / f"{table.name()}.csv"
+    table.write(path, table.rows(**given))
+    return table.read(path)

@@ -1,4 +1,4 @@
-"""What tests of figures share: boxes, tables drawn from the exact theory, the texts that show."""
+"""Cases for tests of figures: boxes, tables drawn from the exact theory, the texts in figures."""
 
 from functools import cache
 from importlib import import_module
@@ -46,7 +46,7 @@ def tables_of(name):
     """Return {name: rows} of all tables that figures of one of ``BOXES`` read.
 
     They are exact values with Gaussian noise. Hops that take too long are cut off as the engine
-    does: too few for an error, or none seen.
+    does: too few for an error, or none at all.
     """
     rng, box, relative = np.random.default_rng(20), BOXES[name], 3e-3
     found = {name: [] for name in ("volume", "areas", "mean_times", "hop_histogram")}
@@ -135,7 +135,7 @@ def trajectory(rng, unit, events=400):
     return rows
 
 
-# What is drawn ------------------------------------------------------------------------------------
+# Artists of a figure ------------------------------------------------------------------------------
 
 
 def points(axes, colour, marker):

@@ -4,7 +4,7 @@
     python tests/mutants.py [word ...]
 
 tries those whose file or description holds one of the words, or all (an hour or so): with the tests
-of the module, then with those of its room. Each is anchored on a text that its file holds once;
+of the module, then with the tests of its folder. Each is anchored on a text that its file holds once;
 where that is gone, the list needs another one. At the end all tests that caught a mutant run on the
 sources as they are and must pass, or they caught nothing. The exit status is 0 if none survived.
 """
@@ -20,13 +20,13 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
-#: The tests of a folder that are not under its name: what the face returns.
+#: The tests of folders that have no tests of the same name: results of the face.
 ELSEWHERE = {"comparison/measured": "tests/test_results.py"}
 
 #: Seconds: a run of tests that takes longer hangs, which is noticed as well.
 PATIENCE = 1200
 
-#: File, what is wrong, text, what takes its place.
+#: File, mistake, text, its replacement.
 # fmt: off
 MUTANTS = [
     ("model/scene.py", "reach of an image", "return side / 2 if axis in self.periodic", "return side if axis in self.periodic"),
@@ -70,7 +70,7 @@ MUTANTS = [
     ("sampling/prism.py", "power of the energy on a surface", "dx, dy, dz, prism.components - 1)", "dx, dy, dz, prism.components - 2)"),
     ("sampling/prism.py", "momentum not conserved", "= -relative * prism.fractions[1]\n            used", "= relative * prism.fractions[1]\n            used"),
     ("sampling/prism.py", "height of the wrong disc", "weights[1] * (y2 + half2)", "weights[1] * (y2 + half1)"),
-    ("sampling/blocks/strata.py", "error of strata", "np.sum(shares**2 * variances)", "np.sum(shares * variances)"),
+    ("points/strata.py", "error of strata", "np.sum(shares**2 * variances)", "np.sum(shares * variances)"),
     ("twodiscs_paper/pipeline/jobs/point.py", "one seed for all shards", "work.parts[part].work(first, stop)", "work.parts[part].work(0, stop - first)"),
     ("sampling/blocks/rounds.py", "a block left out", "for first in range(0, blocks, per_piece)", "for first in range(1, blocks, per_piece)"),
     ("sampling/montecarlo.py", "thickness of a hop's shell", "2.0 * (thick * thick)", "1.0 * (thick * thick)"),
@@ -85,25 +85,25 @@ MUTANTS = [
     ("dynamics/two/lockstep.py", "wrong wall", "hit(code, WALL_Y1, WALL_Y2,", "hit(code, WALL_Y1, WALL_X2,"),
     ("dynamics/two/lockstep.py", "missing product", "for f in range(e, N):", "for f in range(e + 1, N):"),
     ("dynamics/two/lockstep.py", "wrong disc at a wall in a field", "else b[3], side, gravity)", "else b[1], side, gravity)"),
-    ("dynamics/two/strip.py", "time of a strip", '"duration": 2 * ', '"duration": 1 * '),
+    ("dynamics/two/strip.py", "time of a strip", 'duration=2 * ', 'duration=1 * '),
     ("dynamics/two/strip.py", "paths end too soon", "<= fastest * left else", "<= 0.5 * fastest * left else"),
     ("dynamics/two/returns.py", "off by one return", "wanted + (1.0 if rising < 0.0 else 0.0)", "wanted"),
     ("dynamics/two/returns.py", "age after a hop", "age[i] = time - until if hop", "age[i] = time if hop"),
     ("dynamics/many/lockstep.py", "wrong image on a ring", "dx - math.copysign(ring[0], dx)", "dx + math.copysign(ring[0], dx)"),
     ("dynamics/many/lockstep.py", "squares of two classes counted twice", "products + np.triu(products, 1).T", "products + products.T"),
-    ("comparison/estimates.py", "products of two events", "(1 if a == b else 2) * w[a]", "w[a]"),
-    ("comparison/estimates.py", "clusters in a bound", "(CLUSTER * -math.log1p", "(-math.log1p"),
-    ("comparison/estimates.py", "curvature at zero", "np.array([7, -1]) / 6", "np.array([3, -1]) / 2"),
+    ("points/estimates.py", "products of two events", "(1 if a == b else 2) * w[a]", "w[a]"),
+    ("points/estimates.py", "clusters in a bound", "(CLUSTER * -math.log1p", "(-math.log1p"),
+    ("points/estimates.py", "curvature at zero", "np.array([7, -1]) / 6", "np.array([3, -1]) / 2"),
     ("comparison/scores.py", "overlap of two shells", "2 * m1 * m2 * overlap", "m1 * m2 * overlap"),
     ("comparison/scores.py", "sign of a score", "(expected - count) / error", "(count - expected) / error"),
     ("comparison/scores.py", "two tails", "alarm) / (2 * comparisons)", "alarm) / comparisons"),
     ("comparison/check.py", "half of the alarm", "judged(rows, alarm / 2)", "judged(rows, alarm)"),
-    ("comparison/measured/scan.py", "a budget is lost", "result.more(error, budget, None, cores, progress)", "result.more(error, None, None, cores, progress)"),
-    ("comparison/measured/progress.py", "what is done counts again", "bar.update(done - bar.n)", "bar.update(done)"),
+    ("comparison/measured/scan.py", "a budget is lost", "result.more(error, budget, **asked)", "result.more(error, None, **asked)"),
+    ("comparison/measured/progress.py", "finished work counts twice", "bar.update(done - bar.n)", "bar.update(done)"),
     ("twodiscs_paper/studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("twodiscs_paper/studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
     ("twodiscs_paper/studies/passages/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs", "per_disc = scene.width / 2"),
-    ("twodiscs_paper/studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * half.stderr", "math.hypot(half.stderr"),
+    ("twodiscs_paper/studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * early.stderr", "math.hypot(early.stderr"),
     ("twodiscs_paper/studies/passages/fits.py", "fit to all distances", '-row["distance"])[-LAST:]', '-row["distance"])'),
     ("twodiscs_paper/studies/passages/fits.py", "error of a logarithm", '[row["stderr"] / value for row', '[row["stderr"] for row'),
     ("twodiscs_paper/studies/tails/fits.py", "sum of variances in place of their difference", "relative[0] - relative[1]", "relative[0] + relative[1]"),

@@ -107,7 +107,7 @@ def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length):
 
 
 def rates(scene, events, seed, batches=50):
-    """Return (rates of all events of a kind, standard errors), of about so many ``events``."""
+    """Return (rates of all events of a kind, standard errors), of about ``events`` events."""
     rng = np.random.default_rng(seed)
     x, y = np.array(arrangement(scene)).T.copy()
     u, v = rng.standard_normal((2, scene.discs))

@@ -1,4 +1,4 @@
-"""Hops of two discs by a program of its own: replica by replica, textbook formulas.
+"""Hops of two discs by an independent program: replica by replica, textbook formulas.
 
 It shares nothing with the package. Initial states are Gaussian vectors whose component normal to
 the surface x1 = x2 has the flux-weighted (Rayleigh) law, scaled to the energy 1/2. On a ring the

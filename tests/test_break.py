@@ -1,10 +1,10 @@
-"""The break test: random scenes through the face, and whether their errors are what they say.
+"""The break test: random scenes through the face, and whether their errors are right.
 
-Scores of a scene share its trajectories, so of each call only one, picked at random, is looked at:
-those of different calls are independent and standard normal. Their mean square and their coverage
-are tested at 5 sigma each, the largest of all scores at Bonferroni's bound for 6e-7, whatever
-depends on what: false alarms have a probability below 2e-6 for each of the tests. What they found
-is shown by ``pytest -s``.
+Scores of a scene share its trajectories, so only one random score of each call is used:
+scores of different calls are independent and standard normal. Their mean square and their coverage
+are tested at 5 sigma each, the largest of all scores at Bonferroni's bound for 6e-7, for
+any dependence: false alarms have a probability below 2e-6 for each of the tests. ``pytest -s``
+prints the results.
 """
 
 import math
@@ -24,7 +24,7 @@ ALARM = 2 * norm.sf(5)
 #: Wall and disc events, samples, intervals of a call.
 BUDGET, SAMPLES, INTERVALS = 2e6, 1e6, 65536
 
-#: Effects by kind, drawn at random; each compiles engines of its own, whatever the numbers.
+#: Effects by kind, drawn at random; each compiles other engines, for any numbers.
 KINDS = {
     "plain": lambda draw: {},
     "channel": lambda draw: {"periodic": "x", "mass_ratio": draw(0.2, 5.0)},

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from fabricated import command
+from commands import command
 
 from twodiscs import arguments, cli
 from twodiscs.figures.catalogue import FIGURES
@@ -186,14 +186,14 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     assert "twodiscs run my.yaml" in capsys.readouterr().out
     (scene,) = load(read("my.yaml")).scenes
     assert scene.name == "mine"
-    # What stands in its comments may be said.
+    # The configuration may contain the lines in its comments.
     text = Path("my.yaml").read_text()
     for line in re.findall(r"# (\w+: .*)", text):
         assert re.match(r"(seed|shared|radii|effects|watch): ", line), line
     Path("all.yaml").write_text(re.sub(r"# (\w+: )", r"\1", text))
     assert load(read("all.yaml")).scenes[0].effects == {"radius_ratio": 0.5}
     assert command(monkeypatch, cli, "new", "my.yaml") == 2
-    assert capsys.readouterr().err == "error: my.yaml is there already, and is not written over\n"
+    assert capsys.readouterr().err == "error: my.yaml exists already and is not overwritten\n"
     assert Path("my.yaml").read_text() == text
 
 
@@ -219,8 +219,8 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     [
         ("tails", "tails is about a scene without effects, and a.yaml has none"),
         ("paper", "paper is about a scene without effects, and a.yaml has none"),
-        ("volume", "volume shows what no scene of a.yaml watches, or has a place for"),
-        ("model", "model shows what no scene of a.yaml watches, or has a place for"),
+        ("volume", "volume cannot be drawn: no scene of a.yaml has its quantities"),
+        ("model", "model cannot be drawn: no scene of a.yaml has its quantities"),
     ],
 )
 def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys, target, said):

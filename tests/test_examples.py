@@ -1,7 +1,7 @@
 """The examples in the pages for people: every command, configuration and number in them is tried.
 
-A page shows commands in indented blocks, or after ``$`` in console blocks, where what they print
-follows; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.
+A page shows commands in indented blocks, or after ``$`` in console blocks, followed by
+their output; scenes in blocks of YAML. ``twodiscs`` is run, ``snakemake`` and ``make`` dry.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from functools import cache
 import pytest
 import yaml
 from checkout import REPOSITORY, fresh
-from fabricated import command
+from commands import command
 from pages import same
 
 import twodiscs
@@ -62,7 +62,7 @@ def blocks(name):
 
 
 def examples(name):
-    """Return [(words of a command, what the page says that it prints)]."""
+    """Return [(words of a command, its output on the page)]."""
     found = []
     for language, body in blocks(name):
         if language == "console":
@@ -75,7 +75,7 @@ def examples(name):
 
 
 def commands(program):
-    """Return the different commands of a program in all pages, as text, with what they print."""
+    """Return the different commands of a program in all pages, as text, with their output."""
     found = {}
     for name in NAMES:
         for words, printed in examples(name):
@@ -229,7 +229,7 @@ def checkout(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def dry(checkout):
-    """What dry runs of all snakemake commands say, by their options; a dry run takes seconds."""
+    """The output of dry runs of all snakemake commands, by options; a dry run takes seconds."""
     return {
         options: checkout.snakemake("--dry-run", *options, "--", *sorted(names)).stdout
         for options, names in targets().items()

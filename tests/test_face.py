@@ -1,15 +1,17 @@
-"""The face: it finds what the pipeline finds, shows it, and refuses junk in a sentence."""
+"""The face: it has the results of the pipeline, prints them, and names mistakes in a sentence."""
 
 import ast
+import inspect
 import json
 import math
+import pickle
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from commands import command
 from effect_scenes import SCENES
-from fabricated import command
 from figure_cases import unclear
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -103,15 +105,16 @@ def test_every_name_is_there_and_where_an_editor_looks_for_it():
 
 def test_defaults_are_those_of_a_configuration():
     scene = load.load({"scenes": [{"name": "a", "box": {"width": 1.5, "height": 1.0}}]}).scenes[0]
-    shell, budget = td.sample.__defaults__[3], td.simulate.__defaults__[2]
-    assert (shell, budget) == (scene.monte_carlo["shell"], scene.event_budget)
+    sample, simulate = (inspect.signature(f).parameters for f in (td.sample, td.simulate))
+    found = (sample["shell"].default, simulate["budget"].default)
+    assert found == (scene.monte_carlo["shell"], scene.event_budget)
 
 
 # The numbers of the pipeline ----------------------------------------------------------------------
 
 
 def point(stage):
-    """Return what the job of the configuration finds."""
+    """Return the point of the job of the configuration."""
     return cost.run_of(load.load(CONFIGURATION).scenes[0], stage, 0.2).run()
 
 
@@ -142,12 +145,12 @@ def test_seeds_tell_methods_boxes_and_radii_apart():
 
 def test_some_events_and_quantities_are_those_of_all(simulated, sampled):
     some = td.simulate(SCENE, {"any_wall": 0.05}, seed=7, budget=1e6, name="one")
-    assert list(some) == ["any_wall"]
+    assert list(some) == ["any_wall_time"]
     alone = td.sample(SCENE, 1e6, seed=7, quantities=["volume"], name="one")
     assert alone.rows == sampled.rows[:1]
 
 
-# What results say ---------------------------------------------------------------------------------
+# Texts of results ---------------------------------------------------------------------------------
 
 
 def test_measurements_know_their_errors_and_print_themselves(simulated, sampled):
@@ -163,8 +166,8 @@ def test_measurements_know_their_errors_and_print_themselves(simulated, sampled)
     assert " time, exact 1.3" in said
     lines = str(simulated).splitlines()
     assert lines[0] == "Two discs of radius 0.2 in a box of 1.5 × 1.0"
-    assert [line.split()[0] for line in lines[3:]] == [f"{event}_time" for event in td.EVENTS]
-    assert len({line.index("time", 24) for line in lines[3:]}) == 1
+    assert [line.split()[0] for line in lines[3:9]] == [f"{event}_time" for event in td.EVENTS]
+    assert len({line.index("time", 24) for line in lines[3:9]}) == 1
     frame = sampled.frame()
     assert frame.loc["volume", "estimate"] == sampled["volume"].value
     assert "length⁴" in str(sampled["volume"])
@@ -192,15 +195,35 @@ def test_nothing_is_compared_without_an_exact_value_or_an_estimate():
 def test_columns_of_a_printed_table_keep_apart(radius):
     scene = td.Scene(1.5, 1.0, radius)
     for result in (td.sample(scene, 1), td.simulate(scene, 1, budget=1)):
-        for line, found in zip(str(result).splitlines()[3:], result.values(), strict=True):
+        lines = str(result).split("\n\n")[1].splitlines()[1:]
+        for line, found in zip(lines, result.values(), strict=True):
             assert line.split() == " ".join(found.cells()).split()
 
 
-def test_an_unknown_key_is_answered_by_those_there_are(simulated):
-    with pytest.raises(KeyError, match="'vertical_hop_time' is none of vertical_hop, horizontal_h"):
-        simulated["vertical_hop_time"]
-    assert "vertical_hop_time" not in simulated
-    assert simulated.get("vertical_hop_time") is None
+def test_a_quantity_has_one_name_for_which_its_event_is_short(simulated, sampled):
+    times = [f"{event}_time" for event in td.EVENTS]
+    areas = [f"{event}_area" for event in td.EVENTS]
+    assert list(simulated) == list(td.mean_times(SCENE)) == list(simulated.frame().index) == times
+    assert [m.quantity for m in simulated.values()] == times
+    assert list(sampled) == list(sampled.frame().index) == ["volume", *areas]
+    assert list(td.areas(SCENE)) == list(td.exact(SCENE)["areas"]) == areas
+    columns = ["regime", "ergodic_components", "volume", *areas, *times]
+    assert list(td.exact_table(1.5, 1.0, [0.2])) == columns
+    for found in (simulated, sampled, td.mean_times(SCENE), td.areas(SCENE)):
+        full = next(name for name in found if name.startswith("any_wall"))
+        assert found["any_wall"] == found[full] == found.get("any_wall")
+        assert "any_wall" in found
+        assert json.dumps([*found])
+    with pytest.raises(
+        KeyError, match=r"'hop' is none of vertical_hop_time, .*any_wall_time'?\W*$"
+    ):
+        simulated["hop"]
+    with pytest.raises(KeyError, match=r"; did you mean vertical_hop_area\?"):
+        td.areas(SCENE)["vertical_hop_time"]
+    assert "vertical_hop_area" not in simulated
+    assert simulated.get("vertical_hop_area") is td.mean_times(SCENE).get("hop") is None
+    assert pickle.loads(pickle.dumps(td.areas(SCENE))) == td.areas(SCENE)
+    assert td.mean_times(SCENE)["any_wall"] == 1 / td.rate(SCENE, "any_wall")
 
 
 def test_intervals_have_a_mean_and_a_density_at_zero(intervals):
@@ -223,11 +246,10 @@ def test_the_exact_table_holds_the_exact_numbers():
     for radius, row in table.iterrows():
         scene = td.Scene(1.5, 1.0, radius, field=0.2)
         assert row["volume"] == td.volume(scene)
-        for event, time in td.mean_times(scene).items():
-            assert row[f"{event}_area"] == td.areas(scene)[event]
-            assert row[f"{event}_time"] == time or (
-                time is None and math.isnan(row[f"{event}_time"])
-            )
+        for quantity, area in td.areas(scene).items():
+            assert row[quantity] == area
+        for quantity, time in td.mean_times(scene).items():
+            assert row[quantity] == time or (time is None and math.isnan(row[quantity]))
 
 
 def test_a_scene_prints_what_it_is():
@@ -375,21 +397,22 @@ def test_intervals_of_one_kind_of_hop_are_drawn_together():
         (lambda some: td.plot(some, "a.txt"), "path must be a .pdf, .png or .svg file"),
         (
             lambda some: td.plot(SCENES["field"]),
-            "scene must be two plain discs to be sketched, but it has field",
+            "scene must be two plain discs for a drawing, but it has field",
         ),
-        (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "to be sketched, but it has discs 3"),
-        (lambda some: td.animate(some, "a.gif"), "trajectory must be what trajectory"),
+        (lambda some: td.plot(td.Box(1.5, 1.0, discs=3)), "for a drawing, but it has discs 3"),
+        (lambda some: td.animate(some, "a.gif"), "trajectory must be a result of trajectory()"),
         (lambda some: td.simulate(SCENES["field"], seed=-1), "seed must be an integer from 0 to"),
         (lambda some: td.simulate(SCENE, {}), "error must hold some of vertical_hop, horizontal"),
         (lambda some: td.Box.of(3), "scene must be a Scene, not 3"),
-        (lambda some: td.sample(SCENE, 1e6, quantities="volume"), "quantities must be a list of"),
-        (lambda some: td.simulate(SCENE, events="any_wall"), "events must be a list of"),
+        (lambda some: td.sample(SCENE, 1e6, quantities="any_wall"), "did you mean any_wall_area?"),
+        (lambda some: td.simulate(SCENE, events="any wall"), "; did you mean any_wall?"),
         (lambda some: td.Scene(1.5, 1.0, 0.2, field=-1), "positive, finite number, or 0, not -1.0"),
         (lambda some: td.load("src"), "folder must hold tables of results, but 'src' has none"),
         (lambda some: td.load("nothere"), "tables of results, but 'nothere' does not exist"),
         (
             lambda some: td.exact_table(1.5, 1, [0.1], gravity=1),
-            "gravity is no effect; effects must be some of depth",
+            "gravity is no effect; effects must be some of depth, radius_ratio, mass_ratio, "
+            "periodic, field, moment_of_inertia; did you mean field?",
         ),
         (lambda some: td.Scene(1.5, 1, 0.1, periodic="x,y"), "axes x and y (z needs a depth), "),
         (lambda some: td.Scene(1.5, 1, 0.2, discs=20), "20 discs in a box of 1.5 × 1.0 need a "),
@@ -399,7 +422,7 @@ def test_intervals_of_one_kind_of_hop_are_drawn_together():
         ),
         (
             lambda some: td.trajectory(SCENE, duration=3)[["time", "x1"]].states_at([1]),
-            "rows without y1, x2, y2, u1, v1, u2, v2",
+            "rows and lacks y1, x2, y2, u1, v1, u2, v2",
         ),
     ],
 )
@@ -468,7 +491,7 @@ CALLS = {
     "exact_table": ({"width": 1.5, "height": 1.0, "radii": [0.2]}, {}),
     "simulate": (
         {"scene": SCENE, "error": 0.5, "seed": 1, "budget": 1, "events": ["any_wall"], "name": "a"},
-        {"seed": [0], "events": [None], "name": [None, str]},
+        {"seed": [0], "error": [None], "events": [None], "name": [None, str]},
     ),
     "sample": (
         {"scene": SCENE, "samples": 1, "seed": 1, "quantities": ["volume"], "shell": 0.1,
@@ -542,7 +565,7 @@ def test_junk_on_the_command_line_is_refused_in_a_sentence(name, data):
 
 
 def said_of(*words):
-    """Return what the command line says of a mistake, run in this process."""
+    """Return the message of the command line for a mistake, run in this process."""
     from contextlib import redirect_stderr, redirect_stdout
     from io import StringIO
 
@@ -551,3 +574,186 @@ def said_of(*words):
             assert command(patch, cli, *words) == 2
         assert out.getvalue() == ""
     return err.getvalue()
+
+
+# Calls --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: td.Scene(1.5, 1.0, 0.2, gravity=1), "not gravity; did you mean field?"),
+        (lambda: td.Scene(1.5, 1.0, 0.2, N=3), "not N; did you mean discs?"),
+        (lambda: td.Scene(1.5, 1.0, 0.2, n_discs=3), "not n_discs; did you mean discs?"),
+        (lambda: td.Scene(1.5, 1.0, 0.2, 1.0), "only width, height, radius may be given without"),
+        (lambda: td.Scene(1.5, 1.0), "Scene must be called with radius"),
+        (lambda: td.Box(1.5), "Box must be called with height"),
+        (lambda: td.simulate(SCENE, tol=0.1), "not tol; did you mean error?"),
+        (lambda: td.simulate(SCENE, steps=10), "not steps; did you mean budget?"),
+        (lambda: td.simulate(SCENE, evnets=["any_wall"]), "not evnets; did you mean events?"),
+        (lambda: td.simulate(SCENE, 0.5, 7), "seed=, budget=, "),
+        (lambda: td.simulate(), "simulate must be called with scene"),
+        (lambda: td.simulate(SCENE, scene=SCENE), "simulate must be called with scene once"),
+        (lambda: td.sample(SCENE, 1e6, 7), "by name: only scene, samples may be given without"),
+        (lambda: td.trajectory(SCENE, 10, 7), "by name: only scene, duration may be given without"),
+        (lambda: td.load("a", "b"), "load must be called with folder and nothing else"),
+        (lambda: td.scan(1.5, 1, [0.1], gravity=1), "gravity is no effect; effects must be some"),
+    ],
+)
+def test_a_wrong_call_is_answered_by_what_may_be_meant(call, said):
+    with pytest.raises(td.InputError) as caught:
+        call()
+    assert isinstance(caught.value, TypeError) or "effect" in said
+    assert str(caught.value).endswith(said) or said in str(caught.value)
+
+
+def test_a_mistake_inside_of_a_call_keeps_its_traceback():
+    def wrong(start, now):
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match=r"^mine$"):
+        td.observe(SCENE, wrong, [1], 1)
+
+
+def test_one_name_may_stand_without_a_list(simulated, sampled):
+    alone = td.simulate(SCENE, 0.05, seed=7, budget=1e6, events="any_wall", name="one")
+    assert alone.rows == simulated.rows[-1:]
+    assert td.sample(SCENE, 1e6, seed=7, quantities="volume", name="one").rows == sampled.rows[:1]
+
+
+def test_the_amount_of_a_trajectory_is_its_duration():
+    assert td.trajectory(SCENE, 10)["time"].iloc[-1] == 10
+    assert td.trajectory(SCENE, 3, seed=10).equals(td.trajectory(SCENE, duration=3, seed=10))
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: td.sample(SCENE, 10), "10 samples asked for, 1048576 done: whole blocks"),
+        (lambda: td.sample(SCENE, 2**20), None),
+        (lambda: td.intervals(SCENE, "vertical_hop", 10), "10 intervals asked for, 65536 done"),
+        (lambda: td.observe(SCENE, lambda a, b: b["x1"], [1], 10), "10 replicas asked for, 4096"),
+        (
+            lambda: td.simulate(SCENE, 0.5),
+            "error 0.5 asked for, 0.0028 reached: the minimum is 7.7e+06",
+        ),
+        (
+            lambda: td.simulate(SCENE, 0.5, budget=1),
+            "budget 1 asked for: the minimum, one block, is 2.4e+05",
+        ),
+        (lambda: td.simulate(SCENE, 1e-3, budget=1e7), None),
+        (lambda: td.simulate(SCENE, duration=100), "duration 100 asked for, 65536 simulated: 1024"),
+        (
+            lambda: td.transmission(td.Scene(1.5, 1, 0.249), "horizontal_hop", 10),
+            "10 hops asked for, 64 done",
+        ),
+    ],
+)
+def test_a_result_says_what_was_done_instead(make, said):
+    found = make()
+    assert (found.note or "").startswith(said or "")
+    assert bool(found.note) == bool(said)
+    if said:
+        assert str(found).endswith(found.note)
+
+
+def test_a_time_is_simulated_whatever_the_errors_are():
+    """Scores of 12 mean times and a rare hop at 5 sigma: one false alarm in 140,000."""
+    found = td.simulate(SCENE, duration=2e5, seed=3)
+    frame = found.frame()
+    total = frame["replicas"] * frame["duration"]
+    assert (total >= 2e5).all()
+    assert (total < 2e5 + 1024 * frame["duration"]).all()
+    assert {*frame["status"]} == {"counted"}
+    assert frame["target"].isna().all()
+    assert all(abs(m.z) < 5 for m in found.values())
+    assert found.more(duration=4e5).rows == td.simulate(SCENE, duration=4e5, seed=3).rows
+    # Without strips the rare hop is counted as everything else.
+    rare = td.simulate(td.Scene(1.5, 1.0, 0.24), duration=1e5, seed=3)
+    assert {*rare.frame()["starts"]} == {"invariant"}
+    assert all(abs(m.z) < 5 for m in rare.values())
+    with pytest.raises(td.InputError, match=r"^duration must be below .* budget of 1e6 events"):
+        td.simulate(SCENE, duration=1e9, budget=1e6)
+    with pytest.raises(td.InputError, match="error and duration must not both be given"):
+        td.simulate(SCENE, 0.1, duration=10)
+    with pytest.raises(td.InputError, match="duration must be left out for a result of simulate"):
+        td.simulate(SCENE, 0.5, budget=1).more(duration=10)
+
+
+# Arithmetic ---------------------------------------------------------------------------------------
+
+
+def of_value(value, stderr, exact, stream, unit="time"):
+    """Return a ``Measurement`` of numbers that are given."""
+    streams = frozenset([("dynamics", stream)])
+    return Measurement(
+        f"q{stream}", value, stderr, exact, 0.0, 1000, "reached", unit, streams=streams
+    )
+
+
+@pytest.mark.parametrize(
+    ("function", "name", "unit"),
+    [
+        (lambda a, b: a + b, "q1 + q2", "time"),
+        (lambda a, b: a - b, "q1 − q2", "time"),
+        (lambda a, b: a * b, "q1 × q2", "time·time"),
+        (lambda a, b: a / b, "q1 / q2", ""),
+        (lambda a, b: 2 * a - b / np.float64(4), "(2 × q1) − (q2 / 4)", "time"),
+        (lambda a, b: 1 / a - 3.0 / b, "(1 / q1) − (3 / q2)", "1/time"),
+        (lambda a, b: -a + b, "−q1 + q2", "time"),
+    ],
+)
+def test_errors_go_through_arithmetic(function, name, unit):
+    """Against derivatives by differences of the same function of plain numbers."""
+    one, other = of_value(3.0, 0.02, 2.9, 1), of_value(5.0, 0.07, 5.1, 2)
+    found, step = function(one, other), 1e-6
+    slopes = [
+        (function(3 + step * i, 5 + step * k) - function(3 - step * i, 5 - step * k)) / (2 * step)
+        for i, k in ((1, 0), (0, 1))
+    ]
+    assert found.value == pytest.approx(function(3.0, 5.0), rel=1e-14)
+    assert found.exact == pytest.approx(function(2.9, 5.1), rel=1e-14)
+    assert found.stderr == pytest.approx(math.hypot(0.02 * slopes[0], 0.07 * slopes[1]), rel=1e-8)
+    assert found.z == pytest.approx((found.value - found.exact) / found.stderr)
+    assert (found.status, found.unit, found.count) == ("derived", unit, 1000)
+    assert found.quantity.strip("()") == name.strip("()")
+
+
+def test_differences_of_seeds_scatter_as_their_errors_say():
+    """χ² of 15 differences is within its 1e-6 and 1 − 1e-6 quantiles."""
+    found = [
+        td.simulate(SCENE, duration=1e5, seed=seed, events="disc_collision")["disc_collision"]
+        for seed in range(30)
+    ]
+    differences = [a - b for a, b in zip(found[::2], found[1::2], strict=True)]
+    assert {difference.exact for difference in differences} == {0}
+    assert 1.21 < sum(difference.z**2 for difference in differences) < 56.5
+
+
+def test_what_is_not_independent_is_not_combined(simulated, sampled):
+    found = simulated["any_wall"]
+    same = td.simulate(SCENE, 0.05, seed=7, budget=1e6, events="any_wall", name="one")["any_wall"]
+    for other in (found, same, simulated["vertical_hop"], 2 * found, found + 1):
+        with pytest.raises(td.InputError, match="must have different random numbers"):
+            found - other
+    another = td.simulate(SCENE, 0.05, seed=8, budget=1e6, events="any_wall")["any_wall"]
+    with pytest.raises(td.InputError, match="must have different random numbers"):
+        (found - another) / another
+    with pytest.raises(td.InputError, match="must have one unit, not length⁴ and time"):
+        sampled["volume"] + found
+    assert (sampled["volume"] / found).unit == "length⁴/time"
+    blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events="horizontal_hop", budget=1)
+    for wrong in (float, lambda m: m + 1, lambda m: found - m):
+        with pytest.raises(td.InputError, match="must have a value, but its status is impossible"):
+            wrong(blocked["horizontal_hop"])
+    with pytest.raises(td.InputError, match="the divisor must not be 0"):
+        found / 0
+    with pytest.raises(TypeError):
+        found + "1"
+    assert float(found) == found.value
+    shell = sampled["any_wall_area"] / sampled["any_wall_area"].expectation
+    assert shell.expectation == pytest.approx(1)
+    assert shell.z == pytest.approx(
+        (sampled["any_wall_area"].value - sampled["any_wall_area"].expectation)
+        / sampled["any_wall_area"].stderr
+    )

@@ -1,4 +1,4 @@
-"""A wheel alone: what is installed without the extras does what the face and the shell promise."""
+"""A wheel: without the extras the face and the shell work as documented."""
 
 import json
 import os
@@ -15,7 +15,7 @@ from checkout import REPOSITORY
 
 PROJECT = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
-#: What imports a module of the extras fails, as where they are not installed.
+#: An import of a module of the extras fails, as if they were not installed.
 BLOCKED = """
 import sys
 
@@ -27,7 +27,7 @@ class Absent:
 sys.meta_path.insert(0, Absent())
 """
 
-#: What the extras ask for.
+#: The packages of the extras.
 EXTRAS = [
     re.match(r"[\w-]+", one)[0]
     for some in PROJECT["optional-dependencies"].values()
@@ -40,7 +40,7 @@ MODULES = {
     "snakemake-logger-plugin-rich": "snakemake_logger_plugin_rich",
 }
 
-#: What the workflow is made of, beside its Snakefile.
+#: The files of the workflow, beside its Snakefile.
 CARRIED = ("workflow", "config", "profiles", "paper")
 
 
@@ -84,7 +84,7 @@ def test_the_shell_works_from_a_wheel(installed):
 
 
 def test_the_wheel_carries_the_workflow(installed):
-    """All that a rule may ask for, but for what results are compared with."""
+    """All files that a rule may need, except the expected results."""
     (built,) = installed.parent.glob("*.whl")
     _, mark, names = "\n".join(ZipFile(built).namelist()).partition("share/twodiscs/")
     carried = {line.partition("share/twodiscs/")[2] for line in (mark + names).splitlines()}

@@ -94,7 +94,7 @@ def test_files_of_something_else_are_refused(content, said, tmp_path):
 def test_a_result_goes_on_by_its_own_settings_alone():
     with pytest.raises(td.InputError, match="samples must be left out for a result of simulate"):
         td.simulate(SCENE, 0.5, budget=1).more(samples=10)
-    with pytest.raises(td.InputError, match="give samples= to go on"):
+    with pytest.raises(td.InputError, match=r"to go on, give samples=$"):
         td.sample(SCENE, 1).more(1e7)
 
 
@@ -109,7 +109,7 @@ def test_presets_are_those_of_a_configuration():
 
 def test_notebooks_show_tables_and_complete_keys():
     found = td.simulate(SCENE, 0.5, budget=1)
-    assert found._ipython_key_completions_() == [*td.EVENTS]
+    assert found._ipython_key_completions_() == [f"{event}_time" for event in td.EVENTS]
     html = found._repr_html_()
     assert html.count("<tr>") == 1 + len(td.EVENTS)
     assert "<td>vertical_hop_time</td>" in html
@@ -121,10 +121,10 @@ def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
     assert scan.radii == [0.1, 0.2]
     assert scan[1].rows == td.simulate(scan[1].scene, 0.3, events=["any_wall"]).rows
     assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, mass_ratio=2)
-    assert scan.frame().loc[(0.1, "any_wall"), "estimate"] == scan[0]["any_wall"].value
+    assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall"].value
     td.plot(scan, tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000
-    with pytest.raises(td.InputError, match="radii must hold one radius at least"):
+    with pytest.raises(td.InputError, match="radii must have at least one radius"):
         td.scan(1.5, 1.0, [])
 
 
@@ -232,7 +232,7 @@ def test_states_between_rows_lead_from_one_to_the_next(scene):
 def test_averages_over_states_have_honest_errors():
     """Five standard errors each: energy is kept, ⟨u²⟩ of four components is 1/4, and t u at first.
 
-    A velocity and a place at once are an array for each replica.
+    A velocity together with a position is an array for each replica.
     """
 
     def seen(start, now):
@@ -322,8 +322,8 @@ def test_a_selection_of_events_has_no_states_in_between(tmp_path):
         ({"times": {1: 0, 0: 0}}, "times must be ascending numbers from 0 on, not [1, 0]"),
         ({"times": [-1]}, "times must be ascending numbers from 0 on, not [-1]"),
         ({"times": [1e9]}, "where 1e7 events are due, not 1e9"),
-        ({"function": 1}, "function must be one of two arrays of states, not 1"),
-        ({"function": lambda start, now: 1.0}, "function must return a real number, or as many of"),
+        ({"function": 1}, "function must take two arrays of states, not be 1"),
+        ({"function": lambda start, now: 1.0}, "function must return a real number, or the same"),
         ({"function": lambda start, now: None}, "4096 replicas, not None: is its return missing?"),
         ({"function": lambda start, now: "x1"}, "4096 replicas, not 'x1'"),
         ({"function": lambda start, now: now}, "an array with the fields x1, y1, x2, y2, u1, v1"),
@@ -343,7 +343,7 @@ def test_what_cannot_be_observed_is_refused(given, said):
 
 
 def test_every_argument_has_a_type():
-    """What an editor or a checker of types reads; none of them gives up by Any."""
+    """The annotations for editors and type checkers; none of them is Any."""
     with open(td.__file__, encoding="utf-8") as file:
         tree = ast.parse(file.read())
     for part in tree.body:

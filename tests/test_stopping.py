@@ -1,6 +1,6 @@
-"""Ctrl-C, and the stop button of a notebook, which sends the same signal: what runs, stops.
+"""Ctrl-C, and the stop button of a notebook, which sends the same signal: running calls stop.
 
-Each call would take most of an hour, but for starts and a trajectory, which are bounded: minutes.
+Each call would take most of an hour, except starts and a trajectory, which are bounded: minutes.
 The answer takes a few tenths of a second, and may not depend on the work that is left.
 """
 
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import pytest
 
-#: What a child process runs: a small call, for which everything is compiled, then a long one.
+#: The program of a child process: a small call, for which everything is compiled, then a long one.
 CHILD = """
 import twodiscs as td
 
@@ -59,7 +59,7 @@ def stopped(code):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        # What starts the tests in the background may ignore the signal.
+        # A parent that runs the tests in the background may ignore the signal.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as child:
         assert child.stdout.readline() == "ready\n"

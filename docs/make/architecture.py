@@ -14,7 +14,8 @@ from twodiscs.model.sources import ROOT, imports_of, modules
 
 #: The rooms of the packages from the lowest floor up; one may import those before it, and itself.
 LIBRARY = (
-    "model", "theory", "sampling", "dynamics", "comparison", "figures", "arguments", "cli",
+    "model", "theory", "points", "sampling", "dynamics", "comparison", "figures", "arguments",
+    "cli",
 )  # fmt: skip
 PAPER = ("study", "errata", "studies", "catalogue", "pipeline", "benchmark")
 ROOMS = (

@@ -34,11 +34,6 @@ def formula(translator, node):
     raise nodes.SkipNode
 
 
-def as_code(app, what, name, obj, options, lines):
-    """Make what follows "Example:" in a docstring a block of code."""
-    lines[:] = ["Example::" if line == "Example:" else line for line in lines]
-
-
 def is_internal(app, what, name, obj, skip, options):
     """Leave out what is not declared for others: members that do not say what they return."""
     function = getattr(obj, "fget", getattr(obj, "func", obj))
@@ -47,7 +42,6 @@ def is_internal(app, what, name, obj, skip, options):
 
 
 def setup(app):
-    app.connect("autodoc-process-docstring", as_code)
     app.connect("autodoc-skip-member", is_internal)
     app.add_html_math_renderer(
         "mathml", inline_renderers=(formula, None), block_renderers=(formula, None)

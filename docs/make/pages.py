@@ -3,8 +3,8 @@
     python docs/make/pages.py
 
 renews config/README.md, config/schema.json for editors, the end of results/README.md, the rows of
-studies in docs/pipeline.md, and what `twodiscs` prints in the pages of docs, in the folder where it
-is called.
+studies in docs/pipeline.md, the names that editors complete in src/twodiscs/__init__.py, and what
+`twodiscs` prints in the pages of docs, in the folder where it is called.
 """
 
 import json
@@ -19,6 +19,7 @@ from unittest.mock import patch
 from twodiscs import cli
 from twodiscs.arguments import Parser, run
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.catalogue import STUDIES, TABLES
 from twodiscs_paper.pipeline.configuration.schema import document, schema
 from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers
@@ -30,6 +31,9 @@ exist. Lengths are in the unit of the box, and the time unit is that in which th
 is one. The site has a page for each table with its columns; in Python, `attrs["meanings"]` and
 `attrs["units"]` of a table that `td.load("results/paper")` returns say the same.\
 """
+
+#: Letters of a line of code.
+LINE = 100
 
 #: Marks before and after the rows of studies in docs/pipeline.md. Comments on lines of their own
 #: would end the table.
@@ -79,6 +83,32 @@ def renewed(text, new, start, end=None):
     return before + start + new + end + rest.partition(end)[2]
 
 
+#: Marks before and after the names for checkers of types in the face.
+NAMES = (
+    "    # Names that an editor completes; python docs/make/pages.py renews them.\n",
+    "    # end of names\n",
+)
+
+
+def literals():
+    """Return the types of the names of events, hops, quantities and axes, for the face."""
+    named = {
+        "Event": EVENTS,
+        "Hop": HOPS,
+        "Quantity": ("volume", *(f"{event}_area" for event in EVENTS)),
+        "Axis": ("x", "y", "z"),
+    }
+    lines = []
+    for name, values in named.items():
+        quoted = [f'"{value}"' for value in values]
+        line = f"    {name} = Literal[{', '.join(quoted)}]"
+        if len(line) > LINE:
+            inner = "".join(f"        {value},\n" for value in quoted)
+            line = f"    {name} = Literal[\n{inner}    ]"
+        lines.append(f"{line}\n")
+    return "".join(lines)
+
+
 #: A command that a page shows, and beneath it what it prints.
 COMMAND = re.compile(r"^\$ (twodiscs .+)\n((?:(?!```|\$ ).*\n)+)", re.MULTILINE)
 
@@ -112,12 +142,14 @@ def _tried(example):
 def pages(folder):
     """Return {path below ``folder``: text} of the pages as they should be."""
     results = Path(folder, "results/README.md").read_text(encoding="utf-8")
+    face = Path(folder, "src/twodiscs/__init__.py").read_text(encoding="utf-8")
     shown = {
         f"docs/{path.name}": path.read_text(encoding="utf-8")
         for path in sorted(Path(folder, "docs").glob("*.md"))
     }
     return {
         **{name: COMMAND.sub(_tried, text) for name, text in shown.items() if COMMAND.search(text)},
+        "src/twodiscs/__init__.py": renewed(face, literals(), *NAMES),
         "config/README.md": document(),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
         "results/README.md": renewed(results, f"## Tables\n\n{described_tables()}", "## Tables\n"),

@@ -18,7 +18,7 @@ from PIL import Image
 from twodiscs.arguments import Parser, run
 from twodiscs.figures.kit import panels, style
 from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES, drawn
+from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
 from twodiscs_paper.pipeline.jobs.study import read_tables
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
@@ -118,7 +118,7 @@ def main():
     folders = (options.results / scene.name, options.results)
     with style.context():
         for picture, (name, *panel) in (PANELS | {name: (name,) for name in WHOLE}).items():
-            figure = drawn(name, tables_of(name, folders), scene.box)
+            figure = draw_figure(name, tables_of(name, folders), scene.box)
             if panel:
                 alone(figure, *panel)
             figure.savefig(options.output / f"{picture}.png", dpi=DPI, metadata={"Software": None})

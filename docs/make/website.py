@@ -27,7 +27,7 @@ from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents import explorer
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES, drawn
+from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
 from twodiscs_paper.pipeline.jobs.study import read_tables
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -167,7 +167,9 @@ def picture(name):
         if {"hop_histogram", "trajectory"} & set(wanted):
             figure = eval(in_python(name), {"td": twodiscs})
         else:
-            figure = drawn(name, read_tables([f"{n}={path}" for n, path in found.items()]), BOX)
+            figure = draw_figure(
+                name, read_tables([f"{n}={path}" for n, path in found.items()]), BOX
+            )
         figure.savefig(image, format="png", dpi=100, facecolor="white")
     return image.getvalue()
 

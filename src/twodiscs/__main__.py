@@ -1,4 +1,4 @@
-"""``python -m twodiscs``: the command line, where the command itself is not on the path."""
+"""``python -m twodiscs``: the command line, if the command is not on the path."""
 
 from twodiscs.cli import main
 

@@ -1,4 +1,4 @@
-"""What the command lines share: arguments that are JSON, and mistakes that are one sentence."""
+"""The base of all command lines: arguments as JSON, and one sentence for each mistake."""
 
 import argparse
 import json
@@ -17,9 +17,9 @@ from twodiscs.model.effects import EFFECTS
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that answers a mistake with one sentence and exit status 2.
+    """An argument parser that prints one sentence for a mistake and exits with status 2.
 
-    It makes the folder of ``--output``, so that no work is done for a file that has no place.
+    It makes the folder of ``--output`` first, so that no work is lost if that is impossible.
     """
 
     def __init__(self, **options):
@@ -37,7 +37,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parameters(text):
-    """Return the object that ``text`` spells in JSON, or the file that it names as @path.
+    """Return the object in the JSON ``text``, or in the file that it names as @path.
 
     Raises ``InputError`` for anything else, ``OSError`` for a file that cannot be read.
     """
@@ -57,7 +57,7 @@ def _no_number(text):
 
 
 def named(texts, what):
-    """Return {name: value} of arguments NAME=VALUE; raise ``InputError`` for another form."""
+    """Return {name: value} from arguments NAME=VALUE; raise ``InputError`` for another form."""
     words = {}
     for text in texts:
         name, mark, value = text.partition("=")
@@ -96,11 +96,13 @@ def assignment(text):
 
 
 def add_box(parser, required=True):
-    """Add the arguments that say what a ``Box`` is: sides, the number of discs and effects."""
+    """Add the arguments of a ``Box``: sides, the number of discs and effects."""
     for side in ("width", "height"):
         parser.add_argument(f"--{side}", type=number, required=required, help="a length")
-    parser.add_argument("--discs", type=whole_number, default=2, help="how many (2), at most 1024")
-    effects = parser.add_argument_group("effects", "what the scene calls for besides")
+    parser.add_argument(
+        "--discs", type=whole_number, default=2, help="their number (2), at most 1024"
+    )
+    effects = parser.add_argument_group("effects", "absent by default")
     for effect in EFFECTS.values():
         kind = {"type": number} if effect.is_number else {"nargs": "+", "metavar": "AXIS"}
         option = effects.add_argument(_option(effect.name), help=_help(effect), **kind)
@@ -109,16 +111,16 @@ def add_box(parser, required=True):
 
 
 def _help(effect):
-    """Return what an effect is, with its unit, its range and what is without it."""
-    said = [effect.unit] if effect.unit else []
+    """Return the meaning of an effect, with its unit, its range and its default."""
+    notes = [effect.unit] if effect.unit else []
     ends = (format_number(end, "g") for end in (effect.low, effect.high) if effect.is_number)
-    said += [" to ".join(ends) or "x, y or z"]
-    said += [f"{effect.default} without it"] if effect.default else []
-    return f"{effect.meaning} ({'; '.join(said)})"
+    notes += [" to ".join(ends) or "x, y or z"]
+    notes += [f"{effect.default} without it"] if effect.default else []
+    return f"{effect.meaning} ({'; '.join(notes)})"
 
 
 def box_of(options):
-    """Return the ``Box`` that the arguments of ``add_box`` say, None without a width."""
+    """Return the ``Box`` of the arguments of ``add_box``, None without a width."""
     if options.width is None:
         return None
     named = {name: getattr(options, name) for name in EFFECTS if getattr(options, name) is not None}
@@ -128,23 +130,23 @@ def box_of(options):
 
 
 def add_scene(parser):
-    """Add the arguments that say what a ``Scene`` is: those of its ``Box``, and a radius."""
+    """Add the arguments of a ``Scene``: those of its ``Box``, and a radius."""
     add_box(parser)
     parser.add_argument("--radius", type=number, required=True, help="a length")
 
 
 def scene_of(options):
-    """Return the ``Scene`` that the arguments of ``add_scene`` say."""
+    """Return the ``Scene`` of the arguments of ``add_scene``."""
     return box_of(options).scene(options.radius)
 
 
 def box_arguments(box):
-    """Return the arguments that say what a ``Box`` is, a list of words."""
+    """Return the arguments of a ``Box``, a list of words."""
     return words({"width": box.width, "height": box.height, **box.calls_for})
 
 
 def words(given):
-    """Return arguments, {name: value}, as a list of words for a shell, which are not quoted."""
+    """Return arguments, {name: value}, as a list of words for a shell, without quotes."""
     return [text for name, value in given.items() for text in (_option(name), *_texts(value))]
 
 
@@ -166,17 +168,16 @@ def fail(message):
     raise SystemExit(2)
 
 
-#: The commands of which a build is a process.
+#: The names of the commands that run a build.
 BUILDS = {"snakemake", "twodiscs"}
 
 
 def end_with_workflow():
-    """End this process as soon as the workflow that started it is gone, however that ended.
+    """End this process when the workflow that started it ends, for whatever reason.
 
-    That is the nearest Snakemake among the processes that started this one; without it nothing
-    happens.
+    The workflow is the nearest Snakemake among the parent processes; without one nothing happens.
     """
-    with suppress(OSError, ValueError):  # a process that ends while it is looked at
+    with suppress(OSError, ValueError):  # a process may end before we read its state
         for pid, words in _ancestors():
             if not BUILDS.isdisjoint(os.path.basename(word) for word in words[:4]):
                 threading.Thread(target=_end_after, args=(pid,), daemon=True).start()
@@ -184,10 +185,10 @@ def end_with_workflow():
 
 
 def _ancestors():
-    """Yield (id, words of its command) of those that started this process, the nearest first."""
+    """Yield (id, words of its command) of all parent processes, the nearest first."""
     if sys.platform != "linux":
         with suppress(ImportError):
-            import psutil  # comes with Snakemake; what follows takes a tenth of its time
+            import psutil  # comes with Snakemake; it takes ten times as long as /proc
 
             yield from ((process.pid, process.cmdline()) for process in psutil.Process().parents())
         return
@@ -216,10 +217,10 @@ def _end_after(pid):
 def run(main):
     """Call ``main()`` and exit with the status that it returns (None means 0).
 
-    What a user got wrong, an ``InputError`` or a file that cannot be read, becomes one sentence on
+    A user's mistake, an ``InputError`` or a file that cannot be read, becomes one sentence on
     standard error and exit status 2. Any other exception keeps its traceback. Ctrl-C ends the
-    process at once: a kernel that runs does not hear of Python's own handler. Who reads what it
-    prints may stop, as ``head`` does: what is left goes nowhere, in silence.
+    process without delay, because Python's handler does not interrupt a running kernel. If the
+    reader of the output stops, like ``head``, the rest is discarded without a message.
     """
     end_with_workflow()
     usual = signal.signal(signal.SIGINT, signal.SIG_DFL)

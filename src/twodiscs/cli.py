@@ -13,7 +13,7 @@ from twodiscs.model.checks import PRESETS, InputError, decimal_hint
 from twodiscs.model.events import EVENTS
 from twodiscs.model.plugins import plugin
 
-#: What the examples of ``--help`` are about.
+#: The scene of the examples in ``--help``.
 EXAMPLE = "--width 1.5 --height 1 --radius 0.2"
 
 
@@ -27,7 +27,7 @@ def _main():
     argcomplete.autocomplete(parser, always_complete_options="long")
     options, rest = parser.parse_known_args()
     if options.command == "run" and not any(word.startswith("-") for word in rest):
-        options.targets += rest  # which argparse does not find behind an option
+        options.targets += rest  # argparse does not find targets behind an option
     elif rest:
         hint = "; names have dashes" if any("_" in w for w in rest if w.startswith("--")) else ""
         parser.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
@@ -74,7 +74,9 @@ def _parser():
     _seed(some)
     _cores(some)
     some = command("sample", _sample, "volume and areas by Monte Carlo, beside the exact ones")
-    some.add_argument("--samples", type=whole_number, default=10**7, help="how many at least (1e7)")
+    some.add_argument(
+        "--samples", type=whole_number, default=10**7, help="at least this number (1e7)"
+    )
     wanted = some.add_argument(
         "--quantities", nargs="+", metavar="QUANTITY", help="volume, <event>_area"
     )
@@ -96,18 +98,18 @@ def _parser():
     )
     targets.completer = _targets
     some.add_argument("--cores", type=whole_number, help="to work on (all)")
-    text = "say what would be done, and why, and do nothing"
+    text = "print the jobs and their reasons, but run nothing"
     some.add_argument("-n", "--dry-run", action="store_true", help=text)
     some.set_defaults(work=_run)
     text = "write a commented configuration"
     some = commands.add_parser("new", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    some.add_argument("configuration", help="a file that is not there yet")
+    some.add_argument("configuration", help="a new file")
     some.set_defaults(work=_new)
     return parser
 
 
 def error(text):
-    """Return ``text`` as a number, or as it is if it is a preset, for ``type=`` of an argument."""
+    """Return ``text`` as a number, or unchanged if it is a preset, for ``type=`` of an argument."""
     try:
         return text if text in PRESETS else number(text)
     except argparse.ArgumentTypeError:
@@ -122,11 +124,11 @@ def _cores(command):
 
 def _seed(command):
     command.add_argument("--seed", type=whole_number, default=1, help="of the random numbers (1)")
-    command.add_argument("--name", help="that of a scene in a configuration, for its numbers")
+    command.add_argument("--name", help="of a scene in a configuration, for its numbers")
 
 
 def _targets(**_):
-    """Return what a shell proposes as a target."""
+    """Return the targets that a shell can complete."""
     return _build().TARGETS
 
 
@@ -139,7 +141,7 @@ def _new(options):
 
 
 def _build():
-    """Return the module that builds; raise ``InputError`` where only the library is installed."""
+    """Return the module that builds; raise ``InputError`` if only the library is installed."""
     try:
         import snakemake  # noqa: F401
     except ImportError:
@@ -152,7 +154,9 @@ def _build():
 
 
 def _exact(scene, options):
-    numbers = twodiscs.exact(scene)
+    from twodiscs.theory.exact import exact
+
+    numbers = exact(scene)
     if options.csv:
         from twodiscs.comparison.tables.exact import Theory
         from twodiscs.model.box import Box
@@ -169,10 +173,10 @@ def _simulate(scene, options):
         twodiscs.simulate(
             scene,
             options.error,
-            options.seed,
-            options.budget,
-            options.events,
-            options.name,
+            seed=options.seed,
+            budget=options.budget,
+            events=options.events,
+            name=options.name,
             cores=options.cores,
         ),
         options,
@@ -184,10 +188,10 @@ def _sample(scene, options):
         twodiscs.sample(
             scene,
             options.samples,
-            options.seed,
-            options.quantities,
-            options.shell,
-            options.name,
+            seed=options.seed,
+            quantities=options.quantities,
+            shell=options.shell,
+            name=options.name,
             cores=options.cores,
         ),
         options,
@@ -198,19 +202,21 @@ def _print_measured(result, options):
     if options.csv:
         _print_csv(result.rows)
     elif options.json:
-        _print_json(dict(zip(result, result.rows, strict=True)))
+        _print_json({row.get("event") or row["quantity"]: row for row in result.rows})
     else:
         print(result)
 
 
 def _trajectory(scene, options):
-    path = twodiscs.trajectory(scene, options.seed, options.start, options.duration, options.name)
+    path = twodiscs.trajectory(
+        scene, options.duration, seed=options.seed, start=options.start, name=options.name
+    )
     if options.csv:
         path.to_csv(sys.stdout, index=False)
     elif options.json:
         _print_json(path.to_dict("records"))
     else:
-        print(f"{scene}; times in time, places in length\n\n{path.to_string(index=False)}")
+        print(f"{scene}; times in time, positions in length\n\n{path.to_string(index=False)}")
 
 
 def _print_json(value):
@@ -224,7 +230,7 @@ def _print_csv(rows):
 
 
 def _known(value):
-    """Return the text of an exact number, None where none is known."""
+    """Return the text of an exact number, which may be None."""
     return "not known" if value is None else repr(value)
 
 

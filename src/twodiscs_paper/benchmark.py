@@ -1,10 +1,10 @@
-"""How fast the engines are, measured side by side.
+"""Measure the speed of the engines side by side.
 
     python -m twodiscs_paper.benchmark --scenes config/scenes/*.yaml --output results/benchmark.csv
 
-Every variant of a benchmark runs in turn, again and again, and the medians are compared, so that a
-machine that slows down slows them all. All numbers are for one core, processor time, but the
-speed-up of two processes, which is of wall-clock time. The scene is the paper's box at r = 0.2.
+All variants of a benchmark take turns, repeatedly, and their medians are compared. If the machine
+slows down, all variants slow down. All numbers are processor times of one core, except the speed-up
+of two processes, which is wall-clock time. The scene is the paper's box at r = 0.2.
 """
 
 import math
@@ -40,7 +40,7 @@ REPETITIONS = 7
 #: Blocks of one timed run of the lock-step ensemble and of the scalar engine.
 BLOCKS = 200
 
-#: The same, and the repetitions, where it must be quick.
+#: Blocks and repetitions of a quick run.
 QUICK = {"blocks": 40, "repetitions": 5}
 
 
@@ -64,14 +64,14 @@ def interleaved(variants, repetitions=REPETITIONS):
 
 
 def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
-    """Count ``events``, all of them if not told, fixed end time, statistics by replica."""
+    """Count ``events``, by default all, up to a fixed end time, with statistics by replica."""
     duration = counting.replica_duration(scene)
     counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
     return counting.simulated_events(counted[0]), seconds
 
 
 def lockstep_of_many(discs, blocks=BLOCKS // 8):
-    """Count all events of so many discs by the kernel of N discs, which takes two as well."""
+    """Count all events of ``discs`` discs with the kernel of N discs, which also takes two."""
     scene = Scene(SCENE.width, SCENE.height, SCENE.radius / 2, discs=discs)
     duration = many.replica_duration(scene)
     counted, seconds = timed(lambda: kernels.run_blocks(scene, 1, 0, blocks, duration))
@@ -79,7 +79,7 @@ def lockstep_of_many(discs, blocks=BLOCKS // 8):
 
 
 def in_long_box(discs, hops, events=1_000_000):
-    """Count about so many events of N discs at a room of 0.75 × 1 each, without initial states."""
+    """Count about ``events`` of N discs in a box of 0.75 N × 1, without initial states."""
     scene = Scene(0.75 * discs, 1.0, SCENE.radius / 2, discs=discs)
     each = many.replicas_of(scene)
     duration = many.replica_duration(scene, max(256, events / each))
@@ -92,13 +92,13 @@ def in_long_box(discs, hops, events=1_000_000):
 
 
 def lockstep_intervals(intervals=5_000_000):
-    """Record exact intervals between vertical hops; events are as many as their time holds."""
+    """Record exact intervals between vertical hops; events are their time times the event rate."""
     summary, seconds = timed(lambda: hop_intervals(SCENE, "vertical_hop", intervals, 1))
-    return summary["intervals"] * summary["mean"] * event_rate(SCENE), seconds
+    return summary.intervals * summary.mean * event_rate(SCENE), seconds
 
 
 def scalar_engine(blocks=BLOCKS // 8):
-    """Do the same as ``lockstep`` one trajectory at a time."""
+    """Do the same as ``lockstep``, one trajectory after the other."""
     duration = counting.replica_duration(SCENE)
     draw = draw_constants(SCENE)
     arguments = (REPLICAS, duration, SCENE.contact_distance, draw, (0, 0))
@@ -117,8 +117,8 @@ def plain_python(replicas=200):
 def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
     """Return {variant: events per second} of scenes with ``effects``, {name: {effect: value}}.
 
-    All that has a place in a scene is watched. Variants without effects are ``plain`` and
-    ``plain_walls``, in which no hop is detected.
+    All events of a scene are counted. Variants without effects are ``plain`` and ``plain_walls``,
+    which detects no hops.
     """
     scenes = {"plain": SCENE} | {name: replace(SCENE, **some) for name, some in effects.items()}
     variants = {
@@ -129,7 +129,7 @@ def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
 
 
 def effects_rows(effects, **amount):
-    """Return the rows of effects_cost.csv; the arguments are those of ``with_effects``."""
+    """Return the rows of effects_cost.csv, with the arguments of ``with_effects``."""
     return compared("effects", with_effects(effects, **amount), "1/s", "plain")
 
 
@@ -140,11 +140,11 @@ def sampling_engine(blocks=100):
     """Sample the volume and all shells with the compiled kernel."""
     samples = blocks * montecarlo.BLOCK
     point, seconds = timed(lambda: montecarlo.sample_point(SCENE, QUANTITIES, samples, 0.02, 1))
-    return point["samples"], seconds
+    return point.samples, seconds
 
 
 def numpy_sampler(chunks=1000, chunk=16384):
-    """Sample the same sets with numpy, in pieces that stay in the cache, the fastest way known."""
+    """Sample the same sets with numpy, in chunks that stay in the cache: the fastest known way."""
     range_x, range_y, sigma = SCENE.range_x, SCENE.range_y, SCENE.contact_distance
     ranges = {"x": range_x, "y": range_y}
     ends = montecarlo.shell_ends(
@@ -170,27 +170,27 @@ def numpy_sampler(chunks=1000, chunk=16384):
 
 
 def count_until(error):
-    """Return (events, processor seconds) until counting knows the mean vertical hop time."""
+    """Return (events, processor seconds) until counting gives the mean hop time to ``error``."""
     result, seconds = timed(
         lambda: counting.count_events(SCENE, {"vertical_hop": error}, 10**11, 1)
     )
-    return result["events"], seconds
+    return result.events, seconds
 
 
 def intervals_until(error):
-    """Return (intervals, processor seconds) until drawn intervals know their mean to ``error``."""
+    """Return (intervals, processor seconds) until intervals give their mean to ``error``."""
 
     def work():
         intervals = 500_000
         while True:
             summary = hop_intervals(SCENE, "vertical_hop", intervals, 1)
-            excess = summary["stderr"] / summary["mean"] / error
+            excess = summary.stderr / summary.mean / error
             if excess <= 1:
                 return summary
-            intervals = math.ceil(1.05 * excess**2 * summary["intervals"])
+            intervals = math.ceil(1.05 * excess**2 * summary.intervals)
 
     summary, seconds = timed(work)
-    return summary["intervals"], seconds
+    return summary.intervals, seconds
 
 
 def _shard(blocks, ready, go, done):
@@ -201,7 +201,7 @@ def _shard(blocks, ready, go, done):
     done.release()
 
 
-def shards_at_once(processes, blocks):
+def shards_in_parallel(processes, blocks):
     """Return wall-clock seconds in which ``processes`` processes do ``blocks`` blocks each."""
     context = multiprocessing.get_context("spawn")
     ready, go, done = (context.Semaphore(0) for _ in range(3))
@@ -227,8 +227,8 @@ def two_process_speedup(repetitions=5, blocks=600):
     """Return how much faster two processes do two shards than one process does both."""
     ratios = []
     for _ in range(repetitions):
-        alone = shards_at_once(1, 2 * blocks)
-        ratios.append(alone / shards_at_once(2, blocks))
+        one_process = shards_in_parallel(1, 2 * blocks)
+        ratios.append(one_process / shards_in_parallel(2, blocks))
     return median(ratios)
 
 

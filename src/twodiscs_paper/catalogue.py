@@ -1,8 +1,8 @@
-"""Every study: an analysis with a folder, tables and figures of its own.
+"""All studies: each is an analysis with its own folder, tables and figures.
 
-Each folder of ``studies``, and ``errata``, declares one or several in its module ``study``. Target,
-key in the configuration, forecast, report and page follow from that. Standard library only: the
-Snakefile imports this.
+Each folder of ``studies``, and ``errata``, declares one or several studies in its module ``study``.
+Target, key in the configuration, forecast, report and page follow from the declaration. Standard
+library only: the Snakefile imports this module.
 """
 
 from importlib import import_module
@@ -29,6 +29,6 @@ STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order
 #: The figures of studies, {name: ``Entry``}.
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
 
-#: The tables of studies, {name: table}, and all that there are.
+#: The tables of studies, {name: table}, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
 TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}

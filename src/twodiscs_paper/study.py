@@ -1,4 +1,4 @@
-"""What a study is; each declares itself as such in ``studies/<name>/study.py``."""
+"""The declaration of a study; each study has one in ``studies/<name>/study.py``."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,18 +10,18 @@ from twodiscs.comparison.tables.base import Table
 class Study:
     """An analysis: its ``name``, what its target ``builds``, its ``tables`` and ``figures``.
 
-    The first table is made by its function ``rows``, which takes the ``parameters`` of a
-    ``Configuration`` and, as ``tables``, the rows of what it ``reads``: {name: (name of a scene or
-    None, table)}. Other tables have rules of their own. If the table takes long it has ``parts``,
+    The function ``rows`` makes the first table. It takes the ``parameters`` of a ``Configuration``
+    and, as ``tables``, the rows of the tables that the study ``reads``: {name: (name of a scene or
+    None, table)}. Other tables have their own rules. If a table takes long, it has ``parts``,
     {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
 
-    ``families`` are those of the scenes that it computes.
+    ``families`` are the families of the scenes that the study computes.
 
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
-    ``seconds`` is what the table takes, a round figure or what a ``Configuration`` says. ``timed``
-    tables hold seconds, so that they differ from run to run. One that is not ``shared`` is built
-    only when asked for; the manuscript brings along all others. The scores z in the first table of
-    one that is ``checked`` are part of the check. Pages list studies by their ``order``.
+    ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
+    ``timed`` tables hold seconds, which differ from run to run. A study that is not ``shared`` is
+    built on request only; the manuscript includes all others. If a study is ``checked``, the scores
+    z in its first table are part of the check. Pages list studies by their ``order``.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Study:
 
 
 def scaled(budget, divisor, least, most):
-    """Return ``budget``/``divisor``, an integer from ``least`` to ``most``."""
+    """Return ``budget``/``divisor`` as an integer, within ``least`` and ``most``."""
     return min(most, max(least, budget // divisor))
 
 

@@ -1,11 +1,12 @@
 """The check must fail when something is wrong, and hardly ever otherwise."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from fabricated import BOX, RADII, Laws, scenes, theory_rows
+from factory import BOX, RADII, Laws, rows_of, scenes, theory_rows
 
 from twodiscs.comparison import check, scores
 from twodiscs.comparison.tables import monte_carlo
@@ -63,11 +64,6 @@ def table_of(points, theory, alarm=scores.FALSE_ALARM, scene=SCENE):
         points.get("dynamics", []),
     )
     return check.check_rows(compared, alarm)
-
-
-def rows_of(theory):
-    """Return the rows of theory.csv that say what ``theory`` does, {(radius, quantity): value}."""
-    return [{"radius": r, "quantity": q, "exact": value} for (r, q), value in theory.items()]
 
 
 @pytest.fixture
@@ -196,12 +192,12 @@ def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
 
 
 def test_what_is_blocked_must_not_be_seen(points, theory):
-    point = next(p for p in points["dynamics"] if p["radius"] == 0.38)
-    seen = {
-        **point,
-        "counts": {**point["counts"], "vertical_hop": 1},
-        "products": {**point["products"], "vertical_hop*vertical_hop": 1},
-    }
+    point = next(p for p in points["dynamics"] if p.radius == 0.38)
+    seen = replace(
+        point,
+        counts=point.counts | {"vertical_hop": 1},
+        products=point.products | {"vertical_hop*vertical_hop": 1},
+    )
     found = table_of({**points, "dynamics": [seen]}, theory)
     assert failed(found) == {("mean_time", "vertical_hop_time", 0.38)}
 
@@ -209,11 +205,11 @@ def test_what_is_blocked_must_not_be_seen(points, theory):
 def test_what_is_due_must_be_seen(points, theory):
     def silenced(point):
         event = "vertical_hop"
-        return {
-            **point,
-            "counts": {**point["counts"], event: 0},
-            "products": {k: 0 if event in k else v for k, v in point["products"].items()},
-        }
+        return replace(
+            point,
+            counts=point.counts | {event: 0},
+            products={k: 0 if event in k else v for k, v in point.products.items()},
+        )
 
     dynamics = [silenced(point) for point in points["dynamics"]]
     radii = possible_radii("vertical_hop")
@@ -221,7 +217,7 @@ def test_what_is_due_must_be_seen(points, theory):
         ("mean_time", "vertical_hop_time", radius) for radius in radii
     }
     monte_carlo = [
-        {**p, "quantities": {**p["quantities"], "volume": {**p["quantities"]["volume"], "hits": 0}}}
+        replace(p, quantities=p.quantities | {"volume": replace(p.quantities["volume"], hits=0)})
         for p in points["monte_carlo"]
     ]
     assert ("volume", "volume", 0.38) in failed(
@@ -231,12 +227,12 @@ def test_what_is_due_must_be_seen(points, theory):
 
 def errors_times(factor, point):
     """Return the point with all errors changed by ``factor``, and the means kept."""
-    products = dict(point["products"])
-    for event, total in point["counts"].items():
-        n, key = point["replicas"], f"{event}*{event}"
+    products = dict(point.products)
+    for event, total in point.counts.items():
+        n, key = point.replicas, f"{event}*{event}"
         spread = n * products[key] - total**2
         products[key] = (total**2 + round(factor**2 * spread)) // n + 1
-    return {**point, "products": products}
+    return replace(point, products=products)
 
 
 @pytest.mark.parametrize(("factor", "sign"), [(1 / 3, 1), (3.0, -1)])
@@ -315,7 +311,7 @@ def test_the_check_takes_all_rows_of_a_scene_with_effects(tmp_path):
     assert all(row["passed"] and row["bound"] == bound for row in found)
 
 
-# What is a test -------------------------------------------------------------------------------
+# Independent rows -----------------------------------------------------------------------------
 
 
 @pytest.fixture

@@ -1,14 +1,14 @@
-"""N discs through a scene: rows of tables, what is compared, and the other methods and programs."""
+"""N discs through a scene: rows of tables, comparisons, and the other methods and programs."""
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import scalar_many
 
 import twodiscs as td
-from twodiscs.comparison import estimates
 from twodiscs.comparison.measured.measurements import Measurements
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
@@ -22,9 +22,11 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
+from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo, starts
 from twodiscs.sampling.blocks import rounds
 from twodiscs.theory import exact, virial
+from twodiscs_paper.pipeline.jobs.table import POINTS
 
 #: With an exact value, and without; between walls, and on a ring.
 SCENES = {
@@ -79,7 +81,9 @@ def measured(request):
         "monte_carlo": [montecarlo.better_point(scene, quantities, 400_000, 0.02, 4)],
     }
     box = Box.of(scene)
-    points = json.loads(json.dumps(points))
+    for stage, some in points.items():
+        content = json.dumps([point.content() for point in some])
+        points[stage] = [*map(POINTS[stage].of, json.loads(content))]
     theory = Theory.rows(box, [scene.radius])
     return request.param, scene, points, Check.rows(box, theory, points)
 
@@ -117,8 +121,8 @@ def test_a_wrong_rate_is_found_without_an_exact_value(measured):
     name, scene, points, _ = measured
     if scene.periodic or name in KNOWN:
         pytest.skip("of scenes between walls without an exact value")
-    point = json.loads(json.dumps(points["dynamics"][0]))
-    point["duration"] *= 1.1
+    point = points["dynamics"][0]
+    point = replace(point, duration=1.1 * point.duration)
     theory = Theory.rows(Box.of(scene), [scene.radius])
     rows = Check.rows(Box.of(scene), theory, points | {"dynamics": [point]})
     failed = {row["comparison"] for row in rows if row["passed"] is False}
@@ -170,7 +174,7 @@ def test_expected_rates_are_near_what_is_counted():
 def test_shards_add_up_to_the_point(measured):
     """As many processes do it, through JSON."""
     _, scene, points, _ = measured
-    quantities = [*points["monte_carlo"][0]["quantities"]]
+    quantities = [*points["monte_carlo"][0].quantities]
     run = montecarlo.SamplingRun(scene, quantities, 20_000, 0.02, 4)
     counting_run = counting.CountingRun(scene, {"disc_collision": 0.02}, 10**6, 3)
     for work in (run, counting_run):
@@ -317,7 +321,7 @@ def test_colours_follow_the_order_along_the_longer_side():
     assert colours(box, {"x1": -1.0, "x2": 0.0, "x3": 1.0}) == [b, c, a]
 
 
-# What is observed -------------------------------------------------------------------------------
+# Observables ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["three", "four on a ring"])
@@ -406,7 +410,7 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
     theory = Theory.rows(box, [scene.radius])
     (row,) = (
         row
-        for row in Check.rows(box, theory, {"intervals": [json.loads(json.dumps(point))]})
+        for row in Check.rows(box, theory, {"intervals": [point]})
         if row["comparison"] == "hop_interval"
     )
     if name in KNOWN:
@@ -415,7 +419,7 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
         assert (row["status"], row["z"], row["passed"]) == ("counted", None, None)
 
 
-# What is refused ---------------------------------------------------------------------------------
+# Error messages ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -423,7 +427,7 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
     [
         (lambda s: td.transmission(s, "vertical_hop"), "discs must be 2 for passages, not 3"),
         (lambda s: exact.shell_expectation(s, "vertical_hop", 0.01), "discs must be 2 for shells"),
-        (lambda s: td.plot(s), "scene must be two plain discs to be sketched, but it has discs 3"),
+        (lambda s: td.plot(s), "scene must be two plain discs for a drawing, but it has discs 3"),
     ],
 )
 def test_what_is_of_two_discs_is_refused_in_a_sentence(call, message):

@@ -1,4 +1,4 @@
-"""An event of one's own: declared in a copy of the package, it goes through all three methods."""
+"""A new event, declared in a copy of the package, goes through all three methods."""
 
 import os
 import shutil
@@ -12,7 +12,7 @@ from twodiscs.model.events import DECLARED, SHELLS
 
 LAST = '        Event("any_wall", "walls"),\n'
 
-#: Scenes whose walls differ in what they count, and more discs with and without exact values.
+#: Scenes whose walls have different multiplicities, and more discs with and without exact values.
 MEASURED = """
 import sys
 from twodiscs.comparison.tables.check import Check

@@ -1,10 +1,11 @@
-"""Rows of points that a run hardly ever has: nothing counted, few chains, weights all alike."""
+"""Rows of points that a run hardly ever has: nothing counted, few chains, equal weights."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from fabricated import BOX, Laws, theory_rows
+from factory import BOX, Laws, theory_rows
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
@@ -20,12 +21,12 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
     """
     scene = BOX.scene(0.3)
     point = Laws(scene).dynamics(np.random.default_rng(1))
-    point["counts"] = dict.fromkeys(point["counts"], 0)
-    point["products"] = dict.fromkeys(point["products"], 0)
+    none = {name: dict.fromkeys(getattr(point, name), 0) for name in ("counts", "products")}
+    point = replace(point, **none)
     rows = MeanTimes.rows(BOX, theory_rows([0.3]), {"dynamics": [point]})
     possible = [row for row in rows if row["status"] != "impossible"]
     assert {row["copies"] for row in possible} == {1, 2, 4}
-    due = point["replicas"] * point["duration"] / (4 * math.log(20))
+    due = point.replicas * point.duration / (4 * math.log(20))
     for row in possible:
         assert row["status"] == "none-seen"
         assert row["bound"] == pytest.approx(due, rel=1e-12), row["event"]
@@ -37,10 +38,10 @@ def test_the_mean_of_a_histogram_is_tested_over_chains(chains):
     laws = Laws(BOX.scene(0.2))
     point = laws.intervals(np.random.default_rng(2), chains)
     exact = laws.times["vertical_hop"]
-    point |= {"mean": exact - 5 * point["stderr"]}
+    point = replace(point, mean=exact - 5 * point.stderr)
     (z,) = {row["z"] for row in HopHistogram.rows(theory_rows([0.2]), {"intervals": [point]})}
     assert z == pytest.approx(ndtri(stdtr(chains - 1, -5.0)), abs=2e-3)
-    assert abs(z - ndtri(stdtr(point["intervals"] - 1, -5.0))) > 0.1
+    assert abs(z - ndtri(stdtr(point.intervals - 1, -5.0))) > 0.1
 
 
 CORNERS = [

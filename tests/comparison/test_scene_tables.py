@@ -1,23 +1,35 @@
-"""Rows say honestly what the points hold, of plain scenes and of those with effects."""
+"""Rows have the numbers of the points, for plain scenes and for scenes with effects."""
 
 import math
+from dataclasses import replace
 from inspect import signature
 
 import numpy as np
 import pytest
 from effect_scenes import SCENES
-from fabricated import BOX, RADII, Laws, scenes, theory_rows
+from factory import (
+    BOX,
+    RADII,
+    Laws,
+    bins_point,
+    counts_point,
+    hits_point,
+    rows_of,
+    scenes,
+    theory_rows,
+)
 
-from twodiscs.comparison import estimates
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.exact import Grid, Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes, seen_anywhere
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume, _sampled_row
+from twodiscs.comparison.tables.mean_times import MeanTimes, rows_without_strips
+from twodiscs.comparison.tables.monte_carlo import Areas, Volume, _row
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
+from twodiscs.points import estimates
+from twodiscs.points.dynamics import Strata, StripCount
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 from twodiscs.theory.exact import rate
@@ -36,7 +48,7 @@ def laws():
 def test_an_exact_value_that_is_not_there_is_named(theory, laws):
     point = laws[0].monte_carlo(np.random.default_rng(1), 1000)
     with pytest.raises(ValueError, match=r"theory\.csv has no volume at radius 0\.11"):
-        Volume.rows(theory, {"monte_carlo": [{**point, "radius": 0.11}]})
+        Volume.rows(theory, {"monte_carlo": [replace(point, radius=0.11)]})
 
 
 def test_the_order_of_points_is_of_no_consequence(theory, laws):
@@ -120,7 +132,7 @@ def test_the_whole_wall_area_is_four_times_right_and_top(theory, laws):
     assert whole["stderr"] == pytest.approx(
         4 * math.hypot(right["stderr"], top["stderr"]), rel=1e-2
     )
-    correlated = {**point, "right_and_top": min(right["hits"], top["hits"])}
+    correlated = replace(point, right_and_top=min(right["hits"], top["hits"]))
     found = {row["quantity"]: row for row in Areas.rows(BOX, theory, {"monte_carlo": [correlated]})}
     assert found["any_wall_area"]["stderr"] > 1.1 * whole["stderr"]
 
@@ -129,13 +141,12 @@ def test_only_watched_areas_have_rows(theory, laws):
     point = laws[1].monte_carlo(np.random.default_rng(2), 10**6)
     found = Areas.rows(BOX, theory, {"monte_carlo": [point]}, ("any_wall", "vertical_hop"))
     assert [row["quantity"] for row in found] == ["vertical_hop_area", "any_wall_area"]
-    assert Volume.rows(theory, {"monte_carlo": [{**point, "quantities": {}}]}) == []
+    assert Volume.rows(theory, {"monte_carlo": [replace(point, quantities={})]}) == []
 
 
 def part_row(hits, samples, expectation=0.5, exact=0.5):
-    part = {"hits": hits, "measure": 1.0, "epsilon": 0.1}
-    point = {"radius": 0.1, "method": "monte_carlo", "samples": samples, "quantities": {"it": part}}
-    return _sampled_row(point, "it", exact, expectation)
+    point = hits_point(samples=samples, it=hits)
+    return _row(point, "it", point.sampled("it"), exact, expectation)
 
 
 @pytest.mark.parametrize(
@@ -164,26 +175,11 @@ def test_the_shell_of_a_blocked_hop_must_be_as_empty_as_it_is():
 # Molecular dynamics ---------------------------------------------------------------------------
 
 
-def time_row(event="vertical_hop", radius=0.37, exact=50.0, **change):
-    point = {
-        "radius": radius,
-        "duration": 10.0,
-        "replicas": 2048,
-        "strips": {},
-        "counts": {event: 0},
-        "products": {f"{event}*{event}": 0},
-        "target": {event: 3e-4},
-        "status": {event: "budget"},
-    }
-    for key, value in change.items():
-        point[key] = {**point[key], **value} if isinstance(value, dict) else value
-    theory = [{"radius": radius, "quantity": f"{event}_time", "exact": exact}]
+def time_row(total=0, squares=0, exact=50.0, radius=0.37, **given):
+    point = counts_point(radius, total=total, squares=squares, **given)
+    theory = rows_of({(radius, "vertical_hop_time"): exact})
     (row,) = MeanTimes.rows(BOX, theory, {"dynamics": [point]})
     return row
-
-
-def counted(total, squares, event="vertical_hop"):
-    return {"counts": {event: total}, "products": {f"{event}*{event}": squares}}
 
 
 def test_rows_of_mean_times(theory, laws):
@@ -228,32 +224,30 @@ def test_a_rare_hop_has_the_row_of_its_strip(theory, laws):
     law = laws[RADII.index(0.24)]
     point = law.dynamics(np.random.default_rng(5), relative=0.1)
     tau = law.times["horizontal_hop"]
-    strip = {"duration": 0.125, "share": 0.004, "replicas": 10**7, "count": 0, "status": "reached"}
-    strip["count"] = round(0.125 * 10**7 / 0.004 / tau)
-    # Of two strata the first one had a few starts too many.
-    n = strip["replicas"] // 2
-    strip["count"] -= strip["count"] % 4
-    slow, fast = strip["count"] // 4, strip["count"] // 4 * 3
-    strip["strata"] = {
-        "shares": [[0.499, 0.501]], "starts": [[n, n]], "counts": [[slow, fast]],
-        "squares": [[slow, fast]],
-    }  # fmt: skip
-    point["strips"] = {"horizontal_hop": strip | {"squares": strip["count"]}}
+    count, n = round(0.125 * 10**7 / 0.004 / tau) // 4 * 4, 10**7 // 2
+    # The first of two strata has a few starts too many.
+    slow, fast = count // 4, count // 4 * 3
+    strip = StripCount(
+        duration=0.125, share=0.004, replicas=2 * n, count=count, squares=count, status="reached",
+        rounds=1, events=10**8,
+        strata=Strata([[0.499, 0.501]], [[n, n]], [[slow, fast]], [[slow, fast]]),
+    )  # fmt: skip
+    point = replace(point, strips={"horizontal_hop": strip})
     found = {row["event"]: row for row in MeanTimes.rows(BOX, theory, {"dynamics": [point]})}
     assert [row["starts"] for row in found.values()].count("strip") == 1
     row = found["horizontal_hop"]
-    assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, strip["count"])
-    # ⟨N⟩ is 0.499 · q/2 + 0.501 · 3 q/2 with q that of all starts alike.
+    assert (row["starts"], row["share"], row["count"]) == ("strip", 0.004, count)
+    # ⟨N⟩ is 0.499 · q/2 + 0.501 · 3 q/2 with q of all starts together.
     assert row["estimate"] == pytest.approx(tau / 1.001, rel=1e-6)
     rates = np.array([slow, fast]) / n
     error = math.sqrt(np.sum(np.array([0.499, 0.501]) ** 2 * rates * (1 - rates)) / (n - 1))
     mean = [0.499, 0.501] @ rates
     assert row["relative_stderr"] == pytest.approx(error / mean, rel=1e-9)
     assert row["z"] == pytest.approx((mean / 1.001 - mean) / error, abs=1e-3)
-    (other,) = seen_anywhere(BOX, theory, {"dynamics": [point]})
+    (other,) = rows_without_strips(BOX, theory, {"dynamics": [point]})
     assert (other["starts"], other["event"]) == ("invariant", "horizontal_hop")
-    assert other["count"] == point["counts"]["horizontal_hop"]
-    assert other["replicas"] == point["replicas"]
+    assert other["count"] == point.counts["horizontal_hop"]
+    assert other["replicas"] == point.replicas
 
 
 def test_none_seen_gives_a_bound_and_no_estimate():
@@ -267,33 +261,32 @@ def test_none_seen_gives_a_bound_and_no_estimate():
 
 
 def test_too_few_events_show_no_error():
-    row = time_row(exact=20480 / 60, **counted(60, 90))
+    row = time_row(60, 90, 20480 / 60)
     assert row["status"] == "too-few"
     assert row["estimate"] == pytest.approx(20480 / 60)
     assert row["stderr"] is row["relative_stderr"] is row["bound"] is None
     assert (row["z"], row["test"]) == (0.0, "cluster-bound")
     # 180 events in clusters of three are as good as 60.
-    assert time_row(**counted(180, 540))["status"] == "too-few"
-    row = time_row(**counted(300, 350))
+    assert time_row(180, 540)["status"] == "too-few"
+    row = time_row(300, 350)
     assert row["status"] == "budget"
     assert row["test"] == "cluster-bound"
     assert row["stderr"] > 0
-    assert time_row(**counted(2000, 3000))["test"] == "normal"
+    assert time_row(2000, 3000)["test"] == "normal"
 
 
 def test_few_replicas_show_no_error():
-    few = counted(10**6, 2 * 10**10)
-    assert time_row(replicas=99, **few)["status"] == "too-few"
+    assert time_row(10**6, 2 * 10**10, replicas=99)["status"] == "too-few"
 
 
 def test_a_blocked_hop_that_is_seen_has_an_infinite_score():
-    row = time_row(radius=0.38, exact=None, **counted(1, 1))
+    row = time_row(1, 1, None, 0.38)
     assert (row["status"], row["z"], row["count"]) == ("impossible", -math.inf, 1)
 
 
 def test_where_no_exact_value_is_known_what_is_seen_stands():
-    """That is another state than impossible: nothing is compared, and nothing is wrong."""
-    row = time_row(exact=None, **counted(2000, 3000))
+    """This state differs from impossible: nothing is compared, and nothing fails."""
+    row = time_row(2000, 3000, None)
     assert row["status"] == "budget"
     assert row["estimate"] == pytest.approx(2048 * 10.0 / 2000)
     assert row["stderr"] > 0
@@ -319,7 +312,7 @@ def test_rows_of_the_histogram(theory, laws):
         assert row["density"] == pytest.approx(density, abs=5 * row["stderr"])
         assert abs(row["z"]) < 5
         assert row["z"] == pytest.approx((row["mean"] - tau) / row["mean_stderr"], rel=0.02)
-    empty = {**points[0], "counts": [0, 5], "squares": [0, 5]}
+    empty = replace(points[0], counts=[0, 5], squares=[0, 5])
     first, second = [
         row for row in HopHistogram.rows(theory, {"intervals": [empty]}) if row["bins"] == "equal"
     ]
@@ -329,17 +322,17 @@ def test_rows_of_the_histogram(theory, laws):
     assert few[0]["z"] is few[0]["mean_stderr"] is None
 
 
-# What jobs took -------------------------------------------------------------------------------
+# The time of jobs -----------------------------------------------------------------------------
 
 
 def test_cost_is_by_stage_and_radius_and_set_against_the_forecast():
-    """The total is of what was forecast alone."""
+    """The total has only jobs with a forecast."""
     points = {
-        "monte_carlo": [{"radius": 0.1, "samples": 3}],
-        "dynamics": [{"radius": 0.2, "events": 5}, {"radius": 0.1, "events": 7}],
-        "intervals": [{"radius": 0.1, "intervals": 11}],
+        "monte_carlo": [hits_point(0.1, 3)],
+        "dynamics": [counts_point(0.2, events=5), counts_point(0.1, events=7)],
+        "intervals": [bins_point(0.1, intervals=11)],
     }
-    jobs = [(stage, point["radius"]) for stage, some in points.items() for point in some]
+    jobs = [(stage, point.radius) for stage, some in points.items() for point in some]
     rows = Cost.rows(points, dict.fromkeys(jobs, 0.5), {})
     assert [tuple(row.values())[:4] for row in rows] == [
         ("dynamics", 0.1, 7, 0.5),
@@ -391,9 +384,9 @@ def test_all_walls_have_counts_of_their_own():
     scene = SCENES["unequal"]
     point = montecarlo.better_point(scene, ["any_wall_area"], 1, 0.1, 7)
     (row,) = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("any_wall",))
-    part = point["quantities"]["any_wall_area"]
-    assert (row["hits"], row["epsilon"]) == (part["hits"], part["epsilon"])
-    assert row["estimate"] == part["measure"] * part["hits"] / point["samples"]
+    part = point.quantities["any_wall_area"]
+    assert (row["hits"], row["epsilon"]) == (part.hits, part.epsilon)
+    assert row["estimate"] == part.measure * part.hits / point.samples
     watched = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("right_wall",))
     assert watched == []
 
@@ -422,7 +415,7 @@ def test_an_event_out_of_reach_must_not_be_seen():
     theory = exact_of(scene)
     _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
     assert (row["event"], row["status"], row["z"]) == ("top_wall", "impossible", 0.0)
-    point["counts"]["top_wall"] = point["products"]["top_wall*top_wall"] = 1
+    point.counts["top_wall"] = point.products["top_wall*top_wall"] = 1
     _, row = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
     assert row["z"] == -math.inf
 
@@ -431,6 +424,6 @@ def test_plain_points_keep_to_right_and_top():
     """All walls of a plain scene join two shells, which its point holds."""
     plain = BOX.scene(0.2)
     point = montecarlo.better_point(plain, ["any_wall_area"], 1, 0.1, 7)
-    assert "any_wall_area" not in point["quantities"]
+    assert "any_wall_area" not in point.quantities
     (row,) = Areas.rows(Box.of(plain), exact_of(plain), {"monte_carlo": [point]}, ("any_wall",))
     assert row["epsilon"] is None

@@ -1,4 +1,4 @@
-"""Tables: what is written is what is read, and every column says what it means."""
+"""Tables: a written table is read again unchanged, and every column has a meaning."""
 
 import math
 import subprocess
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from pages import described_table, described_tables
 
+from twodiscs.comparison import frames
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import base
 from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, Table
@@ -54,7 +55,7 @@ def test_columns_are_those_of_the_class_after_those_it_is_derived_from():
     assert Measured.columns() == {"radius": LENGTH, "event": TEXT, "estimate": TIME}
     assert list(BetterMeasured.columns()) == ["radius", "event", "estimate", "stderr", "z"]
     assert BetterMeasured.columns()["stderr"] == Column(float, "as estimate")
-    # What several tables may have is in none of them before it is named there.
+    # A common column is in no table that does not name it.
     assert "width" not in BetterMeasured.columns()
 
 
@@ -247,6 +248,16 @@ def test_a_wrong_file_is_named(tmp_path, text, message):
     (tmp_path / "theory.csv").write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match=rf"theory\.csv .*{message}"):
         Theory.read(tmp_path / "theory.csv")
+
+
+def test_columns_that_the_table_does_not_know_are_left_out(tmp_path):
+    """A later version may have one more, at any place."""
+    text = "radius,colour,quantity,exact,more\n0.1,red,volume,1.0,\n"
+    (tmp_path / "theory.csv").write_text(text)
+    assert Theory.read(tmp_path / "theory.csv") == [
+        {"radius": 0.1, "quantity": "volume", "exact": 1.0}
+    ]
+    assert list(frames.read(tmp_path / "theory.csv", Theory)) == ["radius", "quantity", "exact"]
 
 
 def test_a_truth_value_is_spelled_in_one_way(tmp_path):

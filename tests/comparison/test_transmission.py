@@ -1,4 +1,4 @@
-"""Transmission coefficients: what counts of clusters and of hops say, and what the face returns."""
+"""Transmission coefficients: from counts of clusters and of hops, and from the face."""
 
 import math
 
@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import twodiscs as td
-from twodiscs.comparison.estimates import Estimate
 from twodiscs.comparison.measured import transmission
 from twodiscs.comparison.scores import student_deviate
 from twodiscs.dynamics.two.passages import LARGEST, REPLICAS, SUMS
+from twodiscs.points.estimates import Estimate
 
 
 def test_clusters_are_weighed_by_their_sizes():
-    """Of hops in clusters of 1, 2 and 3: 1, 0 and 1/3 passages each."""
+    """Hops in clusters of 1, 2 and 3 are 1, 0 and 1/3 passages each."""
     sizes = np.zeros(LARGEST + 1, np.int64)
     sizes[1:4] = 600, 200, 300
     kappa = transmission.by_clusters(sizes)
@@ -38,7 +38,7 @@ LAWS = {"order": transmission.of_order, "clusters": transmission.of_clusters}
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_a_plateau_is_what_passages_leave(law):
-    """κ from what is left of it after 0.01 passages, and none where passages come too often."""
+    """κ follows from its value after 0.01 passages; there is none if passages are too frequent."""
     kappa, time, mean = 0.8, 5.0, 400.0
     left, derivative = law(kappa * time / mean)
     assert left == pytest.approx(1 - 2 * kappa * time / mean, abs=4e-4)
@@ -112,7 +112,7 @@ def test_frequent_hops_have_a_curve_only():
     assert found.coefficient is None
     assert found.passage_time is None
     assert found.clusters == {}  # none are looked for: they would hardly end
-    assert "too often" in str(found)
+    assert "too frequent" in str(found)
     assert len(found.frame()) == len(transmission.TIMES)
 
 

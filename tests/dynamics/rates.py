@@ -9,7 +9,7 @@ from twodiscs.theory.exact import mean_times
 def check_rates(scene, seed, blocks, duration=None):
     """Five sigma on every event: with 60 comparisons a false alarm in 3e-5 of all seeds.
 
-    Of those that are expected a thousand times; impossible ones are not seen at all.
+    This holds for events with a thousand expected counts; impossible events have no count.
     """
     duration = duration or counting.replica_duration(scene)
     sums, products = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)

@@ -54,13 +54,14 @@ samples = montecarlo.sample_point(scene, areas, 1, 0.02, 11)
 effects = {"periodic": "x", "field": 0.3, "radius_ratio": 1.2, "mass_ratio": 2.0}
 scene = Scene(1.5, 1.0, 0.2, moment_of_inertia=0.4, **effects)
 bent = counting.count_events(scene, {"vertical_hop": 0.02, "any_wall": 0.02}, 10**6, 11)
-json.dump([counts, times, samples, bent], sys.stdout, sort_keys=True)
+points = [point.content() for point in (counts, times, samples, bent)]
+json.dump(points, sys.stdout, sort_keys=True)
 """
 
 
 @pytest.fixture(scope="module")
 def generic_output(tmp_path_factory):
-    """What a processor without AVX computes."""
+    """The counts on a processor without AVX."""
     environment = os.environ | {
         "NUMBA_CPU_NAME": "generic",
         "NUMBA_CPU_FEATURES": "",
@@ -131,16 +132,16 @@ def test_what_is_not_watched_is_not_detected():
 
 def test_accuracy_is_reached_or_the_budget_is_spent():
     point = counting.count_events(PAPER, {"vertical_hop": 2e-3, "any_wall": 0.01}, 10**9, 1)
-    assert point["status"] == {"vertical_hop": "reached", "any_wall": "reached"}
-    assert point["products"].keys() == {
+    assert point.status == {"vertical_hop": "reached", "any_wall": "reached"}
+    assert point.products.keys() == {
         "vertical_hop*vertical_hop", "vertical_hop*any_wall", "any_wall*any_wall"
     }  # fmt: skip
-    mean = point["duration"] * point["replicas"] / point["counts"]["vertical_hop"]
+    mean = point.duration * point.replicas / point.counts["vertical_hop"]
     assert abs(mean / mean_times(PAPER)["vertical_hop"] - 1) <= 5 * 2e-3
     spent = counting.count_events(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
-    assert spent["status"] == {"horizontal_hop": "budget"}
+    assert spent.status == {"horizontal_hop": "budget"}
     # The last round may run over the budget by the scatter of the events in it, not by more.
-    assert 1.8e7 < spent["events"] < 2.02e7
+    assert 1.8e7 < spent.events < 2.02e7
     assert spent == counting.count_events(PAPER, {"horizontal_hop": 1e-6}, 2 * 10**7, 1)
 
 
@@ -150,7 +151,7 @@ def test_who_watches_sees_what_is_done_and_how_much_there_is():
     point = run.run(lambda *given: seen.append(given))
     done, everything = zip(*(pair for pair in seen if pair[0] is not None), strict=True)
     assert list(done) == sorted(done)
-    assert done[-1] == pytest.approx(point["events"], rel=0.05)
+    assert done[-1] == pytest.approx(point.events, rel=0.05)
     assert done[-1] <= everything[-1] <= 1.05 * 2 * 10**7
 
 
@@ -166,6 +167,6 @@ def test_relative_errors_are_those_of_the_replicas():
 def test_a_blocked_hop_is_not_waited_for():
     scene = PAPER.with_radius(0.3)
     point = counting.count_events(scene, {"horizontal_hop": 1e-9}, 10**9, 1)
-    assert point["status"] == {"horizontal_hop": "impossible"}
-    assert point["counts"] == {"horizontal_hop": 0}
-    assert point["rounds"] == 1
+    assert point.status == {"horizontal_hop": "impossible"}
+    assert point.counts == {"horizontal_hop": 0}
+    assert point.rounds == 1

@@ -1,11 +1,10 @@
-"""Error bars are honest: how often 95 % intervals cover what is exactly known."""
+"""Error bars: the coverage of 95 % intervals, for exactly known values."""
 
 import math
 
 import numpy as np
 import pytest
 
-from twodiscs.comparison import estimates
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting
@@ -29,15 +28,10 @@ def test_binomial_intervals_cover_volume_and_areas():
     ]
     exact = {"volume": volume(scene)}
     for event, area in zip(SHELLS, areas, strict=True):
-        epsilon = points[0]["quantities"][area]["epsilon"]
+        epsilon = points[0].quantities[area].epsilon
         exact[area] = shell_expectation(scene, event, epsilon)
     for quantity, value in exact.items():
-        found = []
-        for point in points:
-            part = point["quantities"][quantity]
-            found.append(
-                estimates.binomial_estimate(part["hits"], point["samples"], part["measure"])
-            )
+        found = [point.estimate(quantity) for point in points]
         if value == 0:
             assert found == [None] * 1600
         else:
@@ -45,11 +39,11 @@ def test_binomial_intervals_cover_volume_and_areas():
 
 
 def test_the_shown_interval_is_the_one_whose_coverage_is_measured():
-    """What a table shows as estimate ± stderr comes from the same sums by the same function."""
+    """The estimate ± stderr of a table comes from the same sums by the same function."""
     point = counting.count_events(BOX.scene(0.24), {"right_wall": 0.02}, 10**7, 1)
-    count, squares = point["counts"]["right_wall"], point["products"]["right_wall*right_wall"]
-    replicas, duration = point["replicas"], 4 * point["duration"]
-    estimate = estimates.mean_time(count, squares, replicas, duration)
+    count, squares = point.counts["right_wall"], point.products["right_wall*right_wall"]
+    replicas, duration = point.replicas, 4 * point.duration
+    estimate = point.estimate("right_wall", copies=4)
     variance = squares / replicas - (count / replicas) ** 2
     error = math.sqrt(variance / (replicas - 1)) / (count / replicas)
     assert estimate.value == pytest.approx(duration * replicas / count, rel=1e-14)
@@ -73,8 +67,8 @@ def row_of(scene, point):
 def test_bursts_of_collisions_have_no_error_bar():
     """Rough discs that hardly pass each other: rare replicas have a thousand times the mean.
 
-    A sample without a large one is wrong by up to 80 of its own errors. The rule sees that in 39 of
-    40 samples; one in which nothing but usual replicas are looks like any other.
+    A sample without a large one is wrong by up to 80 of its errors. The rule finds this in 39 of 40
+    samples; a sample with only usual replicas looks like any other.
     """
     wrong, bars = 0, 0
     for seed in range(40):

@@ -1,4 +1,4 @@
-"""What the experiments with the ensemble share."""
+"""The common functions of all experiments with the ensemble."""
 
 import numpy as np
 import pytest

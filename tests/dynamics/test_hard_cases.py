@@ -109,7 +109,7 @@ def test_states_that_are_hard(state):
 
 
 def test_corner_hit_exactly_by_both_discs():
-    """Both run into opposite corners at the same time: four events at once, and the way back."""
+    """Both run into opposite corners: four simultaneous events, and the way back."""
     scene = PAPER.with_radius(0.125)
     state = (0.625 - 0.25, 0.375 - 0.25, -0.625 + 0.25, -0.375 + 0.25, 0.5, 0.5, -0.5, -0.5)
     rows = list(follow(scene, state, 1.0))
@@ -197,7 +197,7 @@ def test_any_combination_of_extremes_goes_on(sides, data, places, velocities):
         state, time, _ = advance(state, law)
         assert time >= 0
         if time == math.inf:
-            # Only if nothing ever happens again, to within what a denormal speed takes.
+            # Only if no event ever follows, except after the time of a denormal speed.
             assert number <= 8
             return
         elapsed += time

@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 from effect_scenes import SCENES
 
-from twodiscs.comparison.tables.exact import Theory
-from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.dynamics import intervals, trajectory
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.dynamics.two import returns
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.blocks import rounds
@@ -28,9 +25,9 @@ PAPER = Scene(1.5, 1.0, 0.2)
 
 def check_mean(scene, event, number):
     found = intervals.hop_intervals(scene, event, number, 9)
-    assert abs(found["mean"] - mean_times(scene)[event]) <= 5 * found["stderr"]
-    assert sum(found["counts"]) + found["overflow"] == found["intervals"] >= number
-    assert math.frexp(found["bin_width"])[0] == 0.5  # a power of two
+    assert abs(found.mean - mean_times(scene)[event]) <= 5 * found.stderr
+    assert sum(found.counts) + found.overflow == found.intervals >= number
+    assert math.frexp(found.bin_width)[0] == 0.5  # a power of two
 
 
 @pytest.mark.parametrize("event", HOPS)
@@ -41,7 +38,7 @@ def test_hop_intervals_have_the_exact_mean(event, radius):
 
 @pytest.mark.slow
 def test_horizontal_hops_in_a_field_have_the_exact_mean():
-    """This box cannot be turned by a quarter: its horizontal hops have starts of their own."""
+    """This box cannot be turned by a quarter: its horizontal hops have separate starts."""
     check_mean(SCENES["field"], "horizontal_hop", 500_000)
 
 
@@ -50,10 +47,10 @@ def test_hop_intervals_have_the_exact_density_at_zero(event, side):
     """p(0⁺) = 3√2 / (16 (side − 2r))."""
     scene = PAPER.with_radius(0.1)
     found = intervals.hop_intervals(scene, event, 8_000_000, 10)
-    width, n = found["bin_width"], found["intervals"]
-    counts, squares = (np.array(found[name][:2]) for name in ("counts", "squares"))
-    error = np.sqrt(squares - counts**2 / found["chains"]) / (n * width)
-    # That of p(0) − at²: the density has no linear term.
+    width, n = found.bin_width, found.intervals
+    counts, squares = np.array(found.counts[:2]), np.array(found.squares[:2])
+    error = np.sqrt(squares - counts**2 / found.chains) / (n * width)
+    # The law is p(0) − at²: the density has no linear term.
     at_zero = np.array([7.0, -1.0]) / 6
     exact = 3 * math.sqrt(2) / (16 * (side - 0.2))
     assert density_at_zero(scene, event) == pytest.approx(exact, rel=1e-15)
@@ -130,9 +127,9 @@ def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     if mean is None:
         known, spread = (rates(scene, part) for part in measures.sample(scene, 10**6, 5))
         mean, error = 1 / known[event], spread[event] / known[event] ** 2
-    assert abs(found["mean"] - mean) <= 5 * math.hypot(found["stderr"], error)
-    assert found["stderr"] < 1.5e-3 * mean
-    assert sum(found["counts"]) + found["overflow"] == found["intervals"] >= 2_000_000
+    assert abs(found.mean - mean) <= 5 * math.hypot(found.stderr, error)
+    assert found.stderr < 1.5e-3 * mean
+    assert sum(found.counts) + found.overflow == found.intervals >= 2_000_000
 
 
 @pytest.mark.parametrize("name", ["three", "three, across", "four on a ring"])
@@ -160,21 +157,16 @@ def test_intervals_of_many_are_those_of_trajectories(name):
 def test_errors_of_intervals_of_many_are_those_of_repetitions():
     """The spread of 60 estimates over the mean error, of the mean and in bins: five sigma."""
     scene, event = MANY["three"]
-    theory = Theory.rows(Box.of(scene), [scene.radius])
     points = [intervals.hop_intervals(scene, event, 1, seed) for seed in range(60)]
-    tables = []
-    for point in points:
-        some = {name: point[name][:20] for name in ("counts", "squares", "products")}
-        some["wide"] = {name: values[:20] for name, values in point["wide"].items()}
-        some["wide"]["edges"] = point["wide"]["edges"][:21]
-        tables.append(HopHistogram.rows(theory, {"intervals": [point | some]}))
-    for k in (0, 1, 10, 20, 35, 39):  # the last ones are wide
-        densities = [rows[k]["density"] for rows in tables]
-        errors = np.array([rows[k]["stderr"] for rows in tables])
+    bins = [[*point.bins()] for point in points]
+    wide = intervals.BINS  # from there on bins are wide
+    for k in (0, 1, 10, wide, wide + 15, wide + 19):
+        densities = [some[k].density.value for some in bins]
+        errors = np.array([some[k].density.stderr for some in bins])
         ratio = np.std(densities, ddof=1) / math.sqrt((errors**2).mean())
         assert abs(ratio - 1) < 5 / math.sqrt(2 * 59), k
-    errors = np.array([point["stderr"] for point in points])
-    ratio = np.std([point["mean"] for point in points], ddof=1) / math.sqrt((errors**2).mean())
+    errors = np.array([point.stderr for point in points])
+    ratio = np.std([point.mean for point in points], ddof=1) / math.sqrt((errors**2).mean())
     assert abs(ratio - 1) < 5 / math.sqrt(2 * 59)
 
 
@@ -192,7 +184,7 @@ def test_intervals_of_many_do_not_depend_on_who_draws_them():
 
 def test_what_is_not_known_of_many_is_refused():
     scene = Scene(1.5, 1.0, 0.13, discs=16)
-    with pytest.raises(ValueError, match="leaves 16 discs so little room that nothing is known"):
+    with pytest.raises(ValueError, match="is so large for 16 discs that the time between"):
         intervals.hop_intervals(scene, "vertical_hop", 1, 1)
     with pytest.raises(ValueError, match="blocked"):
         intervals.hop_intervals(MANY["four in a channel"][0], "horizontal_hop", 1, 1)

@@ -236,7 +236,7 @@ def test_hops_are_counted_once():
 
 
 def test_the_law_of_a_plain_scene_has_no_effects():
-    """What is None is not compiled."""
+    """An effect that is None is not compiled."""
     law = law_of(Scene(1.5, 1.0, 0.2))
     assert law == Law(0.55, 0.3, 0.4)
     assert all(value is None for value in law[3:])

@@ -82,7 +82,7 @@ def reversed_state(scene, state):
     return (*state[:4], *(-p for p in state[4:8]), *deep, *(-p for p in state[8 + len(deep) :]))
 
 
-# What every motion keeps ------------------------------------------------------------------------
+# Conserved quantities ---------------------------------------------------------------------------
 
 
 @every_scene
@@ -116,7 +116,7 @@ def test_reversed_velocities_lead_back(scene):
         time, code = next_event(state, math.inf, law)
         state, times = after_event(state, time, code, law), [*times, time]
     state = reversed_state(scene, state)
-    # The event that has just been is undone at once; the way ends where it began, in mid-flight.
+    # The last event is undone first; the path ends at its first state, in mid-flight.
     for _ in range(number):
         time, code = next_event(state, math.inf, law)
         state = after_event(state, time, code, law)
@@ -150,7 +150,7 @@ def test_a_trajectory_tells_the_same_events_as_the_ensemble(name):
     seen = {event: names[event] for event in (*HOPS, "disc_collision")}
     discs = (1, 2) if scene.identical else (1,)
     for wall in WALLS:
-        # Both walls of an axis count alike, but for those of y in a field.
+        # Both walls of an axis count, except the walls of y in a field.
         axis, side = AXIS[wall], DECLARED[wall].side
         seen[wall] = sum(
             row[5] == f"wall_{axis}{disc}"
@@ -373,7 +373,7 @@ def test_discs_meet_across_the_end_of_a_periodic_axis():
 
 @pytest.mark.parametrize("name", [name for name in SCENES if SCENES[name].conserved])
 def test_the_centre_of_mass_stays_where_momentum_is_conserved(name):
-    """So coordinates stay of the size of the box, however long the run."""
+    """Coordinates therefore stay of the size of the box, in a run of any length."""
     scene = SCENES[name]
     law, state = law_of(scene), start(scene, 6)
     places = []

@@ -27,9 +27,9 @@ GASES = {
 
 @compiled
 def audit(states, passes, law):
-    """Follow the columns of ``states`` for so many passes of one event each.
+    """Follow the columns of ``states`` for a number of passes of one event each.
 
-    Returns the smallest square of a distance, the largest |x| and |y| seen, the largest energy
+    Returns the smallest square of a distance, the largest |x| and |y|, the largest energy
     error, the shortest time of a lane, and the largest momentum along x.
     """
     n, lanes = states.shape[0] // 4, states.shape[1]
@@ -62,7 +62,7 @@ def audit(states, passes, law):
 
 
 def check(scene, events):
-    """All bounds, for so many events."""
+    """All bounds, for a number of ``events``."""
     states = initial.states(scene, LANES, 1)
     law = many.law_of(scene)
     nearest, far_x, far_y, worst, shortest, drift = audit(states, events // LANES, law)

@@ -1,4 +1,4 @@
-"""Hops that follow one another: against a program of its own, exact rates and symmetries.
+"""Hops that follow one another: against another program, exact rates and symmetries.
 
 Statistical comparisons allow five standard errors: with some 40 of them a false alarm comes in
 fewer than 3e-5 of all seeds.
@@ -64,7 +64,7 @@ def test_the_past_is_as_the_future():
 
 @pytest.mark.parametrize("inertia", [None, 0.5])
 def test_odd_clusters_are_what_is_left_of_the_correlation(inertia):
-    """Where hops are so rare that the gap hardly matters, and with a far smaller error."""
+    """Hops are so rare that the gap hardly matters, and the error is far smaller."""
     scene = Scene(1.5, 1.0, 0.249, moment_of_inertia=inertia)
     sizes, _ = passages.cluster_sizes(scene, HOP, 6.0, 64, 6)
     (late,) = by_time(passages.hop_sums(scene, HOP, [6.0], 64, 7)[0])
@@ -158,7 +158,7 @@ def test_blocks_are_what_results_depend_on():
 
 
 def test_hops_in_a_field_are_those_along_y():
-    """A field so weak that nothing else changes; it has a kernel of its own."""
+    """The field is so weak that the results do not change, but it has another kernel."""
     plain, weak = Scene(1.0, 1.5, 0.24), Scene(1.0, 1.5, 0.24, field=1e-9)
     both = [by_time(passages.hop_sums(s, "vertical_hop", TIMES, 256, 12)[0]) for s in (plain, weak)]
     for one, other in zip(*both, strict=True):

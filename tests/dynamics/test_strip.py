@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from twodiscs.comparison import estimates, scores
+from twodiscs.comparison import scores
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.blocks.strata import mean_of
+from twodiscs.points import estimates
+from twodiscs.points.strata import mean_of
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -49,7 +50,7 @@ NECKS = {
     ),
 }
 
-#: Each of them has a kernel of its own that counts, which takes seconds to compile. Two have no
+#: Each of them has another kernel, which takes seconds to compile. Two have no
 #: effect that none of the others has.
 COUNTED = [
     pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in ("balls", "channel") else [])
@@ -233,25 +234,24 @@ def test_only_rare_hops_of_a_neck_have_strips():
 def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
     point = counting.count_events(scene, {hop: 0.01}, 10**8, 1)
-    found = point["strips"][hop]
-    assert point["status"] == {hop: found["status"]} == {hop: "reached"}
-    assert found["events"] < 100 * found["replicas"]
-    mean, error = mean_of(**found["strata"])
-    assert error / mean <= 0.01
-    time = found["duration"] / found["share"] / mean
-    assert abs(time / exact.mean_times(scene)[hop] - 1) < 5 * 0.01
+    found = point.strip(hop)
+    assert point.status == {hop: found.status} == {hop: "reached"}
+    assert found.events < 100 * found.replicas
+    time = point.estimate(hop)
+    assert time.relative_stderr <= 0.01
+    assert abs(time.value / exact.mean_times(scene)[hop] - 1) < 5 * 0.01
     assert point == counting.count_events(scene, {hop: 0.01}, 10**8, 1)
 
 
 def test_a_budget_is_shared_and_spent():
-    scene = PAPER.with_radius(0.24)
-    point = counting.count_events(scene, {"horizontal_hop": 1e-6, "any_wall": 1e-6}, 10**7, 1)
-    assert point["status"] == {"horizontal_hop": "budget", "any_wall": "budget"}
-    parts = counting.CountingRun(scene, point["target"], 10**7, 1).parts
+    scene, hop = PAPER.with_radius(0.24), "horizontal_hop"
+    point = counting.count_events(scene, {hop: 1e-6, "any_wall": 1e-6}, 10**7, 1)
+    assert point.status == {hop: "budget", "any_wall": "budget"}
+    parts = counting.CountingRun(scene, point.target, 10**7, 1).parts
     planned = {name: part.planned * part.block_events for name, part in parts.items()}
-    of_strip = point["strips"]["horizontal_hop"]["events"] / point["events"]
-    assert of_strip == pytest.approx(planned["horizontal_hop"] / sum(planned.values()), rel=0.2)
-    assert 8e6 < point["events"] < 1.02e7
+    of_strip = point.strip(hop).events / point.events
+    assert of_strip == pytest.approx(planned[hop] / sum(planned.values()), rel=0.2)
+    assert 8e6 < point.events < 1.02e7
 
 
 @pytest.mark.parametrize(

@@ -69,9 +69,9 @@ def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
     # It holds at the closest radius: five standard errors.
     scene = box.scene(box.largest_radius * (1 - FOLLOWED))
     found = counting.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
-    mean = found["counts"]["disc_collision"] / found["replicas"] / found["duration"]
+    mean = found.counts["disc_collision"] / found.replicas / found.duration
     assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
-    # Where each disc spans the short side, nothing is lost.
+    # If each disc spans the short side, no digit is lost.
     require_room(Box(3.0, 1.0).scene(0.5 * (1 - 1e-15)))
 
 
@@ -93,10 +93,10 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
 def test_small_discs_on_a_torus_end():
     scene = Box(1.5, 1.0, {"periodic": "xy"}).scene(1e-9)
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
-    _, leaves = passes(scene, found["replicas"] * found["duration"])
+    _, leaves = passes(scene, found.replicas * found.duration)
     block = lockstep.REPLICAS * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
     assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
-    assert found["status"] == {"disc_collision": "budget"}
+    assert found.status == {"disc_collision": "budget"}
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
@@ -114,7 +114,7 @@ def test_starts_that_are_too_rare_are_refused(effects):
     scene = box.scene(box.last_radius * 0.999)
     for start in (lambda: counting.count_events(scene, {"any_wall": 0.1}, 1000, 1),
                   lambda: require_room(scene)):  # fmt: skip
-        with pytest.raises(InputError, match="needs more room"):
+        with pytest.raises(InputError, match="a scene with effects needs"):
             start()
 
 
@@ -131,7 +131,7 @@ ENERGETIC = st.builds(
 @settings(max_examples=60)
 @given(ENERGETIC)
 def test_draws_are_within_the_price_of_a_budget(drawn):
-    """Of any budget: no more than 64 proposals of a start for each of its events, or one block."""
+    """Any budget has at most 64 proposals of a start for each of its events, or one block."""
     width, effects, share = drawn
     try:
         scene = scene_of(width, 1.0, effects, share)
@@ -165,9 +165,9 @@ def test_what_is_too_rare_to_be_drawn_is_waited_for_in_vain_and_that_ends(
     scene = Box(width, height, effects).scene(radius)
     assert strip.rare_hops(scene) == ()
     point = counting.count_events(scene, dict.fromkeys(HOPS, 0.01), 10**6, 1)
-    assert point["status"]["horizontal_hop"] == "budget"
-    assert point["counts"]["horizontal_hop"] == 0
-    assert point["events"] <= 10**6
+    assert point.status["horizontal_hop"] == "budget"
+    assert point.counts["horizontal_hop"] == 0
+    assert point.events <= 10**6
 
 
 def test_a_strip_is_no_longer_than_its_events_allow():

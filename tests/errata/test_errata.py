@@ -1,4 +1,4 @@
-"""The errata: what is said to be wrong is wrong, and what is said to be right instead is right.
+"""The errata: printed formulas that they call wrong are wrong, and their corrections are right.
 
 The verdicts are computed; here they are compared with those found by hand, and formulas and
 measurements are spoilt to see them turn.
@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from fabricated import BOX, Laws, scenes, theory_rows, written
+from factory import BOX, Laws, scenes, theory_rows, written
 from mpmath import mp, mpf
 
 from twodiscs.comparison.tables.mean_times import MeanTimes
@@ -75,7 +75,7 @@ def verdicts():
 
 
 def spoilt(label, change):
-    """Return the verdict on a statement with ``change`` made to what is printed."""
+    """Return the verdict on a statement with ``change`` made to the printed formula."""
     statement = BY_LABEL[label]
     printed = statement.printed
     changed = dataclasses.replace(statement, printed=lambda q: change(printed(q)))
@@ -403,7 +403,7 @@ def test_another_box_leaves_it_to_theory(measured, monkeypatch):
     ],
 )
 def test_errors_in_brackets(value, error, text):
-    assert errata.shown(value, error) == text
+    assert errata.format_value(value, error) == text
 
 
 # The table ----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What the face draws: nothing that was measured is lost, whichever axes it is drawn in."""
+"""Figures of the face: no measured value is lost, in new axes or in the user's."""
 
 import numpy as np
 import pytest

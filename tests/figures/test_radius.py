@@ -1,4 +1,4 @@
-"""Quantities over the radius: what is drawn are the estimates, the exact curves and the laws."""
+"""Quantities over the radius: estimates, exact curves and laws are drawn."""
 
 import numpy as np
 import pytest

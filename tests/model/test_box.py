@@ -54,7 +54,7 @@ def test_the_same_box_is_equal_and_has_the_same_hash_and_parameters(effects):
     assert json.dumps(box.parameters()) == json.dumps(other.parameters())
     assert list(box.effects) == sorted(effects)
     assert list(box.parameters()) == ["effects", "height", "width"]
-    # What is returned is a copy.
+    # The result is a copy.
     box.parameters()["effects"].clear()
     assert box == other
 
@@ -141,7 +141,7 @@ def test_thresholds_with_effects_follow_from_the_geometry(effects, vertical, hor
             inner.add(found)
     assert box.thresholds == tuple(sorted(inner))
 
-    # What is no hop is possible to the last radius.
+    # Events that are no hops are possible up to the last radius.
     last = box.scene(math.nextafter(box.last_radius, 0))
     for event in {*EVENTS} - {*HOPS}:
         expected = box.last_radius if last.is_possible(event) else None

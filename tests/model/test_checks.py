@@ -1,4 +1,4 @@
-"""Checks of plain arguments: what is allowed is returned as it is used, the rest is named."""
+"""Checks of plain arguments: allowed values are returned in their type, others are named."""
 
 import math
 import re
@@ -73,9 +73,9 @@ def test_what_is_allowed_is_returned_in_its_plain_type():
         (check_choice, ("c", ("a", "b")), "x must be one of a, b, not 'c'"),
         (check_ascending, ("12",), "x must be a sequence of numbers, not '12'"),
         (check_ascending, (1.0,), "x must be a sequence of numbers, not 1.0"),
-        (check_ascending, ([],), "x must ascend, and there must be some, not []"),
-        (check_ascending, ([2, 1],), "x must ascend, and there must be some, not [2.0, 1.0]"),
-        (check_ascending, ([1, 1],), "x must ascend, and there must be some, not [1.0, 1.0]"),
+        (check_ascending, ([],), "x must ascend and must not be empty, not []"),
+        (check_ascending, ([2, 1],), "x must ascend and must not be empty, not [2.0, 1.0]"),
+        (check_ascending, ([1, 1],), "x must ascend and must not be empty, not [1.0, 1.0]"),
         (check_ascending, ([0, 1],), "x must be a positive, finite number, not 0.0"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, SHELLS, WALLS, Event, by_kind
 from twodiscs.model.scene import Scene
 
-#: What published tables have, in the order of their columns.
+#: The names in published tables, in the order of their columns.
 PUBLISHED = (
     Event("vertical_hop", "hop", "y"),
     Event("horizontal_hop", "hop", "x"),

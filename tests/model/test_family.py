@@ -1,4 +1,4 @@
-"""Families: the same names on every floor, one sentence for what is missing, edits for one each."""
+"""Families: the same names on every floor, one sentence for missing ones, edits for one family."""
 
 import shutil
 from importlib import import_module

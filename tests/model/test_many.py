@@ -1,4 +1,4 @@
-"""N discs: what is accepted, where they fit, and what they are called."""
+"""N discs: valid scenes, the largest radius, and their texts."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""The grid of radii: where its points lie; keys and seeds: what they depend on."""
+"""The grid of radii: its points; keys and seeds: their dependence on the arguments."""
 
 import itertools
 

@@ -80,7 +80,7 @@ def test_a_scene_is_frozen_and_holds_floats():
 
 
 def test_a_copy_is_the_same_whatever_was_asked_before():
-    """What is cached does not show in a pickle, by which libraries tell arguments apart."""
+    """Cached values are not in a pickle, by which libraries compare arguments."""
     scene = Scene(1.5, 1.0, 0.25, periodic="x")
     new = pickle.dumps(scene)
     assert scene.axes

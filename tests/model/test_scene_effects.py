@@ -1,4 +1,4 @@
-"""What scenes with effects say of themselves, against a configuration space made of cells.
+"""Properties of scenes with effects, against a configuration space made of cells.
 
 Centres are put on a grid, cells that overlap or lack energy are thrown out, and neighbours are
 joined. The scenes are some way off every threshold, for a grid to see it.
@@ -114,7 +114,7 @@ def test_components(scene):
 def test_confined(scene):
     """Disc 1 reaches a far wall from the other side of disc 2 unless the scene says it is confined.
 
-    Where the hop is open all starts get there.
+    If the hop is open, all starts get there.
     """
     for axis, confined in zip("xy", scene.confined, strict=True):
         if axis in scene.periodic:
@@ -157,7 +157,9 @@ def test_walls_that_are_reached(scene):
 )
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_largest_radius(periodic, width, ratio, depth):
-    check_largest_radius(Scene(width, 1.0, 1e-6, depth, radius_ratio=ratio, periodic=periodic))
+    check_largest_radius(
+        Scene(width, 1.0, 1e-6, depth=depth, radius_ratio=ratio, periodic=periodic)
+    )
 
 
 @pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
@@ -242,7 +244,7 @@ def test_energy_to_pass_one_above_the_other_is_that_of_the_cheaper_order():
 
 @pytest.mark.parametrize("scene", effect_scenes.SCENES.values(), ids=effect_scenes.SCENES)
 def test_the_motion_has_the_lengths_of_the_theory(scene):
-    """The motion takes doubles and the theory fractions, from properties of their own."""
+    """The motion takes doubles and the theory fractions, from different properties."""
     assert scene.contact_distance == pytest.approx(float(scene.exact_contact), rel=1e-15)
     law = law_of(scene)
     for axis in scene.walled:

@@ -58,7 +58,7 @@ CASES = {
 
 @pytest.fixture
 def place(monkeypatch):
-    """Return a function that reads packages from a folder, or forgets what was read."""
+    """Return a function that reads packages from a folder, or clears its cache."""
 
     def look_at(folder):
         monkeypatch.setattr(sources, "ROOT", folder)
@@ -162,7 +162,7 @@ class Table:
 def empty(): "Nothing."
 '''
 
-#: Edits of ``TEXT``: what is replaced, and by what.
+#: Edits of ``TEXT``: the old text and the new one.
 NO_CODE = [
     ("# at most", ""),
     ("# at most", "# at least 'this'"),
@@ -300,7 +300,7 @@ def test_fingerprints_are_the_same_for_another_version_of_python():
 
 
 def test_what_python_really_imports_is_listed():
-    """A second method: import a module in a fresh interpreter and look at what was loaded."""
+    """A second method: import a module in a new interpreter and list the loaded modules."""
     code = (
         "import sys, twodiscs.dynamics.counting\n"
         "print(*(m.__file__ for n, m in sys.modules.items() if n.split('.')[0] == 'twodiscs'))"

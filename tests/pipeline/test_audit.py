@@ -3,9 +3,9 @@
 import json
 
 import pytest
-from fabricated import BOX, command
+from commands import command
+from factory import BOX
 
-from twodiscs.comparison.digests import write_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.jobs.point import monte_carlo
@@ -39,7 +39,7 @@ def results(tmp_path, monkeypatch):
     for key, radius in scene.keys["monte_carlo"].items():
         run = monte_carlo(BOX.scene(radius), **scene.arguments("monte_carlo", radius))
         points.append(run.run())
-        write_json(own / "points" / "monte_carlo" / f"{key}.json", points[-1])
+        points[-1].write(own / "points" / "monte_carlo" / f"{key}.json")
     theory = SCENE_TABLES["theory"].rows(BOX, scene.radii)
     given = {"box": BOX, "theory": theory, "areas": [], "points": {"monte_carlo": points}}
     given["points"] |= {"dynamics": [], "intervals": []}

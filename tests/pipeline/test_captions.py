@@ -1,4 +1,4 @@
-"""Captions say what the tables of their figures call for."""
+"""Captions explain the contents of the tables of their figures."""
 
 import pytest
 
@@ -25,7 +25,7 @@ SCENE = {"name": "one", "width": 1.5, "height": 1.0}
 def test_marks_are_explained_where_a_row_calls_for_them(
     name, table, row, other, sentence, tmp_path
 ):
-    """In its own scene, and of what the figure shows."""
+    """For its scene, and for the quantities in the figure."""
     entry = ENTRIES[name]
     path = tmp_path / ("" if table in STUDY_TABLES else "one") / f"{table}.csv"
     path.parent.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""The configuration: what it yields, what each job depends on, one sentence for each mistake."""
+"""The configuration: its requests, the parameters of each job, one sentence for each mistake."""
 
 import math
 import re
@@ -34,7 +34,7 @@ def one(**keys):
     return request
 
 
-# What comes with the repository
+# Files of the repository
 
 
 def test_the_default_configuration():
@@ -221,11 +221,11 @@ def test_included_radii_do_not_move_the_others():
     assert more.radii == tuple(sorted({*plain.radii, 0.123}))
 
 
-# What a job depends on
+# Parameters of jobs
 
 
 def jobs(request):
-    """What every job of a scene depends on, beside the box, by job."""
+    """The parameters of every job of a scene, beside the box, by job."""
     every = {(table,): request.exact_radii(table) for table in ("theory", "grid")}
     every["trajectory",] = {
         "radius": request.quantities.trajectory,
@@ -289,7 +289,7 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
 #: The events that have a place with walls along x or y only.
 ALONG = {axis: tuple(e for e in EVENTS if AXIS.get(e, axis) == axis) for axis in "xy"}
 
-#: What a scene may ask for, the events that have a place in it, and its hop histograms' radii.
+#: Quantities of a scene, the events that exist in it, and the radii of its hop histograms.
 CALLS = [
     ({"radius_ratio": 0.5, "mass_ratio": 2}, EVENTS, (0.05, 0.15, 0.25, 0.35)),
     ({"periodic": ["x"]}, ALONG["y"], (0.0375, 0.112, 0.188, 0.262)),
@@ -350,7 +350,7 @@ def test_effects_that_are_absent_leave_no_trace(effects):
     assert one(effects=effects).effects == {}
 
 
-# What is built once
+# Files that are built once
 
 
 def test_what_is_built_once():
@@ -359,7 +359,7 @@ def test_what_is_built_once():
     assert load.load(read(ROOT / "config/config.yaml")).shared == tuple(known)
     assert load.load(PLAIN | {"shared": []}).shared == ()
     assert load.load(PLAIN | {"shared": ["report", "errata"]}).shared == ("errata", "report")
-    # The manuscript brings along what it reads.
+    # The manuscript adds the studies that it reads.
     paper = load.load(PLAIN | {"shared": ["paper"]}).shared
     left = {name for name, study in STUDIES.items() if not study.shared} | {"report"}
     assert paper == tuple(name for name in known if name not in left)
@@ -374,7 +374,7 @@ def test_what_is_about_a_plain_scene_needs_one():
     alone = load.load({"scenes": [field]})
     assert alone.main is None
     assert alone.shared == ("report",)
-    with pytest.raises(load.ConfigError, match="shared must leave out 'tails' where every scene"):
+    with pytest.raises(load.ConfigError, match="shared must leave out 'tails' if every scene"):
         load.load({"scenes": [field], "shared": ["report", "tails"]})
 
 
@@ -399,8 +399,8 @@ FILES = {
     "a: !!bool x": ", line 1: 'x' cannot be read: …",
     'a: "\\Uffffffff"': ": …",
     "\na: " + "9" * 5000: ", line 2: a value must have at most 1000 letters",
-    "a: &a [1, *a]": ", line 1: an alias must not stand within what it stands for",
-    "a: &a {b: *a}": ", line 1: an alias must not stand within what it stands for",
+    "a: &a [1, *a]": ", line 1: an alias must not stand within its own anchor",
+    "a: &a {b: *a}": ", line 1: an alias must not stand within its own anchor",
     "a: *b": ", line 1: found undefined alias 'b'",
     "a: " + "[" * 1000: ", line 1: there must be at most 32 blocks within blocks",
     "a0: &a0 [1]\n"
@@ -457,7 +457,7 @@ SCENES = {
     "radii: [0.1, 0.2, 1e-1]": ".radii must hold every radius once, but holds 0.1 twice",
     "radius: [0.1]": " has an unknown key 'radius'; did you mean 'radii'?",
     "radii: {smallest: 0.4}": ".radii.smallest: radius 0.4 does not fit: …",
-    "radii: {smallest: 0.25}": ".radii: smallest must not be 0.25, where a hop becomes blocked",
+    "radii: {smallest: 0.25}": ".radii: smallest must not be 0.25, at which a hop becomes blocked",
     "radii: {step: 1}": ".radii has an unknown key 'step'; its keys are smallest, count, include",
     "watch: {}": ".watch must ask for at least one of volume, …, not for nothing",
     "watch: {volumes: true}": ".watch has an unknown key 'volumes'; did you mean 'volume'?",
@@ -472,7 +472,7 @@ SCENES = {
     "effects: {periodic: [w]}": ".effects.periodic[0] must be an axis (x, y, z), not 'w'",
     "effects: {periodic: [z]}": ".effects: periodic must be … axes x and y (z needs a depth), …",
     "effects: {field: 1e-70}": ".effects: field must lie between 1e-60 and 1e60, not 1e-70",
-    "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 where y is periodic, …",
+    "effects: {field: 1, periodic: [y]}": ".effects: field must be 0 if y is periodic, …",
     "accuracy: papper": ".accuracy must be … a preset (draft, paper, reference), …, not 'papper'",
     "accuracy: {rihgt_wall: 1}": ".accuracy has an unknown key 'rihgt_wall'; did you mean …?",
     "event_budget: 2.5": ".event_budget must be an integer from 1 to 1e15, not 2.5",
@@ -487,22 +487,22 @@ TOGETHER = {
         ".effects: moment_of_inertia must be left out in a box with a depth …, not 0.4"
     ),
     ("effects: {periodic: [x]}", "watch: {mean_times: [vertical_hop, horizontal_hop]}"): (
-        ".watch.mean_times must keep to what has a place in the scene, "
+        ".watch.mean_times must hold events of this scene, "
         f"{', '.join(ALONG['y'])}, not 'horizontal_hop'"
     ),
     ("effects: {periodic: [x]}", "watch: {hop_histogram: {event: horizontal_hop}}"): (
-        ".watch.hop_histogram.event must have a place in the scene, as vertical_hop has, not "
+        ".watch.hop_histogram.event must be a hop of this scene, such as vertical_hop, not "
         "'horizontal_hop'"
     ),
     ("effects: {periodic: [x, y]}", "watch: {hop_histogram: true}"): (
-        ".watch.hop_histogram must be false, for on periodic axes hops have no place"
+        ".watch.hop_histogram must be false, because on these periodic axes discs cannot hop"
     ),
     ("effects: {periodic: [x, y]}", "watch: {trajectory: 0.1}"): (
-        ".watch.trajectory must be false, for on periodic axes hops have no place"
+        ".watch.trajectory must be false, because on these periodic axes discs cannot hop"
     ),
     ("effects: {moment_of_inertia: 0.5}", "watch: {hop_histogram: [0.1]}"): (
-        ".watch.hop_histogram must be false, for rough discs in a box are not ergodic and their "
-        "intervals have no exact mean; watch mean_times instead"
+        ".watch.hop_histogram must be false, because rough discs in a box are not ergodic and "
+        "their intervals have no exact mean; watch mean_times instead"
     ),
     ("effects: {field: 2}", "watch: {hop_histogram: {event: horizontal_hop, radii: [0.2]}}"): (
         ".watch.hop_histogram must keep to radii below 0.125, where horizontal_hop is possible, "
@@ -515,8 +515,8 @@ TOGETHER = {
         ".radii: unequal discs in a field need room and energy to pass each other …"
     ),
     ("effects: {field: 1}", "radii: [0.1, 0.378]"): (
-        ".radii: radius 0.378 leaves the discs …e-05 of the prism of all places with "
-        "field 1.0, and at least 0.0001 of it is needed"
+        ".radii: with field 1.0, radius 0.378 leaves the discs …e-05 of all positions, "
+        "and at least 0.0001 is needed"
     ),
     ("effects: {radius_ratio: 2}", "radii: {smallest: 0.24}"): (
         ".radii: smallest must be below 0.225…, not 0.24"

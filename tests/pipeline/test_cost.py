@@ -27,7 +27,7 @@ def test_a_limit_is_above_the_price(stage):
 
 @pytest.mark.parametrize("radius", [0.24, 0.24999975, 0.3])
 def test_a_limit_is_above_the_price_of_a_job_whose_budget_ends_it(radius):
-    """Of one that waits for hops in a strip alone, too, whose events are dear."""
+    """This holds for a job that only has hops in a strip, too, whose events cost more."""
     for budget in (1e8, 1e9, 5e9, 2e10, 9e10):
         for watched in (["horizontal_hop"], ["horizontal_hop", "top_wall"]):
             request = scene(accuracy=1e-8, event_budget=budget, watch={"mean_times": watched})

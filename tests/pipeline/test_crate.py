@@ -5,10 +5,11 @@ import warnings
 
 import pytest
 from checkout import REPOSITORY
-from fabricated import BOX, command
+from commands import command
+from factory import BOX
 
 from twodiscs.arguments import box_arguments
-from twodiscs.comparison.digests import digest
+from twodiscs.points.digests import digest
 from twodiscs_paper.pipeline.documents import crate
 from twodiscs_paper.pipeline.jobs import figure, table
 

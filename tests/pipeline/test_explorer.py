@@ -1,4 +1,4 @@
-"""The explorer: its formulas are those of the package, and its page counts what they say."""
+"""The explorer: its formulas are those of the package, and its counts agree with them."""
 
 import itertools
 import json
@@ -26,7 +26,7 @@ PARTS = [path for path in SOURCES.rglob("*") if path.is_file()]
 EXPECTED = REPOSITORY / "paper" / "expected" / "paper"
 TABLES = [EXPECTED / f"{name}.csv" for name in ("volume", "areas", "mean_times")]
 
-#: What the report says of the scenes; the one with an effect is not for the explorer.
+#: The scenes in the report; the explorer leaves out the one with an effect.
 SCENES = [
     {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}},
     {"name": "torus", "width": 1.0, "height": 1.0, "effects": {"periodic": "xy"}},
@@ -232,7 +232,7 @@ def test_the_same_seed_gives_the_same_counts_and_more_runs_a_smaller_error(drive
 
 
 def test_scores_scatter_by_one(driven):
-    """The sum of squares of 40 scores of seeds of their own: χ² with a false alarm of 1e-6."""
+    """The sum of squares of 40 scores with different seeds: χ² with a false alarm of 1e-6."""
     page = driven("runs=0")
     scores = page.look(
         "Array.from({length: 40}, (_, seed) => {"
@@ -344,7 +344,7 @@ def test_sliders_are_moved_by_keys_and_everything_begins_anew(driven):
     page.press("End")
     box = Box(1.5, 1)
     assert 0.99 * box.largest_radius < page.look("state.radius") < box.largest_radius
-    assert page.look("at('said').textContent").startswith(
+    assert page.look("at('explanation').textContent").startswith(
         "In this box discs of this radius make no"
     )
     page.look("at('width').focus()")
@@ -525,15 +525,15 @@ def test_the_cursor_reads_the_exact_times_and_the_histogram(driven):
     page = driven("radius=0.2&seed=7&runs=500")
     counted(page, 500)
     page.look("timesPlot.look(timesPlot.at(0.3, 1)[0])")
-    said = page.look("timesPlot.said.value")
+    readout = page.look("timesPlot.readout.value")
     times = exact.mean_times(Box(1.5, 1).scene(0.3))
-    assert said.startswith("r = 0.3: ")
-    assert f"{times['disc_collision']:.4g}" in said
-    assert "horizontal hops never" in said
+    assert readout.startswith("r = 0.3: ")
+    assert f"{times['disc_collision']:.4g}" in readout
+    assert "horizontal hops never" in readout
     page.look("intervalsPlot.look(intervalsPlot.at(1.01, 1)[0])")
-    assert f"exponential {math.exp(-1.01):.3g}" in page.look("intervalsPlot.said.value")
+    assert f"exponential {math.exp(-1.01):.3g}" in page.look("intervalsPlot.readout.value")
     page.look("[timesPlot, intervalsPlot].forEach(plot => plot.look(NaN))")
-    assert page.look("timesPlot.said.value + intervalsPlot.said.value") == ""
+    assert page.look("timesPlot.readout.value + intervalsPlot.readout.value") == ""
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The forecast: events as they will be, sums that add up, and what it says."""
+"""The forecast: the numbers of events, sums that add up, and its text."""
 
 import json
 import sys
@@ -28,20 +28,20 @@ def run(radius, accuracy, budget=10**9, events=EVENTS, discs=2, **effects):
 def test_events_are_those_of_the_job(radius, accuracy):
     """Within a half either way: the pilot is the first blocks of the job."""
     work = run(radius, accuracy, budget=10**8)
-    assert 1 / 1.5 < work.run()["events"] / forecast.pilot(work).events < 1.5
+    assert 1 / 1.5 < work.run().events / forecast.pilot(work).events < 1.5
 
 
 def test_a_scene_with_effects_is_forecast():
     work = run(0.2, 2e-3, 10**8, ["disc_collision"], periodic="xy")
-    assert 1 / 1.5 < work.run()["events"] / forecast.pilot(work).events < 1.5
+    assert 1 / 1.5 < work.run().events / forecast.pilot(work).events < 1.5
 
 
 @pytest.mark.parametrize("radius", [0.1, 0.26])
 @pytest.mark.parametrize("discs", [3, 4])
 def test_more_discs_are_forecast(discs, radius):
-    """The price does not need an exact value, but for the start of what is known of four discs."""
+    """The price does not need an exact value, except for the first guess for four discs."""
     work = run(radius, 1e-2, 10**8, ["disc_collision", "top_wall"], discs=discs)
-    assert 1 / 1.5 < work.run()["events"] / forecast.pilot(work).events < 1.5
+    assert 1 / 1.5 < work.run().events / forecast.pilot(work).events < 1.5
     block = {"discs": discs, "radii": [radius], "watch": {"mean_times": True, "volume": True}}
     asked = scene(**block, accuracy="draft", monte_carlo={"samples": 1e5})
     assert 1e-4 < cost.seconds(asked, "dynamics", radius) < 100

@@ -23,10 +23,10 @@ CODE = re.compile(
     rf"|#?[\w.-]+\((?:[^()\[]|\([^()\[]*\))*\)|\b{ARGUMENTS}: (?:\([^()]*\)|[^,\n]+)",
     re.M,
 )
-#: Digits of a name, and of what is so by definition.
+#: Digits of a name, and of definitions.
 DEFINED = r"\b[Dd]isc\s[12]\b|\bnominal 95 per cent\b"
 
-# What is typed ------------------------------------------------------------------------------------
+# Typed numbers ------------------------------------------------------------------------------------
 
 
 def typed_numbers(source):
@@ -56,36 +56,31 @@ def test_typed_numbers_are_found(markup, found):
     assert typed_numbers(markup) == found
 
 
-def test_every_number_is_printed_by_its_name():
-    """2^22 hops is how long a run was that no build makes."""
-    assert typed_numbers(SOURCE[SOURCE.index("= Introduction") :]) == ["2^22"]
-
-
 #: Words that state a size, with up to two words before them.
 SIZE = re.compile(
     r"(?:[\w#]+ ){0,2}(?<!# )\b(?:hundred(?: times)?|thousand\w*|million\w*|thirteen|octaves"
-    r"|one third|fifths|per cent|eight times|such times)\b"
+    r"|one third|fifths|per cent"
+    r"|(?:two|three|four|five|six|seven|eight|ten|twenty) (?:mean|such) times"
+    r")\b"
 )
-#: Results of runs that no build makes: they are to become numbers of a long run.
-BY_HAND = "a result typed by hand"
 #: The sizes that are typed, and why.
 TYPED_SIZES = {
+    "are above one third": "the exponent of the law",
     "in a thousand": "the level of a test",
     "last two fifths": "which bins are late, by definition",
     "it to thirteen": "the tolerance of a test",
-    "after six such times": BY_HAND,
-    "of a thousandth": BY_HAND,
-    "out to eight times": BY_HAND,
     "of a hundred": "two digits at the power one half",
-    "of a hundred times": BY_HAND,
-    "nearly three per cent": BY_HAND,
     "last four octaves": "which distances are fitted, by definition",
     "the last octaves": "which distances are fitted, by definition",
-    "to a millionth": BY_HAND,
-    "have one third": BY_HAND,
-    "within three per cent": BY_HAND,
-    "a few per cent": BY_HAND,
+    "everything beyond four mean times": "where a fit begins, by definition",
+    "falls after four mean times": "where a fit begins, by definition",
+    "fitted from four mean times": "where a fit begins, by definition",
     "nominal 95 per cent": "the level of an interval",
+}
+#: Numbers of two digits and more in formulas within a line, and why they are typed.
+TYPED_IN_FORMULAS = {
+    r"chevron.l v^2 chevron.r \/ chevron.l abs(v) chevron.r = 3 pi \/ 16": "a mean, exact",
+    "c = 20 tau": "where a time is cut, by definition",
 }
 
 
@@ -95,9 +90,30 @@ def typed_sizes(source):
     return {match[0] for match in SIZE.finditer(re.sub(r"\s+", " ", text))}
 
 
+def typed_in_formulas(source):
+    """Return the formulas within lines of Typst markup that have a number of two or more digits."""
+    formulas = re.findall(r"\$([^$\s](?:[^$\n]*[^$\s])?)\$", re.sub(r"//.*", "", source))
+    return {formula for formula in formulas if re.search(r"(?<![\d.\w^(])\d{2,}", formula)}
+
+
+TEXT = SOURCE[SOURCE.index("#place(top + center") :]
+
+
+def test_every_number_is_printed_by_its_name():
+    assert typed_numbers(TEXT) == []
+
+
 def test_sizes_in_words_have_a_reason():
-    found = typed_sizes(SOURCE[SOURCE.index("= Introduction") :])
-    assert found == {*TYPED_SIZES}
+    assert typed_sizes('over four mean times, a few per cent at #number("n") mean times') == {
+        "over four mean times",
+        "a few per cent",
+    }
+    assert typed_sizes(TEXT) == {*TYPED_SIZES}
+
+
+def test_numbers_of_formulas_have_a_reason():
+    assert typed_in_formulas("At $tau = 31$ and $x^12 (45)$:\n$ 16 r $") == {"tau = 31"}
+    assert typed_in_formulas(TEXT) == {*TYPED_IN_FORMULAS}
 
 
 def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_of():

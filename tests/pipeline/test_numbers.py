@@ -1,4 +1,4 @@
-"""The numbers of the manuscript: how they are rounded, and that they are what the tables say."""
+"""The numbers of the manuscript: how they are rounded, and that they agree with the tables."""
 
 import math
 import re
@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twodiscs.comparison.digests import read_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
+from twodiscs.points.digests import read_json
+from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
@@ -30,6 +31,13 @@ SCENES = [
     for name, width in (("paper", 1.5), ("long", 3.0))
 ]
 GIVEN = {MAIN: "paper", FIRST_HOP: "horizontal_hop"}
+
+#: The tables that no build makes.
+LONG_RUNS = {
+    "long_run": PAPER / "long_run" / "far" / "mean_times.csv",
+    "long_passages": PAPER / "long_run" / "passages" / "passages.csv",
+    "long_tails": PAPER / "long_run" / "tails" / "tails.csv",
+}
 
 #: Tables with seconds in them.
 NOT_KEPT = ("cost", "accuracy_cost")
@@ -82,7 +90,7 @@ def test_bounds_hold_and_are_tight():
         assert up - down <= 0.1001 * down
 
 
-# What a number takes ------------------------------------------------------------------------------
+# Arguments of a number ----------------------------------------------------------------------------
 
 ROWS = {
     "tails": [
@@ -198,6 +206,7 @@ def test_cells_are_those_of_lines():
         (texts.PLURALS, [["vertical_hop", "horizontal_hop"]], "vertical hops and horizontal hops"),
         (texts.NUMBER_WORDS, [[8, 4, 4]], "four and eight"),
         (texts.QUOTIENT, [[0.1, 0.0125]], "$8$"),
+        (texts.SPREAD, [[(0.1, 2.0), (0.2, 5.0), (0.1, 2.1), (0.2, 5.0)]], "$5$"),
         (texts.OTHERS, [[-3.3, 1.0, 2.01]], "$2.1$"),
         (texts.OVERLAP, [[-3e-16, 1e-3]], "$3 times 10^(-16)$"),
         (texts.FAILED, [[True, False, True]], "1"),
@@ -231,6 +240,7 @@ def test_formats_of_one_number(form, values, text):
 
 def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used():
     used = {*re.findall(r'(?:number|has)\("(\w+)"\)', SOURCE)}
+    used |= {*re.findall(r"\bours: (\w+)", (PAPER / "published.yaml").read_text())}
     names = Counter(one.name for one in declared.NUMBERS)
     assert {*names} | {*CONSTANTS, "seed"} == used
     assert max(names.values()) == 1
@@ -243,7 +253,7 @@ def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used():
     ids=lambda one: one.name,
 )
 def test_a_number_is_of_a_table_and_of_columns_that_there_are(one):
-    kept = TABLES["mean_times" if one.table == "long_run" else one.table].columns().keys()
+    kept = (TABLES | table.LONG_RUNS)[one.table].columns().keys()
     if one.table in SCENE_TABLES:
         kept |= {"scene", "width", "height"}
     columns = {one.columns} if isinstance(one.columns, str) else {*one.columns}
@@ -263,8 +273,8 @@ def expected():
                 tables[name] += [start | row for row in TABLES[name].read(path)]
         else:
             tables[name] = TABLES[name].read(PAPER / "expected" / f"{name}.csv")
-    tables["long_run"] = MeanTimes.read(PAPER / "long_run" / "mean_times.csv")
-    return tables
+    paths = LONG_RUNS.items()
+    return tables | {name: table.LONG_RUNS[name].read(path) for name, path in paths}
 
 
 @pytest.mark.parametrize("one", declared.NUMBERS, ids=lambda one: one.name)
@@ -373,7 +383,9 @@ def test_tables_are_read_from_the_folders_of_scenes_and_from_that_of_all(tmp_pat
         rows = [TABLES[name].empty(radius=0.1)] if name == "grid" else []
         TABLES[name].write(own / f"{name}.csv", rows)
     found = table.read(tmp_path, SCENES[:1])
-    assert found.keys() == {*table.OF_SCENES, *table.OF_STUDIES, "long_run"}
+    assert found.keys() == {*table.OF_SCENES, *table.OF_STUDIES, *table.LONG_RUNS}
+    assert not any(found[name] for name in table.LONG_RUNS)
+    assert all(table.read(tmp_path, SCENES[:1], LONG_RUNS)[name] for name in table.LONG_RUNS)
     (row,) = found["grid"]
     assert (row["scene"], row["width"], row["radius"]) == ("paper", 1.5, 0.1)
     (tmp_path / "errata.csv").write_text("nothing\n")
@@ -394,10 +406,10 @@ def test_numbers_become_rows_of_a_table(expected, tmp_path):
 
 
 def test_the_long_run_is_what_its_shards_counted_and_agrees():
-    folder = Path(__file__).resolve().parents[2] / "paper" / "long_run"
+    folder = PAPER / "long_run" / "far"
     scene = load(read(folder / "config.yaml")).scenes[0]
-    point = read_json(folder / "dynamics.json")
-    assert point["radius"] == scene.radii[0]
+    point = DynamicsPoint.read(folder / "dynamics.json")
+    assert point.radius == scene.radii[0]
     theory = list(Theory.rows(scene.box, scene.radii))
     made = MeanTimes.rows(scene.box, theory, {"dynamics": [point]})
     kept = MeanTimes.read(folder / "mean_times.csv")
@@ -407,8 +419,8 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
         assert ours["estimate"] == pytest.approx(theirs["estimate"], rel=1e-12)
         assert abs(ours["z"]) < 5  # ten scores: a false alarm in 2e5 seeds
     shards = [read_json(path) for path in folder.glob("shards/all-*.json")]
-    used = [shard for shard in shards if shard["stop"] * REPLICAS <= point["replicas"]]
-    assert sum(shard["stop"] - shard["first"] for shard in used) * REPLICAS == point["replicas"]
+    used = [shard for shard in shards if shard["stop"] * REPLICAS <= point.replicas]
+    assert sum(shard["stop"] - shard["first"] for shard in used) * REPLICAS == point.replicas
     counted = [sum(counts) for counts in zip(*(shard["sums"][0] for shard in used), strict=True)]
-    # What was declared later was not counted.
-    assert counted == [point["counts"][event] for event in EVENTS if event in point["counts"]]
+    # Events that were declared later were not counted.
+    assert counted == [point.counts[event] for event in EVENTS if event in point.counts]

@@ -1,4 +1,4 @@
-"""Where results come from."""
+"""The provenance of results."""
 
 import re
 import subprocess

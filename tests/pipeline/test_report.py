@@ -37,7 +37,7 @@ def test_rules_stand_beneath_those_that_they_read():
     heights = {name: y for name, (_, y) in graph["rules"].items()}
     assert heights["two_dynamics"] < heights["table"] < heights["paper"] < graph["height"]
     places = graph["rules"]
-    # What a chain of others says is left out.
+    # An arrow is left out if a chain of others replaces it.
     chain = [("table", "paper"), ("two_dynamics", "table")]
     assert sorted(graph["arrows"]) == sorted((places[a], places[b]) for a, b in chain)
 

@@ -1,4 +1,4 @@
-"""Where the time of a build goes, from the files that Snakemake writes."""
+"""The times of the jobs of a build, from the files that Snakemake writes."""
 
 import pytest
 

@@ -28,9 +28,9 @@ def words(text):
 
 
 def same(shown, found):
-    """Say whether texts agree, but for the last digits of exact numbers and of what is rounded.
+    """Return whether texts agree, except the last digits of exact and of rounded numbers.
 
-    Those depend on the math library; what is simulated does not.
+    Those depend on the math library; simulated numbers do not.
     """
     pairs = zip(words(shown), words(found), strict=True)
     return all(

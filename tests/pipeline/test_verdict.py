@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fabricated import command
+from commands import command
 
-from twodiscs.comparison import estimates, scores
+from twodiscs.comparison import scores
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.dynamics import counting
+from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
 from twodiscs_paper.catalogue import STUDY_TABLES
 from twodiscs_paper.pipeline.configuration.load import load
@@ -71,18 +72,22 @@ def is_mean(row):
 (COLLISIONS,) = filter(collides, PAPER)
 BOUND = COLLISIONS["bound"]
 DAMAGES = {
-    "no answer": (changed(lambda row: True, passed=None), "the table says not compared; so it is"),
+    "no answer": (
+        changed(lambda row: True, passed=None),
+        "the table says not compared; the same holds",
+    ),
     "one answer": (changed(collides, passed=False), "the table says not passed"),
     "no score": (changed(collides, z=None), "is not compared, but the table says passed"),
     "no score, no answer": (
-        changed(collides, z=None, passed=None, bound=None), f"has the bound {BOUND}, but of ",
+        changed(collides, z=None, passed=None, bound=None),
+        f"has the bound {BOUND}, but the bound of ",
     ),
     "z = 99": (changed(collides, z=99.0), "by dynamics has z = 99, beyond the bound"),
     "z = 99, wide bounds": (
         changed(collides, z=99.0, bound=1e9), "by dynamics has z = 99, beyond the bound",
     ),
     "infinite": (changed(collides, z=math.inf), "by dynamics has z = inf, beyond the bound"),
-    "a bound": (changed(collides, bound=9.0), "has the bound 9.0, but of "),
+    "a bound": (changed(collides, bound=9.0), "has the bound 9.0, but the bound of "),
     "an estimate": (
         changed(collides, estimate=COLLISIONS["exact"] + 9 * COLLISIONS["stderr"]),
         "but its estimate is 9 standard errors off",
@@ -94,11 +99,11 @@ DAMAGES = {
     "a sign": (
         changed(lambda row: abs(row["z"]) > 2 and row["radius"], z=-2.5), "standard errors off",
     ),
-    "twice": ([*PAPER[:9], *PAPER], "is there twice, and so are 8 more"),
-    "all twice": ([*PAPER, *PAPER], "is there twice, and so are 803 more"),
+    "twice": ([*PAPER[:9], *PAPER], "is duplicated, and so are 8 more"),
+    "all twice": ([*PAPER, *PAPER], "is duplicated, and so are 803 more"),
     "a row less": ([row for row in PAPER if not collides(row)], "at radius 0.1 is missing"),
     "another radius": (changed(collides, radius=0.1234), "at radius 0.1 is missing"),
-    "no radius": (changed(collides, radius=None), "at radius None is not asked for"),
+    "no radius": (changed(collides, radius=None), "at radius None is not requested"),
     "a mean": (changed(is_mean, z=0.0), "over all radii by conditioned has z = 0.0, but by the "),
     "a mean less": ([row for row in PAPER if not is_mean(row)], "has z = None, but by the other"),
     "no statement on all radii": (PAPER[:LOCAL], "over all radii by monte_carlo has z = None"),
@@ -307,7 +312,7 @@ def test_scores_of_a_study_are_compared_with_its_estimates(name):
         bad = [*rows[:i], rows[i] | {"z": z}, *rows[i + 1 :]]
         (sentence,) = verdict.study_failures(bad)
         assert said in sentence
-    assert any("is there twice" in said for said in verdict.study_failures([*rows, *rows]))
+    assert any("is duplicated" in said for said in verdict.study_failures([*rows, *rows]))
     for nothing in ([], [row | {"z": None} for row in rows]):
         assert [*verdict.study_failures(nothing)] == ["nothing is compared"]
 

@@ -1,4 +1,4 @@
-"""Verification: what differs from what is committed is found, whatever it is, and nothing else."""
+"""Verification: it finds every difference from the committed results, and nothing else."""
 
 import hashlib
 import json
@@ -7,9 +7,10 @@ import shutil
 from pathlib import Path
 
 import pytest
+from factory import bins_point, hits_point
 
-from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.comparison.tables.monte_carlo import Areas
+from twodiscs.points.digests import read_json, write_json
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
@@ -39,19 +40,13 @@ CONFIGURATION = {
 
 def area(radius, **changes):
     """Return a row of areas.csv with plausible values."""
-    row = {
+    return Areas.empty(
         **{"radius": radius, "quantity": "right_wall_area", "method": "monte_carlo"},
+        **{"samples": 1 << 20, "hits": 4321, "epsilon": 0.1, "status": "sampled", "test": "normal"},
+    ) | {
         **{"exact": 0.4 - radius, "estimate": 0.41 - radius, "stderr": 1e-4, "z": 0.0123},
-        **{"samples": 1 << 20, "hits": 4321, "epsilon": 0.001, "expectation": 0.40001 - radius},
-        **{"bias": 1e-5, "status": "sampled", "test": "normal"},
+        **{"expectation": 0.40001 - radius, "bias": 1e-5, **changes},
     }
-    return row | changes
-
-
-def sampled(radius):
-    """Return the point that such a row could come from."""
-    part = {"hits": 4321, "measure": 97.7, "epsilon": 0.001}
-    return {"radius": radius, "samples": 1 << 20, "quantities": {"right_wall_area": part}}
 
 
 @pytest.fixture
@@ -60,12 +55,12 @@ def results(tmp_path):
     folder = tmp_path / "results"
     points = folder / "small" / "points"
     for method, found in {
-        "monte_carlo": [sampled(0.1), sampled(0.24)],
-        "intervals": [{"radius": 0.1, "bin_width": 0.125, "counts": [7, 5, 0], "mean": 0.5}],
+        "monte_carlo": [hits_point(r, 1 << 20, right_wall_area=4321) for r in (0.1, 0.24)],
+        "intervals": [bins_point(0.1)],
     }.items():
         (points / method).mkdir(parents=True)
         for point in found:
-            write_json(points / method / f"{point['radius']}.json", point)
+            point.write(points / method / f"{point.radius}.json")
     path = folder / "small" / "areas.csv"
     Areas.write(path, [area(0.1), area(0.24)])
     text = manifest(folder, [path])
@@ -75,7 +70,7 @@ def results(tmp_path):
 
 @pytest.fixture
 def expected(results, tmp_path):
-    """What is expected: those results."""
+    """The expected results."""
     verify.write(results, tmp_path / "expected", CONFIGURATION)
     return tmp_path / "expected"
 
@@ -90,8 +85,9 @@ def test_the_same_is_the_same(results, expected):
     sentences, compared = verify.verify(results, expected)
     assert sentences == []
     assert (compared["points"], compared["tables"]) == (3, 1)
-    # Two hits and samples and three bins among the points, samples and hits in two rows.
-    assert compared["integers"] == 2 * 2 + 3 + 2 * 2
+    # Two hits and samples among the points; three bins twice, their squares, four edges and three
+    # sums; samples and hits in two rows.
+    assert compared["integers"] == 2 * 2 + (4 * 3 + 4 + 3) + 2 * 2
 
 
 def test_a_changed_count_is_found_to_the_last_digit(results, expected):
@@ -120,7 +116,7 @@ def test_a_bin_of_a_histogram_is_found(results, expected):
 def test_floats_may_differ_in_the_last_digits_only(results, expected, relative, found):
     exact = (0.4 - 0.24) * (1 + relative)
     Areas.write(results / "small" / "areas.csv", [area(0.1), area(0.24, exact=exact)])
-    edit_point(results, lambda p: p["quantities"]["right_wall_area"].update(measure=97.7 + 1e-13))
+    edit_point(results, lambda p: p["quantities"]["right_wall_area"].update(measure=1 + 1e-13))
     sentences = verify.verify(results, expected)[0]
     assert len(sentences) == found
     for sentence in sentences:
@@ -132,7 +128,7 @@ def test_floats_may_differ_in_the_last_digits_only(results, expected, relative, 
 @pytest.mark.parametrize(
     ("change", "found"),
     [
-        # 1e-12 of what z and bias are differences of, not of what is left of it.
+        # 1e-12 of the terms of the differences z and bias, not of the differences.
         ({"z": 0.0123 + 0.9e-8}, 0),
         ({"z": 0.0123 + 1.1e-8}, 1),
         ({"bias": 1e-5 + 0.9e-12 * 0.16001}, 0),
@@ -242,7 +238,7 @@ def test_the_command_writes_compares_and_says_what_differs(results, tmp_path, mo
     assert verify.main() == 0
     monkeypatch.setattr("sys.argv", list(map(str, argv)))
     assert verify.main() == 0
-    assert "compared 3 points and 1 tables: 11 integers" in capsys.readouterr().out
+    assert "compared 3 points and 1 tables: 27 integers" in capsys.readouterr().out
     edit_point(results, lambda p: p.update(samples=7))
     assert verify.main() == 1
     assert capsys.readouterr().err == (
@@ -261,7 +257,7 @@ def test_the_command_writes_compares_and_says_what_differs(results, tmp_path, mo
         ({"seed": 7}, "seed is 7, not 1908"),
         ({"results": "elsewhere"}, "results is 'elsewhere', not 'results'"),
         ({"scenes": [CONFIGURATION["scenes"][0] | {"accuracy": 1e-2}]}, ""),
-        ({"scenes": [CONFIGURATION["scenes"][0] | {"radii": [0.1]}]}, "the scene small is"),
+        ({"scenes": [CONFIGURATION["scenes"][0] | {"radii": [0.1]}]}, "the scene small differs"),
         ({"scenes": [CONFIGURATION["scenes"][0] | {"name": "b"}]}, "the scenes are b, not small"),
     ],
 )

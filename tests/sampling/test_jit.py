@@ -292,7 +292,7 @@ def test_the_type_of_the_last_argument_chooses_between_present_and_absent():
     assert with_bonus.__doc__.startswith("Return x and a bonus")
 
 
-# What is absent is not compiled -----------------------------------------------------------------
+# Absent effects are not compiled ----------------------------------------------------------------
 
 #: Print how often each machine instruction stands in the kernel that counts all events of a scene.
 INSTRUCTIONS = """
@@ -318,13 +318,13 @@ def instructions(environment, **effects):
 
 @pytest.mark.slow
 def test_absent_effects_leave_no_instruction(package):
-    """The kernel of the plain scene is the same where the package knows no effect at all.
+    """The kernel of the plain scene is the same if the package has no effects.
 
     In the copy every optional function is what stands in for it, but for those that put discs on
     walls and see either disc there, and counters; the compiler never sees the code of the effects.
     """
     sources, environment = package
-    present = instructions(environment)  # in an empty cache: what is kept has no assembly
+    present = instructions(environment)  # in an empty cache, because kept code has no assembly
     assert present["vsqrtpd" if "vsqrtpd" in present else "sqrtpd"] > 0
 
     module = sources / "sampling" / "jit.py"

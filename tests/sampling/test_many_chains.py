@@ -46,7 +46,7 @@ EDGES = (1.0, 1.05, 1.2, 1.5, 2.0, 2.5, 3.5)
 
 
 def box(discs, packing, periodic="", flat=1.0):
-    """Return discs of the radius .1 at a packing fraction, in a box so many times as wide."""
+    """Return discs of the radius .1 at a packing fraction, in a box wider by a factor."""
     height = math.sqrt(discs * math.pi * 0.01 / packing / flat)
     return Scene(flat * height, height, 0.1, discs=discs, periodic=periodic)
 

@@ -80,7 +80,7 @@ def test_ways_to_draw_agree(scene, one, other):
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", [Scene(1.5, 1.0, 0.295, discs=3), Scene(2.0, 1.5, 0.24, discs=7)])
 def test_longer_chains_are_no_different(scene, monkeypatch):
-    """Half as long and twice as long: what is forgotten is forgotten."""
+    """Chains of half and of twice the length have the same law."""
     found = []
     for seed, factor in ((1, 0.5), (2, 2)):
         monkeypatch.setattr(initial, "SWEEPS", int(factor * initial.SWEEPS))
@@ -145,7 +145,7 @@ def test_each_disc_is_any_of_them(name):
 
 
 def test_who_waits_hears_how_many_states_are_drawn():
-    """In pieces, which go on with the streams; more of them than one are told."""
+    """In several calls, which continue the streams; progress is reported from the second on."""
     scene, told = GASES["chain"], []
     initial.labelled(scene, 200, 6, progress=lambda done, number: told.append((done, number)))
     done = [drawn for drawn, _ in told if drawn is not None]

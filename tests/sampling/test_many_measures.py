@@ -94,5 +94,5 @@ def test_shards_add_up():
 
 def test_no_room_is_a_sentence():
     scene = Scene(1.5, 1.0, 0.13, discs=16)
-    with pytest.raises(InputError, match="none had room for 16 discs"):
+    with pytest.raises(InputError, match="in none of them 16 discs fit"):
         measures.sample(scene, 1000, 1)

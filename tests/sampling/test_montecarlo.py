@@ -38,13 +38,13 @@ def test_hits_have_their_exact_probability(width, height, radius, shell):
     """Also for thick shells, whose bias is large: the expectation is that of the shell."""
     scene = Scene(width, height, radius)
     point = montecarlo.sample_point(scene, EVERYTHING, SAMPLES, shell, 21)
-    samples, found = point["samples"], point["quantities"]
+    samples, found = point.samples, point.quantities
     volume = found["volume"]
-    assert_binomial(volume["hits"], samples, exact.volume(scene) / volume["measure"])
+    assert_binomial(volume.hits, samples, exact.volume(scene) / volume.measure)
     for event in SHELLS:
         sampled = found[f"{event}_area"]
-        expected = exact.shell_expectation(scene, event, sampled["epsilon"])
-        assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
+        expected = exact.shell_expectation(scene, event, sampled.epsilon)
+        assert_binomial(sampled.hits, samples, expected / sampled.measure)
 
 
 def test_blocks_add_up_and_are_independent_of_company():
@@ -68,9 +68,9 @@ def test_blocks_add_up_and_are_independent_of_company():
 def test_joint_hits_of_two_walls():
     """Disc 1 in the corner, where the shells of two walls overlap, and disc 2 out of its way."""
     point = montecarlo.sample_point(PAPER, ["any_wall_area"], SAMPLES, 0.3, 1)
-    assert point["quantities"].keys() == {"right_wall_area", "top_wall_area"}
-    epsilon = point["quantities"]["right_wall_area"]["epsilon"]
-    assert epsilon == point["quantities"]["top_wall_area"]["epsilon"]
+    assert point.quantities.keys() == {"right_wall_area", "top_wall_area"}
+    epsilon = point.quantities["right_wall_area"].epsilon
+    assert epsilon == point.quantities["top_wall_area"].epsilon
     rng = np.random.default_rng(1)
     n = 2_000_000
     x1 = PAPER.range_x / 2 - epsilon * rng.random(n)
@@ -79,17 +79,17 @@ def test_joint_hits_of_two_walls():
     y2 = PAPER.range_y * (rng.random(n) - 0.5)
     free = np.mean((x1 - x2) ** 2 + (y1 - y2) ** 2 >= PAPER.contact_distance**2)
     probability = free * epsilon**2 / (PAPER.range_x * PAPER.range_y)
-    error = math.sqrt(probability / point["samples"] + probability**2 * (1 - free) / (free * n))
-    assert abs(point["right_and_top"] / point["samples"] - probability) <= 5 * error
+    error = math.sqrt(probability / point.samples + probability**2 * (1 - free) / (free * n))
+    assert abs(point.right_and_top / point.samples - probability) <= 5 * error
 
 
 def test_only_what_is_asked_for_is_sampled():
     point = montecarlo.sample_point(PAPER, ["volume"], 1, 0.02, 1)
-    assert point["quantities"].keys() == {"volume"}
-    assert point["samples"] == montecarlo.BLOCK
-    assert "right_and_top" not in point
+    assert point.quantities.keys() == {"volume"}
+    assert point.samples == montecarlo.BLOCK
+    assert point.right_and_top is None
     point = montecarlo.sample_point(PAPER, ["vertical_hop_area"], 1, 0.02, 1)
-    assert point["quantities"].keys() == {"vertical_hop_area"}
+    assert point.quantities.keys() == {"vertical_hop_area"}
 
 
 @pytest.mark.parametrize("share", [0.1, 0.6, 0.9, 1 - 1e-3, 1 - 1e-9])
@@ -105,14 +105,14 @@ def test_shells_scale_with_the_room(share):
 
 def test_a_radius_on_the_threshold_has_a_shell():
     point = montecarlo.sample_point(PAPER.with_radius(0.25), ["horizontal_hop_area"], 1, 0.02, 1)
-    assert point["quantities"]["horizontal_hop_area"]["epsilon"] == 0.02 * 0.25
+    assert point.quantities["horizontal_hop_area"].epsilon == 0.02 * 0.25
 
 
 def test_no_hits_where_rejection_is_hopeless():
     """At r_max (1 − 1e-3) one sample in 1e11 is accepted: no hit, and no complaint."""
     scene = PAPER.with_radius(PAPER.largest_radius * (1 - 1e-3))
     point = montecarlo.sample_point(scene, EVERYTHING, 1, 0.02, 1)
-    assert point["quantities"]["volume"]["hits"] == 0
+    assert point.quantities["volume"].hits == 0
 
 
 # Scenes with effects ----------------------------------------------------------------------------
@@ -146,18 +146,18 @@ def prism(scene):
 @pytest.mark.parametrize("shell", [0.05, 0.8])
 def test_weighted_hits_have_their_exact_probability(scene, shell):
     point = montecarlo.sample_point(scene, everything(scene), 2 * montecarlo.BLOCK, shell, 21)
-    samples, found = point["samples"], point["quantities"]
+    samples, found = point.samples, point.quantities
     assert found.keys() == set(everything(scene))
-    assert "right_and_top" not in point
+    assert point.right_and_top is None
     volume = found.pop("volume")
-    assert_binomial(volume["hits"], samples, exact.volume(scene) / volume["measure"])
+    assert_binomial(volume.hits, samples, exact.volume(scene) / volume.measure)
     for quantity, sampled in found.items():
         event = quantity.removesuffix("_area")
-        expected = exact.shell_expectation(scene, event, sampled["epsilon"])
-        assert_binomial(sampled["hits"], samples, expected / sampled["measure"])
+        expected = exact.shell_expectation(scene, event, sampled.epsilon)
+        assert_binomial(sampled.hits, samples, expected / sampled.measure)
 
 
-#: Of one block of each scene with the seed 9: volume, then hops, collisions and three walls.
+#: Counts of one block of each scene with the seed 9: volume, then hops, collisions and three walls.
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall")
 COUNTS = {
     "unequal": [893325, 38911, 17192, 27208, 15793, 26396, 16273],
@@ -197,7 +197,7 @@ def test_only_what_is_watched_is_sampled_with_effects():
     scene = SCENES["combination"]
     for event in ("vertical_hop", "any_wall"):
         point = montecarlo.sample_point(scene, [f"{event}_area"], 1, 0.1, 1)
-        assert point["quantities"].keys() == {f"{event}_area"}
+        assert point.quantities.keys() == {f"{event}_area"}
         epsilon = [0.02 if e == event else 0.0 for e in EVENTS]
         ends = montecarlo.weighted_ends(scene, epsilon)
         assert [name for name, end in zip(EVENTS, ends, strict=True) if end is not None] == [event]
@@ -205,8 +205,8 @@ def test_only_what_is_watched_is_sampled_with_effects():
         assert np.flatnonzero(counts).tolist() == [0, 1 + EVENTS.index(event)]
     assert montecarlo.weighted_ends(scene, [0.0] * len(EVENTS)) is None
     point = montecarlo.sample_point(scene, ["volume"], 1, 0.1, 1)
-    assert point["quantities"].keys() == {"volume"}
-    assert point["samples"] == montecarlo.BLOCK
+    assert point.quantities.keys() == {"volume"}
+    assert point.samples == montecarlo.BLOCK
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), *MORE_SCENES], ids=repr)

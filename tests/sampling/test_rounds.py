@@ -15,7 +15,6 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.blocks import rounds
-from twodiscs.sampling.blocks.strata import mean_of
 
 PAPER = Box(1.5, 1.0)
 UNEQUAL = Box(1.5, 1.0, {"radius_ratio": 0.6, "mass_ratio": 3.0})
@@ -112,7 +111,7 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     assert int(done.sums[0][0]) == total
     assert (done.excess[0] <= 1) == (budget == 1e12)
     assert 200 * total <= budget
-    # What is seen goes up to all that there is.
+    # The reported work grows to the whole work.
     known = [(now, all_of_it) for now, all_of_it in seen if now is not None]
     assert known == sorted(known, key=lambda pair: pair[0])
     assert known[-1][0] == done.blocks * run.block_work
@@ -149,7 +148,7 @@ TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), (UNEQUAL, 0.15)])
 def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box, radius):
-    """Of rare hops, too, which are counted from starts of their own."""
+    """This holds for rare hops, too, which are counted from separate starts."""
     scene = box.scene(radius)
     run = counting.CountingRun(scene, TARGET, 4 * 10**7, 3)
     assert {*run.parts} == ({"all", "horizontal_hop"} if box is PAPER else {"all"})
@@ -158,21 +157,20 @@ def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box,
         for n in (16, 1024)
     ]
     assert found[0] == found[1]
-    blocks = found[0]["replicas"] // REPLICAS
+    blocks = found[0].replicas // REPLICAS
     assert blocks == run.parts["all"].planned
-    sums, _ = counting.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0]["duration"])
-    assert [*found[0]["counts"].values()] == [
-        sums[counting.EVENTS.index(event)] for event in found[0]["counts"]
+    sums, _ = counting.run_blocks(scene, [*TARGET], 3, 0, blocks, found[0].duration)
+    assert [*found[0].counts.values()] == [
+        sums[counting.EVENTS.index(event)] for event in found[0].counts
     ]
-    assert {*found[0]["status"].values()} == {"reached"}
-    for hop, one in found[0]["strips"].items():
-        mean, error = mean_of(**one["strata"])
-        assert error / mean <= TARGET[hop]
+    assert {*found[0].status.values()} == {"reached"}
+    for hop, one in found[0].strips.items():
+        assert one.estimate().relative_stderr <= TARGET[hop]
 
 
 @pytest.mark.parametrize("budget", [10**12, 10**7, 4 * 10**6])
 def test_planned_events_follow_the_errors_asked_for_as_far_as_the_budget_goes(budget):
-    """Each part has what its own events need; a budget that is too small shortens all alike."""
+    """Each part has what its own events need; too small a budget shortens all equally."""
     scene = PAPER.scene(0.24)
     coarse, fine = (
         counting.CountingRun(scene, {"horizontal_hop": error, "any_wall": 0.001}, budget, 1).parts
@@ -207,6 +205,6 @@ def test_intervals_in_pieces_are_those_of_one_process(box, radius):
     # A second method: the sums of the chains in floating point.
     totals, _ = intervals.recorded(run.scene, run.event, 4, intervals.CHAINS, intervals.RETURNS, 5)
     means = totals / intervals.RETURNS
-    assert found[0]["mean"] == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
+    assert found[0].mean == pytest.approx(math.fsum(means) / means.size, rel=1e-14)
     error = np.std(means, ddof=1) / math.sqrt(means.size)
-    assert found[0]["stderr"] == pytest.approx(error, rel=1e-13)
+    assert found[0].stderr == pytest.approx(error, rel=1e-13)

@@ -113,8 +113,8 @@ def assert_same_law(scene, drawn, plain):
 def scaled_components(scene, found, spins, normal=None):
     """Return unit vectors of D components, from velocities scaled by √mass, a row each.
 
-    With a ``normal`` axis the first row is the relative motion along it. Energy and momenta are
-    what they should be.
+    With a ``normal`` axis the first row is the relative motion along it. Energy and momenta have
+    the required values.
     """
     m1, m2 = scene.masses
     reduced, common, rows = math.sqrt(m1 * m2 / (m1 + m2)), [], []
@@ -183,7 +183,7 @@ def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
 
 @pytest.mark.parametrize("scene", [PLAIN, *SCENES.values()], ids=["plain", *SCENES])
 def test_states_are_the_first_ones_of_their_stream(scene):
-    """So a block has the same starts whoever computes it, and however many of them."""
+    """A block has the same starts in every process, for any number of them."""
     many = states(scene, 20, 3, 1)
     assert many.shape == (COMPONENTS, 20)
     assert np.array_equal(states(scene, 7, 3, 1), many[:, :7])

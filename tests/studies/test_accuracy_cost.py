@@ -1,4 +1,4 @@
-"""What accuracy costs: the estimators are right, and the numbers drawn from them too."""
+"""The cost of accuracy: the estimators are right, and the numbers in the figures, too."""
 
 import math
 

@@ -1,9 +1,9 @@
-"""What the comparisons of all scenes have in common: few scores, and their results by hand."""
+"""The agreement over all scenes: few scores, and their results by hand."""
 
 import math
 
 import pytest
-from fabricated import written
+from factory import written
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs_paper.studies.agreement import measure
@@ -115,4 +115,11 @@ def test_effects_whose_count_is_a_sum_of_others_are_no_tests(rows):
 
 def test_without_comparisons_there_is_little_to_say(tmp_path):
     rows = written(tmp_path, Agreement, tables={"effects": []})
-    assert [row["quantity"] for row in rows] == ["error_ratio"]
+    assert [row["quantity"] for row in rows] == ["error_ratio", "third_virial"]
+
+
+def test_the_third_virial_coefficient_is_that_of_tonks():
+    """4/3 − √3/π, as Clisby and McCoy (2006) quote it; the quadrature is good to 1e-11."""
+    found = measure.third_virial()["estimate"]
+    assert found == pytest.approx(4 / 3 - math.sqrt(3) / math.pi, abs=1e-10)
+    assert f"{found:.6f}" == "0.782004"

@@ -1,4 +1,4 @@
-"""The catalogue of studies: what an entry names is there, and fits what the jobs do with it."""
+"""The catalogue of studies: the names of an entry exist, and the jobs can use them."""
 
 import dataclasses
 import inspect
@@ -27,7 +27,7 @@ FOLDERS = {".".join(folder.parts) for folder in FOLDERS if folder.parts[0] != "p
 
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 
-#: What a job hands on of itself, if the function takes it.
+#: The arguments that a job passes, if the function takes them.
 HANDED = {"tables": {}, "report": None}
 
 

@@ -29,7 +29,7 @@ def test_everything_is_conserved_at_every_hard_radius(sides):
 
 @pytest.mark.parametrize("distance", [1e-10, 1e-11, 1e-12])
 def test_closer_still_to_the_largest_radius(distance):
-    """Where doubles leave a handful of places for each disc, nothing is lost either."""
+    """Even if each disc has only a few different doubles as coordinates, no energy is lost."""
     for box in (Box(1.5, 1.0), Box(1.0, 1.0), Box(3.0, 1.0)):
         seen = stability.run(box.scene(box.largest_radius * (1 - distance)), 1_000_000, 1)
         assert seen["lanes_lost"] == 0

@@ -1,4 +1,4 @@
-"""The rows of coverage: how often 95 % intervals cover what is exactly known."""
+"""The rows of coverage: the fraction of 95 % intervals that cover an exact value."""
 
 import pytest
 

@@ -11,13 +11,13 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from fabricated import written
+from factory import written
 
-from twodiscs.comparison import estimates
 from twodiscs.dynamics import intervals
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.points import estimates
 from twodiscs.theory import tails
 from twodiscs_paper.studies.distributions import figure, shape
 from twodiscs_paper.studies.distributions import measure as distributions
@@ -50,7 +50,7 @@ EDGES = np.concatenate(([0.0], np.cumsum(0.3 * 1.1 ** np.arange(14)))) + 4
 
 @pytest.mark.parametrize("rate", [0.01, 0.3, 0.8])
 def test_rate_maximizes_the_likelihood(rate):
-    """Of bins and of what is censored: the zero of its derivative and the curvature, by mpmath."""
+    """With bins and censored times: the zero of the derivative and the curvature, by mpmath."""
     chances = -np.expm1(-rate * np.diff(EDGES)) * (1 + 0.1 * np.cos(np.arange(14)))
     bins = bins_of(EDGES, chances, 10**6, None)
     found, _, _, degrees = distributions.constant_hazard(bins)
@@ -187,16 +187,16 @@ def test_what_is_measured_meets_what_is_exact(box, radius, hop):
 
 
 def test_intervals_are_those_of_chains():
-    """Shares of intervals beyond some times, from starts of their own and from hop to hop."""
+    """Shares of intervals beyond some times, from separate starts and from hop to hop."""
     rows = list(distributions.measured(PAPER, "vertical_hop", 5, 2**20))
     mean = rows[0]["reference"]
     chains = intervals.hop_intervals(PAPER, "vertical_hop", 2**19, 6)
     hazards = [row for row in rows if row["quantity"] == "hazard"]
-    alive = total = chains["intervals"]
+    alive = total = chains.intervals
     assert len(hazards) > 20
     for row in hazards:
-        ends = [round(row[end] / chains["bin_width"]) for end in ("first", "last")]
-        left = alive - sum(chains["counts"][slice(*ends)])
+        ends = [round(row[end] / chains.bin_width) for end in ("first", "last")]
+        left = alive - sum(chains.counts[slice(*ends)])
         time = row["last"] - row["first"]
         # Chains are correlated: the error of their counts may be some times larger.
         other, error = math.log(alive / left) / time, 3 * math.sqrt(1 / left - 1 / alive) / time

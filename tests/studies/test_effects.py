@@ -1,4 +1,4 @@
-"""What the figure of effects is made of: its counts, its table, the figure itself."""
+"""The study of effects: its counts, its table and its figure."""
 
 import ast
 from functools import cache
@@ -6,11 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fabricated import Laws, written
+from factory import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
-from twodiscs.comparison import estimates
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
@@ -21,6 +20,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene
+from twodiscs.points import estimates
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
@@ -73,7 +73,7 @@ def test_unmet_starts_add_up_over_blocks_and_times_descend():
 def test_rough_discs_stay_apart_where_smooth_ones_follow_their_law():
     """At 100, in 2^18 starts: binomial and Poisson, five sigma each: one false alarm in 1e6.
 
-    The share of smooth discs is within 40 % of its law by then: what is left to go falls as τ/t.
+    The share of smooth discs is within 40 % of its law by then: the difference falls as τ/t.
     """
     starts = 256 * REPLICAS
     (rough,) = effects.survivors(ROUGH, (100.0,), 256, 1)
@@ -285,7 +285,7 @@ def test_looks_differ_however_many_scenes():
     assert len({colour for colour, _ in looks[:6]}) == len({marker for _, marker in looks[:6]}) == 6
 
 
-# What an event costs ------------------------------------------------------------------------------
+# The cost of an event -----------------------------------------------------------------------------
 
 
 def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):

@@ -1,4 +1,4 @@
-"""The study of more discs: all methods agree, and its figure has what the table has."""
+"""The study of more discs: all methods agree, and its figure has the values of the table."""
 
 import pytest
 

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from twodiscs.comparison.estimates import mean_of
 from twodiscs.comparison.measured.transmission import by_clusters, of_clusters, plateau
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.passages import cluster_sizes, initial_states
@@ -19,6 +18,7 @@ from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import (
@@ -43,7 +43,7 @@ def test_thresholds_are_those_before_the_box_is_full():
 def test_the_slope_at_zero_is_exact(hop, halvings):
     limit = measure.thresholds(BOX)[hop]
     scene = BOX.scene(measure.radius_at(limit, halvings))
-    (row,) = measure._Hop("paper", scene, hop, halvings, 1).slope(1024)
+    (row,) = measure.NearThreshold("paper", scene, hop, halvings, 1).slope(1024)
     assert row["reference_stderr"] is None
     assert abs(row["z"]) <= 5
     assert row["stderr"] < 0.15 * row["reference"]
@@ -52,7 +52,7 @@ def test_the_slope_at_zero_is_exact(hop, halvings):
 def test_errors_of_the_slope_are_those_of_its_spread():
     """Scores of 64 seeds have the mean square 1, by the law of χ² within a false alarm of 1e-6."""
     scene = BOX.scene(measure.radius_at(0.25, 4))
-    hop = measure._Hop("paper", scene, HOP, 4, 0)
+    hop = measure.NearThreshold("paper", scene, HOP, 4, 0)
     scores = []
     for hop.seed in range(64):
         (row,) = hop.slope(64)
@@ -117,7 +117,7 @@ def intervals(states, law):
 
 
 def test_first_passages_take_the_time_between_passages():
-    """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) but for the time to forget, over τ."""
+    """⟨F⟩ = τ (1 + CV²)/2 tends to τ/κ: κ is 2/(1 + CV²) up to the correlation time over τ."""
     scene, hop = Box(1.0, 1.5).scene(0.242), "vertical_hop"
     times = intervals(initial_states(scene, hop, 256, 2), law_of(scene))
     mean, gap = exact.mean_times(scene)[hop], 6 * scene.range_y
@@ -136,7 +136,7 @@ def test_first_passages_take_the_time_between_passages():
 def test_free_walks_and_single_files_are_exact():
     """D = 1 where neighbours always swap, so that D/(ν ℓ²) = 1/2, and F √t where they never do.
 
-    At t = 1024 what is left to go to the law of √t is of the order of 1/√t = 3 %.
+    At t = 1024 the difference from the law of √t is of the order of 1/√t = 3 %.
     """
     free = exclusion.diffusion(1.0, 64, 1)
     assert abs(free.value - 0.5) <= 5 * free.stderr
@@ -256,7 +256,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     monkeypatch.setattr(measure, "seed_of", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
     rows = Passages.read(tmp_path / "passages.csv")
-    assert len({*seeds}) == len(seeds) > 20  # every estimate has streams of its own
+    assert len({*seeds}) == len(seeds) > 20  # every estimate has separate streams
     z = [row["z"] for row in rows if row["z"] is not None]
     assert max(map(abs, z)) < 5
     by_quantity = {row["quantity"] for row in rows}
@@ -269,7 +269,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     kappa = [row for row in rows if row["quantity"] == "coefficient"]
     for time, fraction in zip(times, kappa, strict=True):
         assert time["estimate"] * fraction["estimate"] == pytest.approx(time["exact_mean"])
-    # What vanishes at the threshold, 1 − κ or κ of rough discs, does so with its exponent.
+    # 1 − κ, or κ of rough discs, vanishes at the threshold with its exponent.
     left = {
         (row["event"], rough, row["distance"]): row["estimate"] if rough else 1 - row["estimate"]
         for row in kappa
@@ -283,10 +283,16 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         )
         assert far / near == pytest.approx(2 ** row["estimate"])
     with style.context():
-        between = figure.draw(BOX, {"passages": rows}).axes[3]
+        _, collapse, _, between, _ = figure.draw(BOX, {"passages": rows}).axes
         ring = figure_diffusion.draw(BOX, {"passages": rows}).axes[0]
     names = [text.get_text() for text in ring.get_legend().get_texts()]
     assert "4 smooth discs" in names
+    # At h/4 of 1.5 × 1 the range is 1.5 − 2r, and the neck has the room 1 − 4r.
+    (points,) = [one for one in collapse.containers if one.get_label().endswith("$h/4$")]
+    for x, y in zip(*points.lines[0].get_data(), strict=True):
+        r = 0.25 * (1 - x)
+        value = y * (4 * r**2 * (1 - 4 * r)) ** (1 / 3) / (1.5 - 2 * r)
+        assert value == pytest.approx(left[HOP, None, x])
     tau = between.lines[0]
     limit = measure.thresholds(BOX)[HOP]
     for distance, value in zip(tau.get_xdata()[::20], tau.get_ydata()[::20], strict=True):

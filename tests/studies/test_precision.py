@@ -13,7 +13,7 @@ from twodiscs_paper.studies.accuracy_cost import precision, scalar
 
 PAPER = Scene(1.5, 1.0, 0.2)
 
-#: Where the engine has the counts of the events that single precision counts.
+#: The indices of the engine's counts of the events that single precision counts.
 AT = [EVENTS.index(event) for event in scalar.COUNTED]
 
 

@@ -42,6 +42,6 @@ def test_growth_does_not_depend_on_the_size_of_the_separation():
 
 
 def test_growth_ends_where_the_events_differ():
-    """Discs that hit opposite walls at once: for the neighbour the other one comes first."""
+    """Discs hit opposite walls simultaneously: for the neighbour the other one comes first."""
     state = np.array([[-0.4], [0.0], [0.4], [0.0], [-0.5], [0.0], [0.5], [0.0]])
     assert math.isnan(stability.growth(state, 0, 10, 1e-9, Law(0.55, 0.3, 0.4))[0])

@@ -1,4 +1,4 @@
-"""The usual engine, a program of its own: it counts what the kernels and slow motion count."""
+"""The usual engine, an independent program: its counts equal those of kernels and slow motion."""
 
 import numpy as np
 import pytest

@@ -1,10 +1,10 @@
-"""The table and the figure of stability: what is measured is right, and mistakes would show."""
+"""The table and the figure of stability: the measured errors are right, and mistakes are found."""
 
 import math
 
 import numpy as np
 import pytest
-from fabricated import written
+from factory import written
 from matplotlib.text import Text
 from mpmath import mpf
 
@@ -143,14 +143,14 @@ def test_conditioned_estimates_of_thick_shells_have_their_exact_probability(box)
     for radius in radii:
         scene = box.scene(radius)
         point = montecarlo.conditioned_point(scene, QUANTITIES, 2**17, 0.5, 8)
-        for quantity, part in point["quantities"].items():
+        for quantity, part in point.quantities.items():
             if quantity == "volume":
                 expected = exact.volume(scene)
             else:
                 event = quantity.removesuffix("_area")
-                expected = exact.shell_expectation(scene, event, part["epsilon"])
-            probability = min(expected / part["measure"], 1.0)
-            z, _ = scores.binomial_z(part["hits"], point["samples"], probability)
+                expected = exact.shell_expectation(scene, event, part.epsilon)
+            probability = min(expected / part.measure, 1.0)
+            z, _ = scores.binomial_z(part.hits, point.samples, probability)
             assert abs(z) <= 5, (box, radius, quantity)
 
 
@@ -159,12 +159,12 @@ def test_conditioned_agrees_with_rejection(radius):
     scene = PAPER.scene(radius)
     ours = montecarlo.conditioned_point(scene, QUANTITIES, 2**20, 0.3, 1)
     plain = montecarlo.sample_point(scene, QUANTITIES, 2**22, 0.3, 1)
-    assert ours.keys() == plain.keys()
+    assert ours.quantities.keys() == plain.quantities.keys()
     values = []
     for point in (ours, plain):
-        parts = {q: (p["hits"], p["measure"]) for q, p in point["quantities"].items()}
-        parts["both"] = point["right_and_top"], point["quantities"]["volume"]["measure"]
-        values.append({q: (m * n / point["samples"], n) for q, (n, m) in parts.items()})
+        parts = {q: (p.hits, p.measure) for q, p in point.quantities.items()}
+        parts["both"] = point.right_and_top, point.quantities["volume"].measure
+        values.append({q: (m * n / point.samples, n) for q, (n, m) in parts.items()})
     for quantity, (value, hits) in values[0].items():
         other, others = values[1][quantity]
         if hits > 100:
@@ -175,13 +175,13 @@ def test_the_better_sampler_is_chosen():
     """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
     for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
         point = montecarlo.better_point(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1)
-        assert (point["method"], point["samples"]) == (method, samples)
+        assert (point.method, point.samples) == (method, samples)
     for distance in (1e-3, 1e-6, 1e-9):
         scene = PAPER.scene(PAPER.largest_radius * (1 - distance))
         point = montecarlo.better_point(scene, QUANTITIES, 2**24, 0.02, 1)
         rows = Volume.rows(Theory.rows(PAPER, [scene.radius]), {"monte_carlo": [point]})
         assert abs(rows[0]["estimate"] / exact.volume(scene) - 1) < 1e-3
-        assert point["quantities"]["disc_collision_area"]["hits"] > 1000
+        assert point.quantities["disc_collision_area"].hits > 1000
 
 
 def test_conditioned_blocks_add_up():

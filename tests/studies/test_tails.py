@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fabricated import written
+from factory import written
 
 from twodiscs.dynamics import trajectory
 from twodiscs.dynamics.law import law_of
@@ -41,7 +41,7 @@ def in_mean_times(scene, event, times):
     [(0.24, "disc_collision"), (0.1, "vertical_hop"), (0.1, "horizontal_hop")],
 )
 def test_weighted_starts_agree_with_plain_counting(radius, event):
-    """Where both reach: from one to ten mean times."""
+    """In the common range, from one to ten mean times."""
     scene = PAPER.with_radius(radius)
     times = in_mean_times(scene, event, (1, 2, 5, 7, 10))
     weighted = tails.tail(scene, event, times, 100, 1)
@@ -66,7 +66,7 @@ def test_plain_counting_has_the_exact_rate():
 def test_tails_are_cubic(radius, event, approach):
     """P(T > t) t³ has come to C at 1000 mean times, where e^(−t/τ) is 1e-434.
 
-    What is left to go falls as τ/t, with coefficients measured at 20 to 300 mean times as about 2
+    The difference falls as τ/t, with coefficients measured at 20 to 300 mean times as about 2
     for these collisions and 25 for these hops; less than twice that is added to five standard
     errors.
     """

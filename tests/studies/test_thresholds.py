@@ -1,10 +1,10 @@
-"""Power laws where events die out: fits against what they are made of, the table, the figure."""
+"""Power laws where events die out: fits against exact laws, the table, the figure."""
 
 import math
 
 import numpy as np
 import pytest
-from fabricated import written
+from factory import written
 
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.figures.kit import style
@@ -156,7 +156,7 @@ def test_the_table_is_written_and_the_figure_reads_it(box, read, tmp_path):
     events = [event for event in SHELLS if laws.leading_law(box, event)]
     assert len(ratios.containers) == len(events)
 
-    # What is measured is there: mean times in both panels, first passages among the hops.
+    # All measured values are drawn: mean times in both panels, first passages among the hops.
     def points(axes, marker):
         lines = (line for line in axes.lines if line.get_marker() == marker)
         return [point for line in lines for point in zip(*line.get_data(), strict=True)]

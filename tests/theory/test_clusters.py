@@ -26,7 +26,7 @@ def shares(scene, axis, within):
     f, a, g, b = densities(scene)
     sigma = scene.contact_distance
     if axis == "y":
-        f, a, g, b = g, b, f, a  # now u is what is small
+        f, a, g, b = g, b, f, a  # now u is small
 
     def volume(most):
         def lowest(u):

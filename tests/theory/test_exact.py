@@ -1,4 +1,4 @@
-"""The face of the theory: what all scenes have in common, and what is plain or handed over."""
+"""The face of the theory: functions of all scenes, and plain or fetched ones."""
 
 import json
 import math

@@ -50,7 +50,7 @@ def test_closed_forms_fail_near_the_largest_radius_as_documented():
 
 @pytest.mark.parametrize("box", [PAPER, (1.0, 1.0), (0.3, 2.0)])
 def test_small_discs(box):
-    """What the first-order laws leave out is of second order: a hundredth at a tenth of r."""
+    """The error of the first-order laws is of second order: a hundredth at a tenth of r."""
     w, h = box
     for event in EVENTS:
         errors = [

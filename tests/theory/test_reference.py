@@ -1,4 +1,4 @@
-"""The fifty digits that exact values are set against, and what they are made of.
+"""The fifty digits with which exact values are compared, and their parts.
 
 A second method gives the same digits: antiderivatives, with 150 of them. Both agree with quadrature
 in two dimensions by the definitions, in which no side is integrated by hand.
@@ -134,7 +134,7 @@ def test_every_number_has_the_name_that_tables_give_it():
     assert {name: quantity(q) for name, quantity in QUANTITIES.items()} == expected
 
 
-# What they are made of --------------------------------------------------------------------------
+# Their parts ------------------------------------------------------------------------------------
 
 
 def test_a_scene_takes_numbers_for_exactly_what_they_are():
@@ -198,7 +198,7 @@ def test_parts_are_integrals_over_their_part_of_the_quadrant(scene):
         for part in parts:
             found = getattr(reference_module, f"{part}_volume")(q)
             assert mp.almosteq(found, 16 * over(part, q.weight), 1e-22, 1e-22), part
-            # Of the wall: the range of Y at this y, and disc 2 on one side of disc 1 only.
+            # For the wall: the range of Y at this y, and disc 2 on one side of disc 1 only.
             expected = over(part, lambda x, y: 4 * root * (root * q.b - y))
             assert mp.almosteq(getattr(reference_module, f"{part}_wall")(q), expected, 1e-22, 1e-22)
         collision = 16 * reference_module.on_circle(q, q.weight)

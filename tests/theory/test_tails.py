@@ -18,7 +18,7 @@ GOOD = Scene(*PAPER, 0.3)
 
 @pytest.mark.parametrize("box", [PAPER, (1.0, 1.7)])
 def test_density_at_zero_is_that_of_one_bounce(box):
-    """Five sigma: crossings by Gaussian velocities weighted by the flux, and the hop back at once.
+    """Five sigma: crossings by Gaussian velocities weighted by the flux, and the first hop back.
 
     With d uniform the density at 0 is the mean of 1/(2B) times |v1 + v2|, here taken from the share
     of returns within a short time with disc 1 or 2 followed to the wall.
@@ -41,7 +41,7 @@ def test_density_at_zero_is_that_of_one_bounce(box):
 
 
 def test_tail_constants_of_blocked_drifts():
-    """The study of tails measures their size; here are the symmetries and what is blocked."""
+    """The study of tails measures their size; here are the symmetries and blocked events."""
     assert tail_constant(GOOD, "horizontal_hop") is None
     assert tail_constant(GOOD, "vertical_hop") == 0.0
     assert tail_constant(Scene(*PAPER, 0.38), "disc_collision") == 0.0

@@ -1,8 +1,8 @@
 """Scenes with effects, against integrals done another way.
 
 The reference integrates over the signed separations with 40 digits, from the definition of each
-density: the range of the common motion and the energy left at its ends. It knows nothing of slacks.
-What the areas mean is tested by throwing discs and velocities (``test_flux``).
+density: the range of the common motion and the energy left at its ends. It does not use slacks.
+Random discs and velocities test the meaning of the areas (``test_flux``).
 """
 
 import math
@@ -190,7 +190,7 @@ SCENES = [
 ]  # fmt: skip
 
 
-#: The reference takes seconds: all of them, but for every third one, are slow.
+#: The reference takes seconds: all tests except every third one are slow.
 REFERENCES = [
     pytest.param(scene, marks=[pytest.mark.slow] if i % 3 else [], id=repr(scene))
     for i, scene in enumerate(SCENES)
@@ -439,8 +439,9 @@ def test_names_of_the_discs(scene):
     ratio = scene.mass_ratio
     try:
         other = Scene(
-            scene.width, scene.height, scene.radii[1], None, 1 / scene.radius_ratio, 1 / ratio,
-            scene.periodic, scene.field * ratio, scene.moment_of_inertia,
+            scene.width, scene.height, scene.radii[1],
+            radius_ratio=1 / scene.radius_ratio, mass_ratio=1 / ratio, periodic=scene.periodic,
+            field=scene.field * ratio, moment_of_inertia=scene.moment_of_inertia,
         )  # fmt: skip
     except ValueError:
         assume(False)
@@ -457,8 +458,10 @@ def test_turned_box(scene):
     """Turning the box by a quarter exchanges x and y; areas and volumes are the same."""
     assume(not scene.field)
     turned = Scene(
-        scene.height, scene.width, scene.radius, None, scene.radius_ratio, scene.mass_ratio,
-        {"x": "y", "y": "x"}.get(scene.periodic, scene.periodic), 0.0, scene.moment_of_inertia,
+        scene.height, scene.width, scene.radius,
+        radius_ratio=scene.radius_ratio, mass_ratio=scene.mass_ratio,
+        periodic={"x": "y", "y": "x"}.get(scene.periodic, scene.periodic),
+        moment_of_inertia=scene.moment_of_inertia,
     )  # fmt: skip
     here, there = numbers(scene), numbers(turned)
     for name, other in (TURNED | {"volume": "volume"}).items():
@@ -498,7 +501,7 @@ def test_larger_disc_reaches_both_walls():
     assert exact.mean_times(equal)["right_wall"] == 0.5 / exact.rate(equal, "right_wall")
 
 
-# What areas and shells mean -----------------------------------------------------------------------
+# The meaning of areas and shells ------------------------------------------------------------------
 
 
 def thrown(scene, count, seed):
@@ -539,9 +542,9 @@ def separation(scene, centres, axis):
 
 
 def flux_of_throws(scene, event, epsilon, count, seed):
-    """Return how often throws cross the middle of a shell (into it, at its end), and the error.
+    """Return the rate of crossings of the middle of a shell (or its end), and the error.
 
-    That is the mean of |ġ| over the thickness, and half of it where one side only is open.
+    It is the mean of |ġ| over the thickness, and half of it if only one side is open.
     """
     centres, velocities, weight = thrown(scene, count, seed)
     relative = math.sqrt(sum(1 / m for m in scene.masses))
@@ -586,7 +589,7 @@ FLUXES = [
 def test_flux(scene):
     """The flux through thin shells of thrown discs is (c_D/2) times their exact area.
 
-    So are the constant, the powers of the energy and the factors of mass; 5 sigma each, some 35
+    This tests the constant, the powers of the energy and the factors of mass; 5 sigma each, some 35
     comparisons with a seed that is fixed.
     """
     for number, event in enumerate(scene.events):

@@ -43,7 +43,7 @@ rule mine:
 #: Distances of the study of passages, as it has them and as they are built: rare hops take long.
 DISTANCES = "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), range(3, 4)"
 
-#: For a module whose files are in a folder of their own.
+#: For a module whose files are in a separate folder.
 BELOW = 'config:\n        config["discs"]\n    prefix:\n        "below"'
 
 
@@ -93,10 +93,10 @@ def snakemake_main(arguments):
 
 
 class Checkout:
-    """A folder to build in: a copy of the repository at ``path`` whose own sources do the work.
+    """A folder to build in: a copy of the repository at ``path`` which uses its sources.
 
     With ``home``, another checkout, it is a folder anywhere that uses the sources of that one, and
-    its workflow, unless the folder has one of its own.
+    its workflow, unless the folder has a workflow.
     """
 
     def __init__(self, path, home=None):
@@ -144,7 +144,7 @@ class Checkout:
             file.write(text)
 
     def replace(self, path, old, new):
-        """Replace what a file says in one place."""
+        """Replace a text that a file has once."""
         text = (self.path / path).read_text(encoding="utf-8")
         assert text.count(old) == 1, f"{path} must say {old!r} once"
         (self.path / path).write_text(text.replace(old, new), encoding="utf-8")

@@ -1,5 +1,6 @@
 """Checkouts for the tests: one without results, one with all of them, and copies of that one."""
 
+import fcntl
 import os
 import shutil
 import sys
@@ -11,7 +12,7 @@ from checkout import Checkout, fresh
 # Jobs start as `python`, as where the environment of the tests is activated.
 os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
-#: The scenes with effects that are built: each compiles an engine of its own.
+#: The scenes with effects that are built: each compiles another engine.
 EFFECTS = ("torus", "unequal")
 
 
@@ -29,12 +30,21 @@ def planned(unbuilt):
 
 @pytest.fixture(scope="session")
 def complete(tmp_path_factory):
-    """A checkout in which everything is built, not to be changed."""
-    checkout = fresh(tmp_path_factory.mktemp("complete") / "checkout")
-    scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
-    checkout.replace("src/twodiscs_paper/studies/effects/study.py", scenes, repr(EFFECTS))
-    checkout.snakemake("--cores", "2")
-    return checkout
+    """A checkout in which everything is built, once for all workers, not to be changed."""
+    shared = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        shared = shared.parent
+    path, done = shared / "complete", shared / "complete.done"
+    with open(shared / "complete.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # the worker that comes second waits
+        if not done.exists():
+            shutil.rmtree(path, ignore_errors=True)  # of a build that failed
+            checkout = fresh(path)
+            scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
+            checkout.replace("src/twodiscs_paper/studies/effects/study.py", scenes, repr(EFFECTS))
+            checkout.snakemake("--cores", "2")
+            done.touch()
+    return Checkout(path)
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import subprocess
 
 import pytest
 import yaml
-from checkout import BELOW, Checkout, use
+from checkout import BELOW, Checkout, fresh, use
 
 TINY = {
     "shared": ["errata", "report"],
@@ -29,6 +29,9 @@ TINY = {
         }
     ],
 }
+
+#: With blanks, quotes and a command: shell lines quote every path.
+NAME = "a b $(touch X) 'c'"
 
 #: What is taken away from a copy: of every kind of file one, at least.
 LOST = (
@@ -56,24 +59,49 @@ def manifest(place, results="results"):
 
 
 @pytest.fixture(scope="module")
-def own(complete, tmp_path_factory):
-    """A folder with a configuration of its own, in which everything is built."""
-    place = Checkout(tmp_path_factory.mktemp("own"), complete)
+def own(tmp_path_factory):
+    """A folder with a configuration of its own, in which everything is built.
+
+    No shell may read its name, or that of the checkout which builds it, as a command.
+    """
+    home = fresh(tmp_path_factory.mktemp("home") / NAME)
+    place = Checkout(tmp_path_factory.mktemp(NAME), home)
     place.configuration.parent.mkdir()
     place.configuration.write_text(yaml.safe_dump(TINY))
-    nowhere = Checkout(tmp_path_factory.mktemp("nowhere"), complete)
+    nowhere = Checkout(tmp_path_factory.mktemp("nowhere"), place.home)
     nowhere.snakemake(*there(place), "--cores", "2")
     assert [*nowhere.path.iterdir()] == []
     return place
 
 
-def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own, complete):
+def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own):
     names = {*own.results()}
     assert {f"tiny/{name}.csv" for name in ("areas", "mean_times", "trajectory")} < names
-    assert {*LOST} < names
+    assert {*LOST, "report-workflow.html"} < names
     assert "paper.pdf" not in names
-    assert not (complete.path / "results" / "tiny").exists()
+    assert not (own.home.path / "results").exists()
     assert own.jobs(*there(own)) == []
+
+
+def test_no_shell_reads_the_name_of_a_folder_as_a_command(own, tmp_path):
+    place = copied(own, tmp_path / NAME)
+    place.configuration.parent.mkdir()
+    place.configuration.write_text(yaml.safe_dump(TINY))
+    place.snakemake("--cores", "2", "crate", "audit")
+    for folder in (tmp_path, own.path, own.home.path):
+        assert not [*folder.rglob("X")]
+
+
+def test_every_path_in_a_shell_line_is_quoted(tmp_path):
+    """Of jobs that take longer: what their lines are, from a folder with such a name."""
+    targets = "all", "explorer", "benchmark", "crate", "effects", "long_runs"
+    dry = "--dry-run", "--forceall", "--printshellcmds", "--", *targets
+    lines = fresh(tmp_path / "a b $(touch X)").snakemake(*dry).stdout
+    shells = [line for line in lines.splitlines() if "Shell command:" in line]
+    assert len(shells) > 50
+    for line in shells:
+        outside = "".join(line.split("'")[::2])
+        assert "touch X" not in outside
 
 
 @pytest.mark.slow
@@ -131,6 +159,12 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {
         *("Snakefile", "mine.yaml", "mine.txt", "below", ".snakemake"),
     }
+    # The configuration may come from the command, and a report needs no cores.
+    snakefile = place.path / "Snakefile"
+    snakefile.write_text(snakefile.read_text().replace('configfile: "mine.yaml"', ""))
+    assert place.jobs("--configfile", "mine.yaml", "--", "discs_all") == []
+    place.snakemake("--configfile", "mine.yaml", "--report", "report.html")
+    assert "check.csv" in (tmp_path / "report.html").read_text()
 
 
 @pytest.mark.parametrize("more", ['config:\n        config["discs"]', ""])

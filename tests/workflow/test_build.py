@@ -6,10 +6,10 @@ from hashlib import sha256
 import pytest
 from checkout import fresh
 
-from twodiscs.comparison.digests import read_json
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs.points.digests import read_json
 
-#: What holds wall-clock seconds, or the date.
+#: Files with wall-clock seconds, or the date.
 TIMED = (
     "cost.csv",
     "forecast.csv",
@@ -79,7 +79,7 @@ def test_on_one_core_and_by_snakemakes_other_memory_the_bytes_are_the_same(
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
     built.replace("src/twodiscs/comparison/tables/exact.py", '"exact": x}', wrong)
-    # Points are as they were: exact values are made again, and what is compared with them.
+    # Points do not change: exact values are made again, and all comparisons with them.
     again = "--rerun-triggers", "mtime", "--forcerun", "exact"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
     assert run.returncode != 0

@@ -5,13 +5,13 @@ import re
 import pytest
 from checkout import Checkout
 
-#: Of every place where one is found one: what each sentence says is tested where it is written.
+#: One mistake for each place that can find one; other tests check the sentences.
 MISTAKES = {
     "an unknown key": ("seeed: 1\n", "unknown key 'seeed'"),
     "a key given twice": ("seed: 1\nseed: 2\n", "second time"),
     "no room for starts": (
         "scenes: [{name: a, box: {width: 1, height: 1}, effects: {field: 900}}]\n",
-        "of it is needed",
+        "of all positions, and at least",
     ),
     "results in a file": ("results: Snakefile\n", "results must be"),
 }
@@ -61,6 +61,6 @@ def test_days_of_processor_time_are_written_without_an_exponent(unbuilt, tmp_pat
         " watch: {mean_times: true}, accuracy: 2e-7, event_budget: 1e15}]\n"
     )
     run = unbuilt.snakemake("--dry-run", "--configfile", str(path), "--", "results/a/theory.csv")
-    (days,) = re.findall(r"takes some (\S+) days of processor time", run.stdout + run.stderr)
+    (days,) = re.findall(r"takes about (\S+) days of processor time", run.stdout + run.stderr)
     assert len(days) == 3
     assert 100 < int(days) < 1000

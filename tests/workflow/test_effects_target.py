@@ -1,4 +1,4 @@
-"""Effects as a target: the mean times of the scenes of config/scenes, and what is made of them."""
+"""Effects as a target: the mean times of the scenes of config/scenes, and its files."""
 
 from twodiscs_paper.studies.effects.study import SCENES
 
@@ -41,5 +41,5 @@ def test_edit_of_a_scene_counts_that_one_again(built):
     }
 
 
-#: What is made of the tables of the study.
+#: The files that are made from the tables of the study.
 FOLLOWING = {"shared_figure", "paper", "report", "provenance"}

@@ -1,4 +1,4 @@
-"""What an edit of a module reruns: the rules whose fingerprint changes with it, module by module.
+"""The rules that an edit of a module reruns: their fingerprints change, module by module.
 
     python tests/workflow/test_fingerprints.py > tests/workflow/reruns.txt
 
@@ -28,7 +28,7 @@ def not_computing():
 
 
 def of_families(floor, *families):
-    """Return what the rules name beside the modules whose imports they follow."""
+    """Return the names in the rules beside the modules whose imports they follow."""
     floors = ("model", "theory", "sampling", "dynamics")
     return [
         module_of(one, family) for one in floors[: floors.index(floor) + 1] for family in families
@@ -42,7 +42,8 @@ def jobs():
     for stage, own in STAGES.items():
         for family in FAMILIES:
             modules = [f"{pipeline}.jobs.point", *of_families(own.split(".")[1], family)]
-            kinds[f"{stage} of {family}"] = modules, {*STAGES.values()} - {own}
+            others = {*STAGES.values(), "twodiscs.points.estimates"} - {own}
+            kinds[f"{stage} of {family}"] = modules, others
     table, study = f"{pipeline}.jobs.table", f"{pipeline}.jobs.study"
     for name in ("exact", "trajectory", "mean_times", "check"):
         kinds[f"table {name}"] = ([table, f"twodiscs.comparison.tables.{name}"], ())

@@ -1,4 +1,4 @@
-"""The forecast: printed and written whenever it is asked for, and set against what was spent."""
+"""The forecast: printed and written whenever it is asked for, and compared with the time spent."""
 
 import csv
 

@@ -31,7 +31,7 @@ def test_edits_of_comments_and_docstrings_rerun_nothing(built):
     built.edit(f"{source}/figures/motion/hop_histogram.py", "\n\n# a remark\n")
     law = '"""Return the ``Law`` of a ``Scene``."""'
     built.replace(f"{source}/dynamics/law.py", law, '"""The law\n\n    of a scene."""')
-    meaning = '"""expectation − exact: what the thickness of the shell adds"""'
+    meaning = '"""expectation − exact, the effect of the thickness of the shell"""'
     built.replace(f"{source}/comparison/tables/monte_carlo.py", meaning, '"""how far off"""')
     table = '"""One row per radius and quantity: the exact values."""'
     built.replace(f"{source}/comparison/tables/exact.py", table, '"""The exact values."""')

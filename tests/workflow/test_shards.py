@@ -7,7 +7,7 @@ import pytest
 import yaml
 from checkout import BELOW, Checkout, use
 
-from twodiscs.comparison.digests import read_json
+from twodiscs.points.digests import read_json
 from twodiscs_paper.pipeline.configuration.load import load
 
 TINY = {

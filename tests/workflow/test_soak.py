@@ -17,7 +17,7 @@ import pytest
 import yaml
 from checkout import Checkout
 
-from twodiscs.comparison.digests import read_json
+from twodiscs.points.digests import read_json
 from twodiscs_paper.pipeline.results.audit import of_points
 from twodiscs_paper.pipeline.results.manifest import is_reproducible
 
@@ -76,7 +76,7 @@ def run(place, *words):
 
 
 def kill(place, chance, duration):
-    """Kill a build of random parts at a random moment; return what was done."""
+    """Kill a build of random parts at a random moment; return a description."""
     for path in sorted((place.path / "results").rglob("*.*")):
         if path.is_file() and chance.random() < 0.5:
             path.unlink()
@@ -98,7 +98,7 @@ def kill(place, chance, duration):
 
 
 def damage(place, chance):
-    """Delete, truncate or edit a point or a shard; return what was done."""
+    """Delete, truncate or edit a point or a shard; return a description."""
     files = [p for p in sorted((place.path / "results").rglob("*.json")) if "plain" in p.parts]
     path, how = chance.choice(files), chance.choice(("deleted", "truncated", "edited"))
     content = path.read_bytes()
@@ -132,7 +132,7 @@ def test_what_is_killed_or_damaged_ends_in_the_same_bytes(unbuilt, tmp_path):
             run(place, "--unlock").wait(60)
         else:
             told.append(damage(place, chance))
-            # The audit names what was edited, and whoever reads that deletes it.
+            # The audit names the edited files; its reader deletes them.
             for file, wrong in of_points(place.path / "results"):
                 if wrong:
                     file.unlink()

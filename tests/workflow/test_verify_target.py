@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from twodiscs.comparison.digests import read_json, write_json
+from twodiscs.points.digests import read_json, write_json
 
 
 def test_verification_is_one_job_whatever_there_is(unbuilt):

@@ -3,10 +3,10 @@
 //
 // Masses are 1 and the total energy is 1/2, so that the speed √(v1² + v2²) is 1.
 
-/** Uniform numbers in [0, 1) that a seed decides: xoshiro128++ of Blackman and Vigna. */
+/** Uniform numbers in [0, 1) from a seed: xoshiro128++ of Blackman and Vigna. */
 class Random {
   constructor(seed) {
-    // Their advice: the state comes from another generator, here a mix of a Weyl sequence.
+    // They advise to take the state from another generator, here a mixed Weyl sequence.
     let weyl = seed >>> 0;
     this.state = Uint32Array.from({ length: 4 }, () => {
       weyl = (weyl + 0x9e3779b9) >>> 0;
@@ -44,19 +44,19 @@ class Random {
   }
 }
 
-/** A function that draws initial states from the invariant measure: centres in all of
+/** Return a function that draws initial states from the invariant measure: centres in all of
  *  configuration space, velocities on the unit sphere in four dimensions. */
 function initialStates(width, height, radius) {
   const given = lengths(width, height, radius);
   const [A, B, sigma] = [given.A, given.B, given.sigma].map((value) => given.float(value, 1));
   const square = given.sigma ** 2n;
   // The separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density (A − u)(B − v) outside the
-  // arc. The free part of [0, A] × [0, B] fills a good part of the rectangle that just holds it,
-  // whatever the radius. Its sides, with what cancels near the largest radius taken exactly:
-  const room = given.float(given.A ** 2n + given.B ** 2n - square, 2);
-  const side = (whole, other) => {
+  // arc. The free part of [0, A] × [0, B] fills a good part of its bounding rectangle at every
+  // radius. The sides of this rectangle, exact where terms cancel near the largest radius:
+  const excess = given.float(given.A ** 2n + given.B ** 2n - square, 2);
+  const side = (range, other) => {
     const nearest = Math.sqrt(Math.max(given.float(square - other ** 2n, 2), 0));
-    return nearest > 0 ? room / (whole + nearest) : whole;
+    return nearest > 0 ? excess / (range + nearest) : range;
   };
   const sideX = side(A, given.B), sideY = side(B, given.A);
 
@@ -66,15 +66,15 @@ function initialStates(width, height, radius) {
     do {
       x = sideX * Math.sqrt(random.uniform());
       y = sideY * Math.sqrt(random.uniform());
-    } while (room - x * (2 * A - x) - y * (2 * B - y) <= 0);
-    // Given the separation, the disc on the left is anywhere between its wall and the other disc.
-    const centres = (range, slack) => {
-      const low = slack * random.uniform() - range / 2, high = low + (range - slack);
+    } while (excess - x * (2 * A - x) - y * (2 * B - y) <= 0);
+    // For a given separation, the centre on the left is uniform over the range that is left to it.
+    const centres = (range, free) => {
+      const low = free * random.uniform() - range / 2, high = low + (range - free);
       return random.uniform() < 0.5 ? [low, high] : [high, low];
     };
     const [x1, x2] = centres(A, x);
     const [y1, y2] = centres(B, y);
-    // Marsaglia's way to a point on the sphere (1972).
+    // Marsaglia's method for a point on the sphere (1972).
     const [p, q, first] = random.inDisc();
     const [m, n, second] = random.inDisc();
     const scale = Math.sqrt((1 - first) / second);
@@ -91,7 +91,7 @@ class Pair {
     this.halfX = width / 2 - radius;
     this.halfY = height / 2 - radius;
     this.square = (2 * radius) ** 2;
-    // When the last flight saw y1 = y2 or x1 = x2, from its beginning; −1 for not at all.
+    // The time in the last flight at which y1 = y2 or x1 = x2; −1 if there is none.
     this.vertical = -1;
     this.horizontal = -1;
     this.flight = 0;
@@ -103,8 +103,8 @@ class Pair {
     const { halfX, halfY } = this;
     const dx = x1 - x2, dy = y1 - y2, du = u1 - u2, dv = v1 - v2;
 
-    // The wall ahead is at ±half; a disc that rounding has put behind it gets there in as short a
-    // time. For a disc at rest that is infinity or NaN, and neither is less than a time.
+    // The wall ahead is at ±half; a disc that rounding has put behind it reaches it in an equally
+    // short time. For a disc at rest this is infinity or NaN, and neither is less than a time.
     let time = most, code = END;
     let t = Math.abs((u1 > 0 ? halfX : -halfX) - x1) / Math.abs(u1);
     if (t < time) (time = t), (code = WALL_X1);
@@ -115,9 +115,8 @@ class Pair {
     t = Math.abs((v2 > 0 ? halfY : -halfY) - y2) / Math.abs(v2);
     if (t < time) (time = t), (code = WALL_Y2);
 
-    // Contact is a matter of direction: discs that touch and part are left alone, discs that touch
-    // and approach collide now. The discriminant is taken as a σ² − (Δx ∧ Δv)², which does not
-    // cancel where discs graze.
+    // Discs that touch collide only if they approach. The discriminant is computed as
+    // a σ² − (Δx ∧ Δv)², which does not cancel in a grazing collision.
     const b = dx * du + dy * dv;
     if (b < 0) {
       const cross = dx * dv - dy * du;
@@ -164,23 +163,23 @@ class Pair {
 
 const COUNTED = ["vertical_hop", "horizontal_hop", "disc_collision", "any_wall"];
 
-/** How long a run counts events. */
+/** The time in which a run counts events. */
 const DURATION = 20;
 
-/** Bins of the histogram of intervals, and where it ends, in mean times. */
+/** Bins of the histogram of intervals, and its end in mean times. */
 const BINS = 40, REACH = 5;
 
-/** Below so many runs, or events, there is no honest error. */
+/** The fewest runs, and events, for an error. */
 const ENOUGH = 100;
 
-/** Many runs of one scene, one after the other, each from an initial state of its own.
+/** Many runs of one scene, one after the other, each from its own initial state.
  *
  * The mean count of a run over its duration is the rate, without bias, for initial states from the
  * invariant measure. Events of one run depend on each other, so errors come from the spread of the
  * counts between runs, which are independent: not from the square root of the number of events.
  *
- * An interval between hops belongs to the run in which it begins, and is followed to its end: those
- * that a run cuts off would be the long ones. What is longer than the histogram only counts.
+ * An interval between hops belongs to the run in which it begins, and is followed to its end:
+ * otherwise long intervals would be missing. Intervals longer than the histogram are only counted.
  */
 class Runs {
   constructor(width, height, radius, seed) {
@@ -204,10 +203,10 @@ class Runs {
     this.pair = new Pair(...this.scene, this.current);
     this.time = 0;
     this.counts = new Float64Array(COUNTED.length);
-    this.last = [NaN, NaN]; // when each kind of hop was last seen: NaN for not yet
+    this.last = [NaN, NaN]; // the time of the last hop of each kind; NaN before the first
   }
 
-  /** Simulate some `events`, and no more than so many `runs` in all. */
+  /** Simulate `events` events, until there are `runs` runs in all. */
   advance(events, runs = Infinity) {
     for (let i = 0; i < events && this.done < runs; i++) {
       if (this.time < DURATION) this.count();
@@ -223,12 +222,12 @@ class Runs {
     else if (code !== END) counts[3]++;
     this.hop(0, pair.vertical, true);
     this.hop(1, pair.horizontal, true);
-    // The end of a run is reached exactly, whatever the roundings of its flights.
+    // A run ends exactly at DURATION; roundings of its flights do not matter.
     this.time = code === END ? DURATION : this.time + pair.flight;
     this.events++;
   }
 
-  /** Whether an interval that began in this run is not complete, nor too long for the histogram. */
+  /** Whether an interval that began in this run is still incomplete and within the histogram. */
   isOpen(hop) {
     return this.time - this.last[hop] < this.histograms[hop].end;
   }
@@ -260,12 +259,12 @@ class Runs {
       this.squares[i] += count * count;
     });
     this.done++;
-    this.shown = this.current;
+    this.finished = this.current;
     this.begin();
   }
 
-  /** {count, time, error, exact, z} of an event, by its index in COUNTED; null for what is not
-   *  known. z is positive where the time is too long. */
+  /** {count, time, error, exact, z} of an event, by its index in COUNTED; unknown values are null.
+   *  z is positive if the time is too long. */
   measured(i) {
     const n = this.done, count = this.sums[i], exact = this.exact.times[COUNTED[i]];
     const time = count ? (n * DURATION) / count : null;

@@ -3,24 +3,24 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 
-/** The address holds the scene: #width=3&height=1&radius=0.24. Behind these, seed=7 chooses other
+/** The address holds the scene: #width=3&height=1&radius=0.24. In addition, seed=7 chooses other
  *  random numbers and runs=5000 ends the counting after 5000 runs. */
 const KEYS = ["width", "height", "radius", "seed", "runs"];
 const SIDES = ["width", "height"], LENGTHS = [...SIDES, "radius"];
 
-/** Units per second that the drawn pair moves. */
+/** Time units per second in the drawing. */
 const SPEED = 0.6;
 
-/** Counting takes so many milliseconds of a frame, of the 16 that there are on most screens. */
+/** Milliseconds of a frame for counting; most screens have 16 per frame. */
 const SHARE = 9;
 
-/** Events between two looks at the clock, and looks in a frame at most. */
+/** Events between two readings of the clock, and the most readings in a frame. */
 const CHUNK = 2000, CHUNKS = 200;
 
-/** Milliseconds between two renewals of the numbers: they are to be read. */
+/** Milliseconds between two renewals of the numbers, long enough to read them. */
 const RENEWED = 250;
 
-/** Decades of mean times that are shown, in units. */
+/** The range of mean times in the plot, in units. */
 const SHOWN_TIMES = [0.001, 1000];
 
 /** Radii of a curve in each regime. */
@@ -34,7 +34,7 @@ const NAMES = {
 };
 const GLYPHS = { o: "●", s: "■", "^": "▲", P: "✚", D: "◆", v: "▼" };
 
-/** The events that lend the discs their colours. */
+/** The events whose colours the discs have. */
 const DISCS = ["vertical_hop", "horizontal_hop"];
 
 const at = (id) => document.getElementById(id);
@@ -42,8 +42,8 @@ const colour = (event) => DATA.looks[event][0];
 const key = (event) =>
   `<span class="key" style="color: ${colour(event)}">${GLYPHS[DATA.looks[event][1]]}</span>`;
 
-// All is computed in a unit of length in which the box is of order one, and multiplied where it is
-// printed. That is the unit of time, too, for the speed is 1.
+// All computations use a unit of length in which the box is of order one; printed values are
+// multiplied by it. It is also the unit of time, because the speed is 1.
 let unit;
 
 /** The power of ten next to the shorter side of a box. */
@@ -58,26 +58,26 @@ const state = { paused: matchMedia("(prefers-reduced-motion: reduce)").matches }
 let asked; // {name: number} of the address
 let runs; // the statistics of the scene
 let curves; // the exact mean times of its box
-let drawn; // the run that is shown: {pair, time, trail, flash}
+let drawn; // the run in the drawing: {pair, time, trail, flash}
 
 // Controls -----------------------------------------------------------------------------------
 
-/** The largest radius of the slider: a little below where the discs jam. */
+/** The largest radius of the slider, slightly below the largest radius of the box. */
 const lastRadius = () => Math.floor(999 * largestRadius(state.width, state.height)) / 1000;
 
-/** Take a box and its unit; the sliders reach the boxes of the build that have the same one. */
+/** Take a box and its unit; the sliders reach all boxes of the build with the same unit. */
 function choose(box) {
   unit = unitOf(box);
-  const alike = [box, ...DATA.scenes.filter((scene) => unitOf(scene) === unit)];
+  const boxes = [box, ...DATA.scenes.filter((scene) => unitOf(scene) === unit)];
   for (const [side, low, high] of [["width", 0.5, 3], ["height", 0.5, 2]]) {
-    const sides = alike.map((scene) => inUnits(scene[side]));
+    const sides = boxes.map((scene) => inUnits(scene[side]));
     at(side).min = Math.min(low, ...sides);
     at(side).max = Math.max(high, ...sides);
     state[side] = sides[0];
   }
 }
 
-/** Read the address; a part of it that this page cannot show is named. */
+/** Read the address; name its parts that this page cannot show. */
 function readAddress() {
   const given = [...new URLSearchParams(location.hash.slice(1))];
   const taken = ([name, text]) => KEYS.includes(name) && text !== ""
@@ -88,19 +88,19 @@ function readAddress() {
   asked = Object.fromEntries(given.filter(taken).map(([name, text]) => [name, Number(text)]));
   const first = DATA.scenes[0] ?? { width: 1.5, height: 1 };
   choose({ width: asked.width ?? first.width, height: asked.height ?? first.height });
-  // Discs of this radius can hop either way, whatever the box.
+  // In every box, discs of this radius can hop in both ways.
   const usual = Number((Math.min(state.width, state.height) / 5).toFixed(3));
   state.radius = "radius" in asked ? inUnits(asked.radius) : usual;
   changed();
 }
 
-/** Write the scene into the address, so that a copy of it shows the same. */
+/** Write the scene into the address, so that a copy of the address shows the same scene. */
 function writeAddress() {
   const lengths = LENGTHS.map((name) => [name, short(unit * state[name], 12)]);
   history.replaceState(null, "", `#${new URLSearchParams({ ...asked, ...Object.fromEntries(lengths) })}`);
 }
 
-/** Take a length that was typed; a box far from the old one gets sliders of its own. */
+/** Take a typed length; a box of another size gets new sliders. */
 function typed(name, value) {
   if (value > 0 && value < Infinity) {
     const lengths = Object.fromEntries(LENGTHS.map((each) => [each, unit * state[each]]));
@@ -152,14 +152,14 @@ function showPause() {
 function showControls() {
   at("radius").max = lastRadius();
   for (const name of LENGTHS) {
-    const slider = at(name), shown = short(unit * state[name], 12);
+    const slider = at(name), text = short(unit * state[name], 12);
     slider.value = state[name];
-    slider.ariaValueText = shown;
-    Object.assign(slider.nextElementSibling, { value: shown, step: short(unit * slider.step, 12) });
+    slider.ariaValueText = text;
+    Object.assign(slider.nextElementSibling, { value: text, step: short(unit * slider.step, 12) });
   }
 }
 
-/** Begin anew: the box or the radius is another one. */
+/** Start again with another box or radius. */
 function changed() {
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
   showControls();
@@ -184,7 +184,7 @@ function show(initial) {
   drawn = { pair, time: 0, trail: [[0, pair.x1, pair.y1, pair.x2, pair.y2]], flash: null };
 }
 
-/** Move the drawn pair by some time; at the end of its run another one follows. */
+/** Move the drawn pair by `time`; after the end of its run another run follows. */
 function move(time) {
   const { pair } = drawn;
   while (time > 0) {
@@ -196,7 +196,7 @@ function move(time) {
     if (pair.horizontal >= 0) drawn.flash = { name: "horizontal hop", since: drawn.time };
   }
   while (drawn.trail[0][0] < drawn.time - 1.5) drawn.trail.shift();
-  if (drawn.time >= DURATION) show(runs.shown ?? runs.current);
+  if (drawn.time >= DURATION) show(runs.finished ?? runs.current);
 }
 
 function draw() {
@@ -246,15 +246,15 @@ function draw() {
 
   const age = flash ? time - flash.since : Infinity;
   if (age >= 0.35) return;
-  // The line on which both centres were, drawn where they are now.
-  const upright = flash.name === "horizontal hop";
+  // The line through both centres at the hop, drawn at their present positions.
+  const isHorizontal = flash.name === "horizontal hop";
   const x = (pair.x1 + pair.x2) / 2, y = (pair.y1 + pair.y2) / 2;
   context.globalAlpha = 1 - age / 0.35;
   context.setLineDash([6 * line, 4 * line]);
   context.strokeStyle = ink("--ink");
   context.beginPath();
-  context.moveTo(upright ? x : -state.width / 2, upright ? -state.height / 2 : y);
-  context.lineTo(upright ? x : state.width / 2, upright ? state.height / 2 : y);
+  context.moveTo(isHorizontal ? x : -state.width / 2, isHorizontal ? -state.height / 2 : y);
+  context.lineTo(isHorizontal ? x : state.width / 2, isHorizontal ? state.height / 2 : y);
   context.stroke();
   context.setTransform(density, 0, 0, density, 0, 0);
   context.textAlign = "center";
@@ -265,19 +265,19 @@ function draw() {
 
 // The table ----------------------------------------------------------------------------------
 
-const whole = (number) => number.toLocaleString("en").replaceAll(",", "\u202f");
+const spaced = (number) => number.toLocaleString("en").replaceAll(",", "\u202f");
 
 const isUsual = (number) => number === 0 || (number >= 1e-3 && number < 1e5);
 
 const exponential = (number, digits) => number.toExponential(digits).replace("+", "");
 
-/** A number to some digits, without an exponent where people write none. */
+/** A number to some digits, with an exponent only if it is very small or large. */
 function short(number, digits = 4) {
   const rounded = Number(number.toPrecision(digits));
   return isUsual(rounded) ? String(rounded) : exponential(rounded);
 }
 
-/** Numbers with as many decimals as an error leaves, of which two digits count. */
+/** Return a function that writes numbers with the decimals of two digits of an error. */
 function decimals(error) {
   if (!error) return short;
   const digits = 1 - Math.floor(Math.log10(error));
@@ -291,7 +291,7 @@ function showTable() {
     const { count, time, error, exact, z } = runs.measured(i);
     const decimal = decimals(error && unit * error), rounded = (units) => decimal(unit * units);
     const cells = [
-      whole(count),
+      spaced(count),
       time === null ? "–" : rounded(time),
       error === null ? "–" : `${((100 * error) / time).toPrecision(2)} %`,
       exact === null ? "never" : rounded(exact),
@@ -302,13 +302,13 @@ function showTable() {
   }).join("");
   const { done, events } = runs;
   at("status").textContent = done
-    ? `${whole(done)} runs of ${short(unit * DURATION)} time units, ${(events / 1e6).toFixed(1)} million events`
+    ? `${spaced(done)} runs of ${short(unit * DURATION)} time units, ${(events / 1e6).toFixed(1)} million events`
     : state.paused ? "Paused: press Run to count." : "";
 }
 
 // The plots ----------------------------------------------------------------------------------
 
-/** {radii, times: {event: mean times}}: dense where curves bend, towards the ends of each regime. */
+/** {radii, times: {event: mean times}}: dense near the ends of each regime, where curves bend. */
 function exactCurves() {
   const ends = thresholds(state.width, state.height).map(([radius]) => radius);
   const edges = [0, ...ends, largestRadius(state.width, state.height)];
@@ -327,7 +327,7 @@ function exactCurves() {
 const builtScene = () => DATA.scenes.find(
   ({ width, height }) => inUnits(width) === state.width && inUnits(height) === state.height);
 
-/** Draw the curves, and points with errors: those of the build, and what this page has counted. */
+/** Draw the curves, and points with errors, from the build and from the counts of this page. */
 function paintTimes(plot) {
   for (const [radius] of thresholds(state.width, state.height)) {
     plot.line(radius, ink("--grid"), [4, 4]);
@@ -372,7 +372,7 @@ const timesPlot = new Plot(at("times"), {
   },
 });
 
-/** The hop whose intervals are shown: its event, and its bins as densities, null for an empty one. */
+/** The hop of the histogram: its event, and its bins as densities, null for an empty bin. */
 function intervals() {
   const hop = Number(at("hop").value), { bins, mean, total } = runs.histograms[hop];
   const width = REACH / BINS;
@@ -403,10 +403,10 @@ const intervalsPlot = new Plot(at("intervals"), {
 function showIntervals() {
   const { event, mean, total } = intervals();
   intervalsPlot.draw();
-  at("said").textContent = mean === null
+  at("explanation").textContent = mean === null
     ? `In this box discs of this radius make no ${NAMES[event]}.`
-    : `Bars are ${whole(total)} intervals; the dashed line is the exponential of the exact mean,`
-      + ` τ = ${short(unit * mean)}, which independent hops would follow.`;
+    : `Bars are ${spaced(total)} intervals; the dashed line is the exponential of the exact mean,`
+      + ` τ = ${short(unit * mean)}: the law of independent hops.`;
 }
 
 /** Renew all numbers. */
@@ -432,7 +432,7 @@ let before = null, renewed = 0;
 
 function frame(now) {
   if (!state.paused) {
-    // After a pause of the browser's own, in a hidden page, nothing is made up for.
+    // After the browser has paused a hidden page, the missing time is skipped.
     move((SPEED * Math.min(now - (before ?? now), 50)) / 1000);
     const begun = performance.now();
     for (let i = 0; i < CHUNKS && performance.now() - begun < SHARE; i++) runs.advance(CHUNK, asked.runs);

@@ -23,13 +23,13 @@ class Axis {
     this.scale = this.log ? Math.log10 : Number;
   }
 
-  /** The fraction of the axis at which a value is. */
+  /** The position of a value as a fraction of the axis. */
   fraction(value) {
     const [low, high] = this.range().map(this.scale);
     return (this.scale(value) - low) / (high - low);
   }
 
-  /** Round values between the ends of the axis, at most so `many`. */
+  /** Round values between the ends of the axis, at most `many`. */
   ticks(many) {
     const [low, high] = this.range().map(this.scale);
     const coarse = (high - low) / many, power = 10 ** Math.floor(Math.log10(coarse));
@@ -43,13 +43,13 @@ class Axis {
   }
 }
 
-/** A plot in the canvas of `holder`, which `paint(plot)` fills; `read(x)` is written below it where
- *  the cursor is. */
+/** A plot in the canvas of `holder`, which `paint(plot)` fills. The text `read(x)` at the cursor is
+ *  written below it. */
 class Plot {
   constructor(holder, { x, y, paint, read }) {
     Object.assign(this, { x: new Axis(x), y: new Axis(y), paint, read, cursor: null });
     this.canvas = holder.querySelector("canvas");
-    this.said = holder.querySelector("output");
+    this.readout = holder.querySelector("output");
     this.canvas.addEventListener("pointermove", (event) => this.look(event.offsetX));
     this.canvas.addEventListener("pointerleave", () => this.look(NaN));
   }
@@ -69,7 +69,7 @@ class Plot {
     ];
   }
 
-  /** Draw everything anew, as wide as the page leaves room for. */
+  /** Draw everything again, in the width that the page gives. */
   draw() {
     const { canvas } = this, density = devicePixelRatio || 1, context = canvas.getContext("2d");
     const [wide, high] = [canvas.clientWidth, canvas.clientHeight];
@@ -84,7 +84,7 @@ class Plot {
     this.paint(this);
     if (this.cursor !== null) this.line(this.cursor, ink("--soft"), []);
     context.restore();
-    this.said.value = this.cursor === null ? "" : this.read(this.cursor);
+    this.readout.value = this.cursor === null ? "" : this.read(this.cursor);
   }
 
   frame(wide, high) {
@@ -103,7 +103,7 @@ class Plot {
       this.write(this.y.text(tick), left - 6, y, "right", "middle");
     }
     (this.x.marks?.() ?? []).forEach(([value, name], i, { length }) => {
-      // Two marks may be close: their names stand on different sides.
+      // Two marks may be close: their names are on different sides.
       const [x] = this.at(value, yLow), align = length === 1 ? "center" : ["right", "left"][i];
       this.write(name, x, top - 5, align, "bottom");
     });

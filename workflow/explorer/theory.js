@@ -1,8 +1,8 @@
 "use strict";
-// Exact volume, areas and mean times of two equal discs between walls: theory/plain.py once more.
+// Exact volume, areas and mean times of two equal discs between walls, as in theory/plain.py.
 //
-// Lengths are integers (BigInt) in units of 2^-k, so that a difference that cancels is taken
-// exactly and rounded once. Volume and areas are sums of positive terms over the arc
+// Lengths are integers (BigInt) in units of 2^-k, so that differences with cancellation are
+// exact and rounded once. Volume and areas are sums of positive terms over the arc
 // (u, v) = σ (cos θ, sin θ) within [0, A] × [0, B], A = w − 2r, B = h − 2r, σ = 2r.
 
 const EVENTS = [
@@ -31,7 +31,7 @@ const RULE = gaussLegendre(16);
 
 const least = (a, b) => (a < b ? a : b);
 
-/** A, B and σ as integers in units of 2^-k; `float` rounds a product of so many lengths. */
+/** A, B and σ as integers in units of 2^-k; `float` rounds a product of `power` lengths. */
 function lengths(width, height, radius) {
   const sides = [width, height, radius];
   let k = 0;
@@ -41,15 +41,15 @@ function lengths(width, height, radius) {
   return { A: w - 2n * r, B: h - 2n * r, sigma: 2n * r, float };
 }
 
-/** Whether both discs have room to move. */
+/** Whether both discs fit and can move. */
 function fits({ A, B, sigma }) {
   return A > 0n && B > 0n && A * A + B * B > sigma * sigma;
 }
 
-/** Volume and areas of the lengths of a box in which the discs fit, in length⁴ and length³. */
+/** Volume and areas for the `lengths` of a box in which the discs fit, in length⁴ and length³. */
 function measures({ A, B, sigma, float }) {
   const square = sigma * sigma;
-  // A point on the arc is named by its u², which falls from `start` (at β) to `stop` (at α).
+  // A point on the arc has the coordinate u², which falls from `start` (at β) to `stop` (at α).
   const start = least(A, sigma) ** 2n;
   const stop = square - least(B, sigma) ** 2n;
 
@@ -57,7 +57,7 @@ function measures({ A, B, sigma, float }) {
     if (first === second) return 0;
     const [u1, v1, u2, v2] = [first, square - first, second, square - second].map(
       (value) => Math.sqrt(float(value, 2)));
-    // u1 v2 − u2 v1, without its cancellation.
+    // u1 v2 − u2 v1, without cancellation.
     const cross = float(square * (first - second), 4) / (u1 * v2 + u2 * v1);
     return Math.atan2(cross, u1 * u2 + v1 * v2);
   }
@@ -76,7 +76,7 @@ function measures({ A, B, sigma, float }) {
   for (const [t, rest, part] of RULE) {
     const after = t * turn, before = rest * turn;
     const weight = part * turn * s;
-    // The slacks A − σ cos θ and B − σ sin θ, each a sum of positive terms.
+    // A − σ cos θ and B − σ sin θ, each as a sum of positive terms.
     const x = beyondX + 2 * s * Math.sin(after / 2) * Math.sin(beta + after / 2);
     const y = beyondY + 2 * s * Math.sin(before / 2) * Math.sin(alphaLeft + before / 2);
     const cos = Math.sin(alphaLeft + before), sin = Math.sin(beta + after);
@@ -99,10 +99,10 @@ function measures({ A, B, sigma, float }) {
   };
 }
 
-/** {volume, areas, times} of a box and a radius, null where the discs do not fit.
+/** {volume, areas, times} of a box and a radius, null if the discs do not fit.
  *
- * Keys of areas and times are EVENTS. A time is null where the event is impossible; that of a wall
- * is of disc 1 on the trajectories that can reach it, half of all where the discs keep their sides.
+ * Keys of areas and times are EVENTS. A time is null if the event is impossible. The time of a wall
+ * is for disc 1, on the trajectories that can reach it: half of all if the discs keep their sides.
  */
 function exact(width, height, radius) {
   const given = lengths(width, height, radius);

@@ -1,4 +1,4 @@
-# What the stages share: the scenes, the paths of what is built from them, and the code that builds it.
+# Shared by all stages: the scenes, the paths of their files, and the fingerprints of the code.
 import json
 import shutil
 import sys
@@ -32,22 +32,22 @@ if os.path.dirname(found or "") != os.path.dirname(sys.executable):
         " runs Snakemake: activate its environment if a job fails."
     )
 
-# The threads of a job that measures how fast the machine is: it runs alone.
-ALONE = workflow.cores or 1
+# The threads of a job that measures speed: all cores, so no other job runs beside it. A report has no cores.
+ALL_CORES = workflow.resource_settings.cores or 1
 
 
 def source(path):
-    """Return where a text of this workflow is: in a checkout, or where Snakemake fetched it to.
+    """Return the path of a text of this workflow: in a checkout, or in the folder that Snakemake fetched.
 
-    In a checkout the path is relative: if that is moved, nothing runs again.
+    In a checkout the path is relative: if the checkout is moved, nothing runs again.
     """
     here = os.path.relpath(os.path.join(str(workflow.current_basedir), "../..", path))
     if os.path.exists(here):
-        return local(here)  # not of a storage
+        return local(here)  # not in a storage
     return workflow.source_path(f"../../{path}")
 
 
-# The scenes of the configuration by their folders, and those of the study of effects.
+# The scenes of the configuration by their folders, and the scenes of the study of effects.
 EFFECT_FILES = [source(f"config/scenes/{name}.yaml") for name in EFFECTS]
 CONFIGURATION = replace(
     CONFIGURATION,
@@ -66,8 +66,8 @@ CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 if (days := cost.days(CONFIGURATION.scenes)) > 1:
     days = float(f"{days:.2g}")
     logger.warning(
-        f"This configuration takes some {days:g} days of processor time;"
-        " snakemake forecast says it better."
+        f"This configuration takes about {days:g} days of processor time;"
+        " snakemake forecast gives a better estimate."
     )
 
 
@@ -83,8 +83,8 @@ wildcard_constraints:
 # The floors that have modules for families of scenes, from the lowest one up.
 FLOORS = ("model", "theory", "sampling", "dynamics")
 
-# Modules that compute nothing: a job uses the entry of a catalogue that its parameters name, and the
-# others refuse, read arguments, draw a bar or name sources.
+# Modules that compute nothing. A job uses only the entry of a catalogue that its parameters name. The
+# other modules refuse input, read arguments, draw a bar or name sources.
 NOT_COMPUTING = (
     "twodiscs.figures.catalogue",
     "twodiscs_paper.catalogue",
@@ -103,7 +103,7 @@ def code(*modules, without=()):
 
 
 def family_modules(floor, *families):
-    """Return the modules of families of scenes on a floor and on those that it stands on.
+    """Return the modules of families of scenes on a floor and on all lower floors.
 
     They are imported by a computed name, which a fingerprint does not follow.
     """
@@ -112,18 +112,18 @@ def family_modules(floor, *families):
 
 
 def box(w):
-    """Return the arguments that say what the box of the scene of a job is."""
+    """Return the arguments for the box of the scene of a job."""
     scene = SCENES[w.scene] if "scene" in w.keys() else MAIN
     return box_arguments(scene.box) if scene else []
 
 
 def minutes(stage=None):
-    """Return how long a job of a stage may take, more when it is retried."""
+    """Return the limit of time of a job of a stage, longer with each retry."""
     return lambda w, attempt: attempt * cost.minutes(SCENES[w.scene], stage or w.stage)
 
 
 def shards_of(stage):
-    """Return an input function: the shards of a point of a stage, none where one job does it all."""
+    """Return an input function: the shards of a point of a stage, none if one job does all its work."""
 
     def files(w):
         folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
@@ -141,39 +141,43 @@ def work_of(stage):
 def point_code(stage=None):
     """Return a function of the wildcards: the fingerprint of the code that makes a point or a shard.
 
-    The module of each stage is imported by its own jobs alone.
+    Only the jobs of a stage import the module of the stage. Points are made without the estimates
+    that follow from them.
     """
 
     def of_job(w):
         run = STAGES[stage or w.stage]
         others = tuple({*STAGES.values()} - {run})
         family = family_modules(run.split(".")[1], SCENES[w.scene].box.family)
+        others += ("twodiscs.points.estimates",)
         return code("twodiscs_paper.pipeline.jobs.point", *family, without=others)
 
     return of_job
 
 
 def says(table):
-    """Return what Snakemake's report says of a table."""
+    """Return the labels of a table in Snakemake's report."""
     return {"table": table.name(), "what a row says": table.meaning()}
 
 
 def about(w):
-    """Return the scene that a figure is about: the main one, if there is one, for one of none."""
+    """Return the scene of a figure; for a figure without a scene the main scene, or None."""
     return SCENES[w.scene] if "scene" in w.keys() else MAIN
 
 
 def origin(w):
-    """Return what a figure says in its metadata of what made it."""
+    """Return the origin of a figure for its metadata."""
     scene = about(w)
     start = f"scene {scene.name}, " if scene else ""
     return f"{start}seed {CONFIGURATION.seed}, code {figure_code(w)}"
 
 
 def radius_of(w):
-    """Return the arguments that say the radius of a trajectory, for figures of one."""
-    shown = "trajectory" in ENTRIES[w.figure].tables
-    return ["--radius", str(about(w).quantities.trajectory)] if shown else []
+    """Return the arguments for the radius of a trajectory, for figures of a trajectory."""
+    has_trajectory = "trajectory" in ENTRIES[w.figure].tables
+    return (
+        ["--radius", str(about(w).quantities.trajectory)] if has_trajectory else []
+    )
 
 
 def figure_code(w):
@@ -198,7 +202,7 @@ def figure_tables(w, input):
 class Caption:
     """The caption of a figure in Snakemake's report, which is composed when the report prints it.
 
-    The modules of figures take long to import. As an object it is no parameter that reruns a job.
+    The modules of figures take long to import. An object is no parameter that reruns a job.
     """
 
     def __init__(self, w):
@@ -223,7 +227,7 @@ def of_study(w):
 
 
 def study_code(w):
-    """Return the fingerprint of the code that makes the table of a study, or a part of it."""
+    """Return the fingerprint of the code that makes the table of a study, or a part of the table."""
     return code(
         "twodiscs_paper.pipeline.jobs.study",
         of_study(w).tables[0].__module__,
@@ -231,6 +235,6 @@ def study_code(w):
     )
 
 
-def drawn(figure):
+def figure_files(figure):
     """Return the files of a figure in all scenes."""
     return [FILES.figures(scene).get(figure, []) for scene in CONFIGURED]

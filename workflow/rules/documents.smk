@@ -1,10 +1,10 @@
-# What is made of all results: the manuscript, the report, fingerprints and the comparison with what is
-# expected; and what is measured of this machine, a forecast and the speed of the engines.
+# Documents from all results: the manuscript, the report, the manifest and the comparison with expected
+# results; and measurements of this machine: a forecast and the speed of the engines.
 from twodiscs_paper.pipeline.results.manifest import is_reproducible
 
 
 rule configuration:
-    """The whole configuration, however it was put together."""
+    """The complete configuration, from all its files and options."""
     output:
         json=f"{RESULTS}/configuration.json",
     log:
@@ -22,10 +22,13 @@ if MAIN:
         """The manuscript; every number in it is read from these results."""
         input:
             template=source("paper/paper.typ"),
-            long_run=source("paper/long_run/mean_times.csv"),
+            long_run=source("paper/long_run/far/mean_times.csv"),
+            long_passages=source("paper/long_run/passages/passages.csv"),
+            long_tails=source("paper/long_run/tails/tails.csv"),
             texts=[
                 source("paper/results.typ"),
                 source("paper/references.bib"),
+                source("paper/published.yaml"),
                 source("CITATION.cff"),
             ],
             figures=[
@@ -64,7 +67,8 @@ if MAIN:
         shell:
             "python -P -m twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
             " {input.studied:q} --template {input.template:q} --boxes {params.boxes} --seed {params.seed}"
-            " --long-run {input.long_run:q} --configuration {params.configuration} --numbers {output.numbers:q}"
+            " --long-runs long_run={input.long_run:q} long_passages={input.long_passages:q} long_tails={input.long_tails:q}"
+            " --configuration {params.configuration} --numbers {output.numbers:q}"
             " --output {output.pdf:q} > {log:q} 2>&1"
 
 
@@ -124,7 +128,7 @@ rule manifest:
 
 
 rule provenance:
-    """Where and when the results came to be: all that differs between two runs of the same."""
+    """The origin of the results: all that differs between two runs of the same configuration."""
     input:
         files=rules.report.input.results,
     output:
@@ -143,9 +147,9 @@ rule provenance:
 
 
 rule explorer:
-    """The explorer: the discs as they move and are counted, beside exact values and points that are built."""
+    """The explorer: moving discs with counts of their events, beside exact values and built points."""
     input:
-        # The page does without points: it takes those that are built, and is renewed with them.
+        # The page needs no points: it takes the built ones, and is renewed with them.
         tables=[
             path
             for scene in CONFIGURATION.plain
@@ -216,7 +220,7 @@ rule crate:
 
 
 rule audit:
-    """Name every result that is no longer what its job wrote. It has no output, so it runs when asked for."""
+    """Name every result that is no longer what its job wrote. Without output, it runs on every request."""
     input:
         configuration=rules.configuration.output.json,
     log:
@@ -227,14 +231,14 @@ rule audit:
 
 
 rule verify:
-    """Compare the results with those that are expected of the default configuration."""
+    """Compare the results with the expected results of the default configuration."""
     input:
         configuration=rules.configuration.output.json,
     log:
         f"{RESULTS}/logs/verify.log",
     localrule: True
     params:
-        # What is expected does not come with a wheel: there it says so.
+        # A wheel has no expected results: then the job says so.
         expected=os.path.join(os.path.dirname(source("paper/paper.typ")), "expected"),
     shell:
         "python -P -m twodiscs_paper.pipeline.results.verify --configuration {input.configuration:q}"
@@ -242,7 +246,7 @@ rule verify:
 
 
 rule forecast:
-    """What the configuration will take on this machine; tables of costs are set against it."""
+    """The time of the configuration on this machine; tables of costs are compared with it."""
     input:
         configuration=rules.configuration.output.json,
     output:
@@ -250,13 +254,13 @@ rule forecast:
     log:
         f"{RESULTS}/logs/forecast.log",
     localrule: True
-    threads: ALONE
+    threads: ALL_CORES
     shell:
         "python -P -m twodiscs_paper.pipeline.forecast --configuration @{input.configuration:q} --cores {threads}"
         " --output {output.table:q} 2> {log:q}"
 
 
-# Costs are set against a forecast if there is one; a table of costs asks for none.
+# Costs are compared with a forecast if there is one; a table of costs does not require it.
 FORECAST = rules.forecast.output if exists(rules.forecast.output.table) else []
 
 
@@ -271,7 +275,7 @@ rule benchmark:
     benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
-    threads: ALONE
+    threads: ALL_CORES
     params:
         code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:

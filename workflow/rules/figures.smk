@@ -1,10 +1,10 @@
-# Every figure of every scene that calls for it, as PDF for the manuscript and as PNG for the screen; those
-# of studies, which are made once; and the animation, a GIF for any program and a PNG because the report
-# shows no other animated image.
+# The figures of all scenes, as PDF for the manuscript and as PNG for the screen; the figures of studies, which
+# are made once; and the animation, a GIF for any program and a PNG because Snakemake's report shows no other
+# animated image.
 
 
 rule figure:
-    """A figure of a scene, of its tables."""
+    """A figure of a scene, from its tables."""
     input:
         tables=lambda w: FILES.figure_reads(ENTRIES[w.figure], w.scene).values(),
     output:
@@ -36,7 +36,7 @@ rule figure:
 
 
 rule shared_figure:
-    """A figure of a study, of its tables."""
+    """A figure of a study, from its tables."""
     input:
         tables=lambda w: FILES.figure_reads(ENTRIES[w.figure]).values(),
     output:
@@ -67,7 +67,7 @@ rule shared_figure:
 
 
 rule animate:
-    """The discs of a scene as they move, and a hop."""
+    """The moving discs of a scene, and a hop."""
     input:
         tables=[f"{RESULTS}/{{scene}}/trajectory.csv"],
     output:

@@ -1,9 +1,9 @@
-# What is found at each radius: exact values, Monte Carlo, molecular dynamics. A radius is a job; where
-# it is more work than one job should do it is the sum of shards, which are jobs too.
+# Results at each radius: exact values, Monte Carlo, molecular dynamics. A radius is a job. If it is too much
+# work for one job, it is the sum of shards, which are jobs, too.
 
 
 rule exact:
-    """Exact values at all radii of a scene: which regime each is in, volume, areas, mean times."""
+    """Exact values at all radii of a scene: the regime, volume, areas, mean times."""
     output:
         table=f"{RESULTS}/{{scene}}/{{table}}.csv",
     log:

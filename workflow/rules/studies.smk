@@ -1,5 +1,5 @@
-# The studies: the first table of each is made by one rule, of its parameters and of the tables that it reads.
-# A study that takes long has parts, which are jobs of their own; its table joins them.
+# The studies: one rule makes the first table of each study, from its parameters and the tables that it reads.
+# A study that takes long has parts, which are separate jobs; its table joins them.
 
 
 rule study_table:
@@ -20,7 +20,7 @@ rule study_table:
         f"{RESULTS}/benchmarks/{{study}}.tsv"
     wildcard_constraints:
         study="|".join(ALLOWED),
-    threads: lambda w: ALONE if w.study in of_study(w).timed else 1
+    threads: lambda w: ALL_CORES if w.study in of_study(w).timed else 1
     resources:
         runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
     params:
@@ -80,10 +80,10 @@ rule effects_curves:
 
 
 rule effects_cost:
-    """What each effect costs, in seconds for an event: speed is measured, so it runs alone."""
+    """The cost of each effect, in seconds per event. It measures speed, so no other job runs beside it."""
     input:
         scenes=EFFECT_FILES,
-        # The compiler has run by then.
+        # Then all kernels are compiled.
         tables=FILES.study_reads(STUDIES["effects"]).values(),
     output:
         table=report(
@@ -97,7 +97,7 @@ rule effects_cost:
         f"{RESULTS}/logs/effects_cost.log",
     benchmark:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
-    threads: ALONE
+    threads: ALL_CORES
     params:
         code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
     shell:

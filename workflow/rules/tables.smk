@@ -1,5 +1,5 @@
-# The points of a scene, gathered into tables and set against the exact values; and the verdict: exact
-# theory = Monte Carlo = molecular dynamics?
+# Tables of the points of a scene, beside the exact values; and the verdict: exact theory = Monte Carlo =
+# molecular dynamics?
 
 
 rule table:
@@ -43,7 +43,7 @@ rule table:
 
 
 rule check:
-    """Do exact theory, Monte Carlo and dynamics agree? It fails and names where they do not."""
+    """Do exact theory, Monte Carlo and dynamics agree? If not, it fails and names the comparisons."""
     input:
         tables=[
             FILES.table("check", scene)

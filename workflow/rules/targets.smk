@@ -1,5 +1,5 @@
-# A figure's name is a target: that figure, in every scene that calls for it. A study's name is one, too: its
-# tables and figures.
+# The name of a figure is a target: the figure in every scene that has it. The name of a study is a target, too:
+# its tables and figures.
 
 
 rule animation:
@@ -11,107 +11,107 @@ rule animation:
 rule model:
     """The billiard."""
     input:
-        drawn("model"),
+        figure_files("model"),
 
 
 rule hopping_trajectory:
     """Hopping dynamics."""
     input:
-        drawn("hopping_trajectory"),
+        figure_files("hopping_trajectory"),
 
 
 rule configuration_space:
     """Configuration space."""
     input:
-        drawn("configuration_space"),
+        figure_files("configuration_space"),
 
 
 rule volume:
     """Volume of configuration space."""
     input:
-        drawn("volume"),
+        figure_files("volume"),
 
 
 rule vertical_hop_area:
     """Area of vertical hops."""
     input:
-        drawn("vertical_hop_area"),
+        figure_files("vertical_hop_area"),
 
 
 rule horizontal_hop_area:
     """Area of horizontal hops."""
     input:
-        drawn("horizontal_hop_area"),
+        figure_files("horizontal_hop_area"),
 
 
 rule collision_area:
     """Area of disc collisions."""
     input:
-        drawn("collision_area"),
+        figure_files("collision_area"),
 
 
 rule wall_area:
     """Areas of wall hits."""
     input:
-        drawn("wall_area"),
+        figure_files("wall_area"),
 
 
 rule mean_hop_time:
     """Mean times between hops."""
     input:
-        drawn("mean_hop_time"),
+        figure_files("mean_hop_time"),
 
 
 rule mean_collision_time:
     """Mean time between disc collisions."""
     input:
-        drawn("mean_collision_time"),
+        figure_files("mean_collision_time"),
 
 
 rule mean_wall_time:
     """Mean times between wall hits."""
     input:
-        drawn("mean_wall_time"),
+        figure_files("mean_wall_time"),
 
 
 rule pressure:
     """Pressures and virials."""
     input:
-        drawn("pressure"),
+        figure_files("pressure"),
 
 
 rule hop_histogram:
     """Times between hops."""
     input:
-        drawn("hop_histogram"),
+        figure_files("hop_histogram"),
 
 
 rule largest_radius:
     """The largest radius."""
     input:
-        drawn("largest_radius"),
+        figure_files("largest_radius"),
 
 
 rule integration_regimes:
     """Regimes of the integration."""
     input:
-        drawn("integration_regimes"),
+        figure_files("integration_regimes"),
 
 
 rule surface_shell:
     """Shells around surfaces."""
     input:
-        drawn("surface_shell"),
+        figure_files("surface_shell"),
 
 
 rule accuracy_cost:
-    """What a digit costs by each method."""
+    """The cost of a digit by each method."""
     input:
         FILES.study("accuracy_cost"),
 
 
 rule effects:
-    """What each effect does to the mean times, and what it costs."""
+    """How each effect changes the mean times, and its cost."""
     input:
         FILES.study("effects"),
 
@@ -120,7 +120,7 @@ rule effects:
 if MAIN:
 
     rule errata:
-        """Which formulas of the source are right, and what decides it."""
+        """Which formulas of the source are right, with the evidence."""
         input:
             FILES.study("errata"),
 

@@ -1,40 +1,43 @@
-"""Each row compares one estimate with the exact theory. `z` is the deviation in standard errors or,
-where a normal law would not be right, the standard normal deviate with the same two-sided
+"""Each row compares one estimate with the exact theory. `z` is the deviation in standard errors. If
+a normal law would not be right, `z` is the standard normal deviate with the same two-sided
 probability `p`. A row has `passed` when |z| ≤ `bound`.
 
 The bounds are Bonferroni's. If everything is right, a scene fails with a probability of one in a
-thousand at most: half of that is shared equally by all comparisons at a radius, and half by the
-statements on all radii. `z_mean` says whether the scores of one quantity, by one method, scatter
-about zero (√n times their mean), and `z_spread` whether they scatter by one (their sum of squares,
-a χ² of n degrees): errors that are too small or too large show there. Both take the scores whose
-`test` is `normal`, and are exact for any number of them; tails of discrete laws are conservative
-by design and would look too narrow.
+thousand at most. Half of it is divided equally among all comparisons at a radius, half among the
+statements on all radii. `z_mean` tests whether the scores of one quantity, by one method, have the
+mean 0 (√n times their mean). `z_spread` tests whether their variance is 1 (their sum of squares, a
+χ² of n degrees): it finds errors that are too small or too large. Both take the scores whose `test`
+is `normal`, and are exact for any number of them. Tests of discrete laws are conservative by
+design: their scores would look too narrow.
 
-A row without an error bar says so in `status`. It is still compared wherever a bound holds: no
-hit at all is a failure where hits were due. Only where nothing can be said is `passed` empty.
+A row without an error bar has the reason in `status`. It is still compared if a bound holds: a
+count of 0 fails if hits were expected. If nothing can be compared, `passed` is empty.
 
-Where no exact value is known, as of most scenes of more than two discs, nothing is compared with
-it. `flux` then says whether a mean time of dynamics is that which volume and area by Monte Carlo
-give: their ratio is 1. So does `sum_rule`, the virial theorem, for any number of discs between
-walls.
+If no exact value is known, as in most scenes of more than two discs, nothing is compared with it.
+`flux` then compares a mean time of dynamics with the time that follows from volume and area by
+Monte Carlo: their ratio is 1. `sum_rule`, the virial theorem, is another test, for any number of
+discs between walls.
 
-A row is `independent`, a test, if it could fail and follows from no other: not one of an event that
-is certain or impossible, of a count that is the sum of other rows' counts in every replica, of an
-area or a sum rule put together from other rows, or of the scores of others. Tests of one method at
-one radius still share their samples or trajectories, so their scores are correlated.
+A row is `independent`, a test, if it could fail and follows from no other row. It is not if its
+event is certain or impossible, if its count is the sum of other rows' counts in every replica, if
+its area or sum rule is computed from other rows, or if it is about the scores of other rows. Tests
+of one method at one radius have the same samples or trajectories, so their scores are correlated.
 """
 
 import math
 from itertools import groupby
 
-from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.points import by_radius
+from twodiscs.comparison import scores
+from twodiscs.model.events import DECLARED
+from twodiscs.points.base import by_radius
+from twodiscs.points.estimates import MIN_EVENTS, Estimate
 from twodiscs.theory import virial
 from twodiscs.theory.exact import replicas_needed
+from twodiscs.theory.flux import constant
 
 SUM_RULE = ("disc_collision", "right_wall", "top_wall")
 
-#: Columns that are taken from what is compared.
+#: Columns that are copied from the values of a comparison.
 TAKEN = ("radius", "exact", "estimate", "stderr", "z", "status", "test")
 
 
@@ -56,7 +59,7 @@ def _comparison(name, quantity, method, values, derived=False):
 
 
 def _normal_values(radius, exact, estimate, stderr, z):
-    """Return the values of a comparison by a normal law, made only where there is an error bar."""
+    """Return the values of a comparison by a normal law; ``z`` is None without an error bar."""
     status, test = ("too-few", None) if z is None else ("counted", "normal")
     return {
         "radius": radius,
@@ -69,28 +72,57 @@ def _normal_values(radius, exact, estimate, stderr, z):
     }
 
 
+def sum_rule(scene, point):
+    """Return the estimate of the sum of virials over 2⟨K⟩, which is 1 (see ``theory.virial``).
+
+    The rates are averages over all replicas of a dynamics ``point``, whether they can reach a wall
+    or not. A wall's rate has the hits of all walls and discs that are equal by symmetry.
+    """
+    rates = {e: scene.share(e) / scene.multiplicity(e) / point.duration for e in SUM_RULE}
+    return point.combination({e: w * rates[e] for e, w in virial.weights(scene).items()})
+
+
 def _sum_rule(scene, point):
     """Return the comparison of the sum rule for one dynamics point, at the radius of ``scene``."""
-    counts, replicas = point["counts"], point["replicas"]
-    rule = estimates.sum_rule(scene, point["duration"], replicas, counts, point["products"])
-    enough = min(counts[event] for event in SUM_RULE) >= scores.NORMAL
+    rule, replicas = sum_rule(scene, point), point.replicas
+    enough = min(point.counts[event] for event in SUM_RULE) >= scores.NORMAL
     stderr = z = None
-    if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
-        # A run of rough discs may have missed the crowds of events.
+    if enough and replicas >= MIN_EVENTS and rule.stderr:
+        # A run of rough discs may have missed the initial states with very many events.
         enough = all(replicas >= replicas_needed(scene, e, rule.stderr) for e in SUM_RULE)
-    if enough and replicas >= estimates.MIN_EVENTS and rule.stderr:
+    if enough and replicas >= MIN_EVENTS and rule.stderr:
         stderr = rule.stderr
         z = scores.student_deviate((rule.value - 1) / stderr, replicas - 1)
     values = _normal_values(scene.radius, 1.0, rule.value, stderr, z)
     return _comparison("sum_rule", "mean_times", "dynamics", values, derived=True)
 
 
+def flux_time(scene, event, point):
+    """Return the mean time between events that follows from volume and area of a point.
+
+    It is an ``Estimate`` from a point of insertions: the rate is c_D/2 × area/volume from each side
+    of the surface, see ``theory``. It is None if the error is not known or the point lacks one.
+    """
+    events = [event]
+    if event == "any_wall":
+        events = [wall for wall in ("right_wall", "top_wall") if wall in scene.events]
+    weight = float(len(events) and scene.multiplicity(events[0])) if event == "any_wall" else 1.0
+    weights = {f"{name}_area": weight for name in events}
+    if not {"volume", *weights} <= point.quantities.keys():
+        return None
+    ratio = point.ratio(weights)
+    if ratio is None:
+        return None
+    rate = DECLARED[event].sides / 2 * constant(scene.velocity_components) * ratio.value
+    return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
+
+
 def _flux(scene, row, point, derived):
     """Return the comparison of a mean time of dynamics with volume and area by Monte Carlo.
 
-    ``row`` is that of the time, ``point`` one of insertions.
+    ``row`` is the row of the time in mean_times.csv, ``point`` a point of insertions.
     """
-    sampled = estimates.flux_time(scene, row["event"], point)
+    sampled = flux_time(scene, row["event"], point)
     ratio = stderr = z = None
     if sampled is not None and row["stderr"] is not None:
         ratio = row["estimate"] / sampled.value
@@ -105,10 +137,10 @@ def _flux(scene, row, point, derived):
 def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
     """Return a comparison for every estimate at a radius of a ``Box``, without verdicts.
 
-    ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables, ``dynamics`` the
-    points, which say whose counts are sums of others, and have the sum rule of virials wherever its
-    three events were counted. Where no exact mean time is known the points of ``monte_carlo`` say
-    what it should be.
+    ``volume``, ``areas``, ``times`` and ``histogram`` are rows of the tables. The points of
+    ``dynamics`` name the counts that are sums of others. They also give the sum rule of virials, if
+    its three events were counted. If no exact mean time is known, volume and area in the points of
+    ``monte_carlo`` give the time to compare with.
     """
     rows = []
     for name, table in (("volume", volume), ("area", areas)):
@@ -116,12 +148,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
             values = {**row, "exact": row["expectation"]}
             joined = row["quantity"] == "any_wall_area" and row["epsilon"] is None  # two shells
             rows.append(_comparison(name, row["quantity"], row["method"], values, joined))
-    summed = {
-        (point["radius"], event)
-        for point in dynamics
-        for event in estimates.sums_of_others(point["counts"], point["products"], point["replicas"])
-    }
-    inserted = {p["radius"]: p for p in monte_carlo if p["method"] == "insertion"}
+    summed = {(point.radius, event) for point in dynamics for event in point.sums_of_others()}
+    inserted = {p.radius: p for p in monte_carlo if p.method == "insertion"}
     for row in times:
         method = "dynamics" if row["starts"] == "invariant" else row["starts"]
         derived = method == "dynamics" and (row["radius"], row["event"]) in summed
@@ -138,8 +166,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
             values["status"] = "counted"
         rows.append(_comparison("hop_interval", f"{event}_interval", "intervals", values))
     for point in by_radius(dynamics):
-        scene = box.scene(point["radius"])
-        if set(SUM_RULE) <= set(point["counts"]) and virial.weights(scene):
+        scene = box.scene(point.radius)
+        if set(SUM_RULE) <= set(point.counts) and virial.weights(scene):
             rows.append(_sum_rule(scene, point))
     return sorted(rows, key=lambda row: row["radius"])
 
@@ -147,8 +175,8 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
 def distributions(rows):
     """Return, for each quantity and method, whether its scores over radii look standard normal.
 
-    Two comparisons each, ``z_mean`` and ``z_spread``, of the scores that a normal law gave, at two
-    radii or more.
+    There are two comparisons each, ``z_mean`` and ``z_spread``. They take the scores that are
+    normal, from two radii or more.
     """
     groups = {}
     for row in rows:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from twodiscs.comparison.digests import digest
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.plugins import plugin
+from twodiscs.points.digests import digest
 
 #: The pandas types of columns, which know an empty cell.
 KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
@@ -34,7 +34,7 @@ def load(folder):
 
 
 def read(path, table):
-    """Return the file of a ``Table`` as a ``DataFrame``, with what is in it in ``attrs``."""
+    """Return the file of a ``Table`` as a ``DataFrame`` with units and meanings in ``attrs``."""
     rows = table.read(path)
     table = table.of(rows[0] if rows else ())
     columns = table.columns()
@@ -75,7 +75,7 @@ def _box(configuration):
 
 
 def _configuration(path):
-    """Return what the configuration said, of the scene of a table alone; None if unknown."""
+    """Return the configuration, with only the scene of a table; None if it is not known."""
     for folder in (path.parent, path.parent.parent):
         try:
             known = json.loads((folder / "configuration.json").read_text(encoding="utf-8"))

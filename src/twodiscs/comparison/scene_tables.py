@@ -1,6 +1,6 @@
 """The tables of a scene, by name: each is declared in a module of ``tables``.
 
-Quick to import, for the Snakefile reads it: what needs NumPy is imported when rows are made.
+The Snakefile reads this module, so NumPy and its users are imported only when rows are made.
 """
 
 from twodiscs.comparison.tables.check import Check

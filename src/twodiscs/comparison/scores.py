@@ -1,15 +1,16 @@
-"""How far an estimate is from the exact value: z, and the bounds for many comparisons.
+"""The deviation of an estimate from the exact value as z, and the bounds for many comparisons.
 
-A z-score is always a standard normal deviate: a test whose own law is not normal gives a two-sided
-p-value that is never too small, and z is the deviate with that p-value. Positive z means that the
-estimate is above the exact value.
+A z-score is always a standard normal deviate. If the law of a test is not normal, the test gives a
+two-sided p-value that is never too small, and z is the deviate with this p-value. Positive z means
+that the estimate is above the exact value.
 """
 
 import math
 
 from scipy.special import betainc, gammainc, gammaincc, log_ndtr, ndtr, ndtri, ndtri_exp
 
-from twodiscs.comparison.estimates import (
+from twodiscs.model.checks import InputError, check_fraction, check_integer
+from twodiscs.points.estimates import (
     CLUSTER,
     MIN_EVENTS,
     check_real,
@@ -17,10 +18,9 @@ from twodiscs.comparison.estimates import (
     effective_count,
     moments_of,
 )
-from twodiscs.model.checks import InputError, check_fraction, check_integer
 
 #: Fewer expected (or effective) events than this are not tested with a normal law. Rare counts have
-#: skewness 1/√n: five errors out, n = 1000 doubles one tail and n = 100 multiplies it by eight.
+#: skewness 1/√n: at five errors, n = 1000 doubles one tail and n = 100 multiplies it by eight.
 NORMAL = 1000
 
 #: Probability that a check of one scene fails although everything is right.
@@ -28,7 +28,7 @@ FALSE_ALARM = 1e-3
 
 
 def two_sided_p(z):
-    """Return the probability that a standard normal deviate is at least as far out as ``z``."""
+    """Return the probability that the absolute value of a standard normal deviate is ≥ |z|."""
     return float(2 * ndtr(-abs(z)))
 
 
@@ -43,21 +43,21 @@ def _signed(size, sign):
 
 
 def _doubled(low, high, log_bound):
-    """Return |z| for the smaller of two tails, doubled; ``log_bound`` serves when it underflows."""
+    """Return |z| for twice the smaller tail; if it underflows, ``log_bound`` takes its place."""
     tail = float(min(low, high))
     return _deviate(math.log(2) + (math.log(tail) if tail > 1e-290 else log_bound))
 
 
 def _entropy(x, mean):
-    """x ln(x/mean) − x + mean: what Chernoff's bound has in the exponent for a Poisson count."""
+    """Return x ln(x/mean) − x + mean, minus the exponent of Chernoff's bound for a Poisson law."""
     return (x * math.log(x / mean) if x else 0.0) - x + mean
 
 
 def student_deviate(t, degrees):
-    """Return the normal deviate as far out as ``t`` is for Student's law, sign kept.
+    """Return the normal deviate with the same tail probability as ``t`` of Student's law.
 
     Wallace, Ann. Math. Stat. 30, 1121 (1959): within 1e-3 for |t| ≤ 8 and degrees ≥ 99, and free of
-    underflow. ``degrees`` ≥ 1.
+    underflow. The sign is that of ``t``; ``degrees`` ≥ 1.
     """
     degrees = check_integer("degrees", degrees, 1)
     t = check_real("t", t, low=-math.inf)
@@ -68,12 +68,12 @@ def student_deviate(t, degrees):
 def binomial_z(hits, samples, probability):
     """Return (z, test) of ``hits`` against the exact ``probability`` of one.
 
-    ``test`` says how: "normal" where at least 1000 hits and 1000 misses are expected, with the
-    variance of the exact probability; "exact-tail" otherwise, the smaller tail of the binomial law
-    doubled. Doubling, unlike a mid-p, never rejects more often than p says, so the false alarms of
-    a family of tests stay below what is stated; the price is that z is discrete and short of
-    normal. Where the tail underflows, Chernoff's bound takes its place. "certain" is a probability
-    of 0 or 1: z is 0 or infinite. ``probability`` in [0, 1].
+    ``test`` is "normal" if at least 1000 hits and 1000 misses are expected, with the variance of
+    the exact probability. It is "certain" for a probability of 0 or 1: z is 0 or infinite. It is
+    otherwise "exact-tail", twice the smaller tail of the binomial law. Twice a tail, unlike a
+    mid-p, never rejects more often than p says, so a family of tests has no more false alarms than
+    stated; the price is that z is discrete and narrower than normal. If the tail underflows,
+    Chernoff's bound takes its place. ``probability`` is in [0, 1].
     """
     hits, samples = checked_hits(hits, samples)
     p = check_real("probability", probability, high=1.0, ends=True)
@@ -92,8 +92,9 @@ def shells_z(hits, both, samples, measures, probabilities):
     """Return (z, test) of Σ_i measure_i · hits_i/samples over two sets that overlap.
 
     ``hits``, ``measures`` and ``probabilities`` are pairs, as for ``binomial_z``; ``both`` is the
-    number of samples in both sets, which stands in for the one probability that is not known.
-    "normal" if both parts are; otherwise "exact-tail", by ``union_z``, or "certain" if both are.
+    number of samples in both sets: it replaces their joint probability, which is not known.
+    ``test`` is "normal" if both parts are, "certain" if both are, and otherwise "exact-tail", by
+    ``union_z``.
     """
     parts = [binomial_z(h, samples, p) for h, p in zip(hits, probabilities, strict=True)]
     both, _ = checked_hits(both, samples)
@@ -108,11 +109,11 @@ def shells_z(hits, both, samples, measures, probabilities):
 
 
 def union_z(parts, sign):
-    """Return the deviate of a sum of parts, tested by its parts: Bonferroni's p = k · min p_i.
+    """Return the deviate of a sum of k parts from Bonferroni's bound, p = k · min p_i.
 
-    For a sum whose own law is unknown, as that of counts in two shells that overlap; it holds for
-    any dependence of the parts. ``parts`` are their deviates, and ``sign`` is any number with the
-    sign of the sum's deviation.
+    It is for a sum whose law is unknown, such as the counts in two shells that overlap, and holds
+    for any dependence of the parts. ``parts`` are their deviates, and ``sign`` is any number with
+    the sign of the sum's deviation.
     """
     largest = max((abs(z) for z in parts), default=0.0)
     log_p = math.log(2 * max(len(parts), 1)) + float(log_ndtr(-largest))
@@ -120,26 +121,26 @@ def union_z(parts, sign):
 
 
 def impossible_z(total):
-    """Return (z, test) of the count ``total`` ≥ 0 of an impossible event: any at all gives −∞."""
+    """Return (z, test) of the count ``total`` ≥ 0 of an impossible event: one event gives −∞."""
     return (-math.inf if check_integer("total", total, 0) else 0.0), "certain"
 
 
 def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     """Return (z, test) of a measured mean time against the ``exact`` one.
 
-    The count is tested, for ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased; the sign is turned,
-    so that positive still means a time that is too long. ``test`` is
+    The test is about the count, because ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased. The sign
+    is changed, so that positive still means a time that is too long. ``test`` is
 
     - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
-      as a normal deviate. ``mean``, if given, is that count and its error as known better than from
-      these sums; the other tests do without it.
-    - "cluster-bound" below: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ)) with
-      h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds where a replica that sees
-      the event sees at most K; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be false,
-      for hops come in clusters.
+      as a normal deviate. ``mean``, if given, is a better estimate (count, error) than these sums
+      give; the other test does not use it.
+    - "cluster-bound" for less: Chernoff's bound for independent replicas, P ≤ exp(−(λ/K) h(n/λ))
+      with h(x) = x ln x − x + 1 for n counted and λ expected in all. It holds if no replica has
+      more than K events; K is Σ N²/Σ N, and at least 4. A Poisson law (K = 1) would be wrong,
+      because hops come in clusters.
 
-    Where no exact value is known, ``exact`` = None, both are None: an event that is impossible has
-    ``impossible_z`` instead.
+    If no exact value is known, ``exact`` is None and both results are None. For an impossible event
+    call ``impossible_z`` instead.
     """
     total, squares, replicas = moments_of(total, squares, replicas)
     duration = check_real("duration", duration)
@@ -175,9 +176,9 @@ def _scores(z):
 
 
 def z_mean(z):
-    """Return √n times the mean of n scores: a standard normal deviate if they are n of them.
+    """Return √n times the mean of n scores, a standard normal deviate if the scores are.
 
-    It finds what is shifted by less than a single comparison would notice.
+    It finds a shift that is too small for a single comparison.
     """
     scores = _scores(z)
     return math.fsum(scores) / math.sqrt(len(scores))
@@ -186,8 +187,8 @@ def z_mean(z):
 def z_spread(z):
     """Return the deviate of the χ² of n scores, positive when they spread too widely.
 
-    The χ² law of n degrees is exact for every n; the smaller tail is doubled. It finds errors that
-    are too small, and those that are too large, which no single comparison can. All zeros: −∞.
+    The χ² law of n degrees is exact for every n; p is twice the smaller tail. It finds errors that
+    are too small, and errors that are too large, which no single comparison can. All zeros: −∞.
     """
     scores = _scores(z)
     half, half_chi2 = len(scores) / 2, math.fsum(z * z for z in scores) / 2

@@ -10,11 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import OCTAVES, relative_errors
+from twodiscs.dynamics.ensemble import relative_errors
 from twodiscs.model.checks import InputError, check_choice, check_error, check_integer
 from twodiscs.model.events import EVENTS
 from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
 from twodiscs.sampling.starts import require_room
 from twodiscs.theory.exact import replicas_needed
@@ -23,14 +24,14 @@ COLLISIONS, ANY_WALLS = EVENTS.index("disc_collision"), EVENTS.index("any_wall")
 
 
 def simulated_events(sums):
-    """Return how many wall hits and disc collisions there are among the counts of all events."""
+    """Return the number of wall hits and disc collisions among the counts of all events."""
     return int(sums[COLLISIONS] + sums[ANY_WALLS])
 
 
 def expected_rate(scene, event):
-    """Return how often per time all that counts as ``event`` happens, exactly if that is known.
+    """Return the rate of all that counts as ``event``, exactly if that is known.
 
-    For more than two discs it may be an estimate; it is 0 where nothing is known.
+    For more than two discs it may be an estimate; it is 0 if nothing is known.
     """
     return of_family(scene, "dynamics", "expected_rate")(scene, event)
 
@@ -60,26 +61,22 @@ def count_events(scene, target, budget, seed):
     """Count the events of a ``Scene`` in independent replicas until each is known well enough.
 
     ``target`` maps each tracked event to the relative standard error asked for (0 < target ≤ 1);
-    blocked hops are counted but not waited for. ``budget`` is the largest number of wall and disc
-    events to simulate; a block of replicas is the least that is. Work goes in rounds: see
-    ``sampling.blocks.rounds``.
+    blocked hops are counted, but their error is ignored. ``budget`` is the largest number of wall
+    and disc events to simulate; the minimum is one block of replicas. Work goes in rounds (see
+    ``sampling.blocks.rounds``).
 
-    Hops that are rare because of a neck are waited for in strips of their own (``strip``), which
-    get of the budget what their errors take of all events; what starts anywhere see of them is
-    counted, too.
+    Hops that are rare because of a neck are also counted in strips (``strip``). The budget is
+    divided in proportion to the events that each error needs.
 
-    Returns a dict for a JSON file: radius, duration T and number of replicas, rounds, wall and disc
-    events simulated, and for each tracked event its count ΣN, its target and status (reached,
-    budget or impossible); products hold ΣN_a N_b of each pair, strips what ``strip.summary``
-    returns for each rare hop, and octaves of rough discs by event what ``sort_into_octaves`` does.
-    Raises ``InputError`` for an unknown event or a number out of range.
+    Returns a ``DynamicsPoint``. Raises ``InputError`` for an unknown event or a number out of
+    range.
     """
     return CountingRun(scene, target, budget, seed).run()
 
 
 @dataclass(frozen=True)
 class CountingRun:
-    """``count_events`` in blocks: frozen, its arguments checked."""
+    """``count_events`` in blocks, with checked arguments."""
 
     scene: Scene
     target: dict
@@ -117,8 +114,8 @@ class CountingRun:
     def parts(self):
         """Runs by name, ``SequentialRun``: "all" and the rare hops.
 
-        The budget is shared as the errors asked for take events: so the same part of what each of
-        them takes is missing where it does not allow for all of them.
+        The budget is divided in proportion to the events that the errors need. If it is too small
+        for all of them, each has the same fraction of its events.
         """
         budget = max(1, int(self.budget / self._family("work_per_event")))
         runs = {"all": self._everything(budget)}
@@ -147,19 +144,10 @@ class CountingRun:
         )
 
         def work(first, stop):
-            # Rough discs that hardly pass each other collide in bursts, of a size without bound.
-            octaves = (
-                None
-                if scene.moment_of_inertia is None
-                else np.zeros((3, len(EVENTS), OCTAVES), int)
-            )
-            sums = self._family(
-                "run_blocks", self._events, self.seed, first, stop, duration, octaves=octaves
-            )
-            return sums if octaves is None else (*sums, octaves)
+            return self._family("run_blocks", self._events, self.seed, first, stop, duration)
 
         block_events = each * expected_event_rate(scene) * duration
-        # Crowds that the budget has no chance to show are not waited for.
+        # Errors of bursts that the budget cannot reach are ignored.
         needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
         needed = needed / each
         needed = np.ceil(np.where(needed * block_events <= budget, needed, 0.0))
@@ -167,7 +155,7 @@ class CountingRun:
         planned = max([planned, *needed])
 
         def excess_of(sums, blocks):
-            errors = relative_errors(*sums[:2], blocks * each)[index] / goals
+            errors = relative_errors(*sums, blocks * each)[index] / goals
             return np.maximum(errors, np.sqrt(needed / blocks))
 
         return SequentialRun(
@@ -181,43 +169,42 @@ class CountingRun:
         )
 
     def point(self, outcomes):
-        """Return the dict for a JSON file, given {name: ``Outcome``} of all parts."""
-        (sums, products, *octaves), blocks, rounds, excess = outcomes["all"]
+        """Return the ``DynamicsPoint``, given {name: ``Outcome``} of all parts."""
+        (sums, products), blocks, rounds, excess = outcomes["all"]
         strips = {hop: self._family("rare_summary", hop, outcomes[hop]) for hop in self._rare}
         tracked = [EVENTS.index(event) for event in self._events]
         status = dict.fromkeys(self._events, "impossible")
         for event, value in zip(self._waited, excess, strict=True):
             status[event] = "reached" if value <= 1.0 else "budget"
-        by_octave = {EVENTS[e]: part[:, e].tolist() for part in octaves for e in tracked}
-        return {
-            "radius": self.scene.radius,
-            "duration": replica_duration(self.scene),
-            "replicas": blocks * self._family("block_replicas"),
-            "rounds": rounds,
-            "events": simulated_events(sums) + sum(strips[hop]["events"] for hop in strips),
-            "counts": {EVENTS[e]: int(sums[e]) for e in tracked},
-            "products": {
+        return DynamicsPoint(
+            radius=self.scene.radius,
+            duration=replica_duration(self.scene),
+            replicas=blocks * self._family("block_replicas"),
+            rounds=rounds,
+            events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
+            counts={EVENTS[e]: int(sums[e]) for e in tracked},
+            products={
                 f"{EVENTS[e]}*{EVENTS[f]}": int(products[e, f])
                 for e in tracked
                 for f in tracked
                 if e <= f
             },
-            "target": {event: self.target[event] for event in self._events},
-            "status": status | {hop: strips[hop]["status"] for hop in strips},
-            "strips": strips,
-        } | ({"octaves": by_octave} if by_octave else {})
+            target={event: self.target[event] for event in self._events},
+            status=status | {hop: strip.status for hop, strip in strips.items()},
+            strips=strips,
+        )
 
     def run(self, progress=None, cores=1, kept=None):
-        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        """Do all work in this process and return the ``DynamicsPoint`` (see ``all_in_rounds``)."""
         return self.point(all_in_rounds(self.parts, progress, cores, kept))
 
 
 def relative_variance(count):
-    """Return the largest variance to expect of a mean ``count`` of a replica, over its square.
+    """Return the largest variance to expect of a replica's count over its mean ``count`` squared.
 
-    Chance has a variance of less than 2⟨N⟩; discs that keep their motion for long add a part of
-    ⟨N⟩². It is infinite where none is expected. Both numbers hold at all radii of the repository's
-    boxes without effects, where the second one is up to 0.16: at a hundredth of the height, and
-    close to the largest radius.
+    Random counts have a variance of less than 2⟨N⟩; discs that keep their motion for long add a
+    fraction of ⟨N⟩². It is infinite if none is expected. Both numbers hold at all radii of the
+    repository's boxes without effects. The fraction is up to 0.16 there, at a hundredth of the
+    height and close to the largest radius.
     """
     return 2 / count + 1 / 6 if count else math.inf

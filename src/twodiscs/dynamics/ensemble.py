@@ -6,7 +6,8 @@ instructions. A lane whose trajectory has ended idles for a few passes and is th
 start.
 
 Starts come from streams keyed by block, and sums are integers or taken in the order of the starts.
-So a result depends on the scene, the seed and the blocks, not on lanes, processors or shards.
+A result therefore depends on the scene, the seed and the blocks, not on lanes, processors or
+shards.
 """
 
 import math
@@ -18,17 +19,14 @@ from twodiscs.sampling.jit import inlined, optional
 
 LANES = 64
 
-#: Passes between two looks at which lanes have ended.
+#: Passes between two searches for lanes that have ended.
 PASSES = 8
 
-#: Replicas that share a random stream.
+#: Replicas with one random stream.
 REPLICAS = 1024
 
 #: Successive intervals between hops that a chain records.
 RETURNS = 256
-
-#: Counts of a replica are sorted by their octave, 0, 1, 2 to 3, 4 to 7 and so on.
-OCTAVES = 40
 
 
 def nearest_power_of_two(value):
@@ -121,7 +119,7 @@ def across(state, horizontal):
 
 
 def relative_errors(sums, products, replicas):
-    """Return the relative standard error of each mean count (n), inf where nothing was counted.
+    """Return the relative standard error of each mean count (n), inf without a count.
 
     Replicas are independent, so the error is √(var N / R) / ⟨N⟩.
     """

@@ -1,13 +1,13 @@
 """Intervals between hops, each of them an exact draw.
 
 Chains start on the surface of a hop, weighted by the flux through it, and record the next returns:
-no window could cut one off. Chains of more than two discs start anywhere, and record to their end
-all intervals that begin within a window of time. That has no favourites: what these are in all over
-how many they are is, in the mean, what an interval is (Palm's formula).
+no interval is cut off by a window. Chains of more than two discs start in the invariant measure,
+and record to their end all intervals that begin within a window of time. This has no bias: by
+Palm's formula, the mean sum of these intervals over their mean number is the mean interval.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -18,6 +18,7 @@ from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.points.intervals import IntervalsPoint, WideBins
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.sampling.starts import require_room
 
@@ -28,14 +29,14 @@ BINS = 512
 #: The usual budget of wall and disc events.
 BUDGET = 10**11
 
-#: Wide bins are at least so much wider than their place.
+#: The least width of a wide bin, over its left edge.
 GROWTH = 0.08
 
 
 def wide_edges(bins=BINS):
-    """Return where wide bins begin, and the last one ends, in units of the width of a bin.
+    """Return the edges of the wide bins, in units of the width of a bin.
 
-    They begin at zero, and each is a bin wide or wider than ``GROWTH`` times its place.
+    They begin at zero, and each is one bin wide or wider than ``GROWTH`` times its left edge.
     """
     edges = [0]
     for i in range(1, bins + 1):
@@ -69,26 +70,22 @@ def _mean(scene, event):
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
     """Draw intervals between hops of one kind, each one exact, and count them in bins.
 
-    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is how many are wanted at least, as
-    far as the ``budget`` of wall and disc events allows. Chains of ``RETURNS`` successive intervals
-    start on the hop's surface with the flux-weighted measure, which the map from hop to hop
-    preserves: so every interval of a chain has the law of the interval between hops. Intervals
-    within a chain are correlated, chains are independent.
+    ``event`` is a hop that the ``Scene`` allows; ``intervals`` is the least number of intervals,
+    within the ``budget`` of wall and disc events. Chains of ``RETURNS`` successive intervals start
+    on the hop's surface with the flux-weighted measure. The map from hop to hop preserves it, so
+    every interval of a chain has the law of the interval between hops. Intervals within a chain are
+    correlated, chains are independent.
 
-    Returns a dict for a JSON file: bin width (a power of two near τ/16), counts, overflow, the
-    number of intervals and of chains, and the mean with its standard error over chains. With c
-    intervals of a chain in a bin, squares are Σ c² over the chains; wide has edges (in bins),
-    counts and squares of bins that widen with time. Chains of more than two discs have n intervals
-    each, which differs: then products are Σ c n, and intervals_squared is Σ n². Raises
-    ``InputError`` for a hop that is unknown or blocked, one of which nothing is known, or a number
-    out of range.
+    Returns an ``IntervalsPoint``, whose bins have a power of two near τ/16 as width. Chains of more
+    than two discs differ in their number of intervals. Raises ``InputError`` for a hop that is
+    unknown or blocked, for one whose mean time is not known, or for a number out of range.
     """
     return IntervalRun(scene, event, intervals, seed, budget).run()
 
 
 @dataclass(frozen=True)
 class IntervalRun:
-    """``hop_intervals`` in blocks: frozen, its arguments checked."""
+    """``hop_intervals`` in blocks, with checked arguments."""
 
     scene: Scene
     event: str
@@ -124,20 +121,20 @@ class IntervalRun:
 
     @property
     def _grain(self):
-        """The unit in which the times of chains are integers: in doubles none is finer."""
+        """The unit in which the times of chains are integers, the finest that doubles have."""
         return _width(self.scene, self.event) * 2.0**-52
 
     @cached_property
     def _going(self):
-        """A flag that long kernels look at: false once nobody waits for their result."""
+        """A flag that long kernels read: false when no thread waits for their result."""
         return np.ones(1, np.bool_)
 
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
-        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains; of
-        more than two discs, with n intervals in a chain, Σ t n, Σ n and Σ n² besides.
+        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains; for
+        more than two discs, with n intervals in a chain, also Σ t n, Σ n and Σ n².
         """
 
         def work(first, stop):
@@ -157,7 +154,7 @@ class IntervalRun:
         return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events, ratio)}
 
     def point(self, outcomes):
-        """Return the dict for a JSON file, given {"all": its ``Outcome``}."""
+        """Return the ``IntervalsPoint``, given {"all": its ``Outcome``}."""
         (sums, (total, squares, *more)), blocks = outcomes["all"][:2]
         n, total, squares = blocks * CHAINS, int(total), int(squares)
         if more:
@@ -168,20 +165,23 @@ class IntervalRun:
         return _summary(self.scene, self.event, sums, n, mean, stderr)
 
     def _of_windows(self, sums, chains, total, squares, joint, intervals, intervals_squared):
-        """Return the dict of more than two discs: the mean is a ratio."""
+        """Return the ``IntervalsPoint`` of more than two discs: the mean is a ratio."""
         mean = Fraction(total, intervals)
         spread = squares - 2 * mean * joint + mean**2 * intervals_squared
         stderr = math.sqrt(spread * chains / (chains - 1)) / intervals
         values = float(mean) * self._grain, stderr * self._grain
-        found, products = (
-            _summary(self.scene, self.event, sums[:2], chains, *values), sums[2].tolist()
-        )  # fmt: skip
-        found["wide"]["products"] = products[BINS + 1 : -1]
-        more = {"intervals": intervals, "intervals_squared": intervals_squared}
-        return found | more | {"products": products[:BINS]}
+        products = sums[2].tolist()
+        found = _summary(self.scene, self.event, sums[:2], chains, *values)
+        return replace(
+            found,
+            intervals=intervals,
+            intervals_squared=intervals_squared,
+            products=products[:BINS],
+            wide=replace(found.wide, products=products[BINS + 1 : -1]),
+        )
 
     def run(self, progress=None, cores=1, kept=None):
-        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        """Do all work in this process and return the ``IntervalsPoint`` (see ``all_in_rounds``)."""
         try:
             return self.point(all_in_rounds(self.parts, progress, cores, kept))
         except BaseException:
@@ -195,20 +195,20 @@ def _width(scene, event):
 
 def _summary(scene, event, sums, chains, mean, stderr):
     edges, (counts, squares) = wide_edges(), sums.tolist()
-    return {
-        "radius": scene.radius,
-        "event": event,
-        "bin_width": _width(scene, event),
-        "counts": counts[:BINS],
-        "squares": squares[:BINS],
-        "overflow": counts[BINS],
-        "wide": {
-            "edges": edges,
-            "counts": counts[BINS + 1 : BINS + len(edges)],
-            "squares": squares[BINS + 1 : BINS + len(edges)],
-        },
-        "intervals": chains * RETURNS,
-        "chains": chains,
-        "mean": mean,
-        "stderr": stderr,
-    }
+    return IntervalsPoint(
+        radius=scene.radius,
+        event=event,
+        bin_width=_width(scene, event),
+        counts=counts[:BINS],
+        squares=squares[:BINS],
+        overflow=counts[BINS],
+        wide=WideBins(
+            edges=edges,
+            counts=counts[BINS + 1 : BINS + len(edges)],
+            squares=squares[BINS + 1 : BINS + len(edges)],
+        ),
+        intervals=chains * RETURNS,
+        chains=chains,
+        mean=mean,
+        stderr=stderr,
+    )

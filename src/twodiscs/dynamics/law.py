@@ -1,17 +1,17 @@
-"""One event: when it happens and what it does. Plain floats in, plain floats out.
+"""One event: its time and the state after it. All arguments and results are plain floats.
 
 A state is the tuple (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities, with the origin at
 the centre of the box. Balls append (z1, z2, w1, w2); rough discs append (s1, s2), their spins as
-the speeds rω of their surfaces. The ``Law`` holds what a scene calls for, and None for what it does
-not: each effect is one short function here that does nothing for None, and numba compiles it to
-nothing. So the law of a scene has only the effects of that scene.
+the speeds rω of their surfaces. The ``Law`` has the constants of a scene, and None for absent
+effects. Each effect is one short function here. For None it does nothing, and numba compiles it to
+nothing, so the law of a scene has only the effects of that scene.
 
-Every function is compiled into the lock-step ensemble, into the audit and into the trajectories for
-people, so the law stands in this file only. There are no branches at run time, only selections, so
-that an ensemble advances in vector instructions.
+Every function is compiled into the lock-step ensemble, into the audit and into single trajectories,
+so the law is only in this file. There are no branches at run time, only selections, so that an
+ensemble advances in vector instructions.
 
 A time is kept as a quotient ``gap / speed`` and quotients are compared by cross-multiplication: one
-division an event instead of five.
+division per event instead of five.
 """
 
 import math
@@ -30,11 +30,11 @@ WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
 #: at such a speed would be lost in the rounding of the velocities, and happen again and again.
 RESTING_SPEED = 4 * 2.0**-52
 
-#: Where discs are smaller than the spacing of coordinates their centres may coincide, or all but
-#: do. Below this square of their distance there is no line of centres, and they go on as they are.
+#: The centres of discs smaller than the spacing of coordinates may coincide, or almost. Below this
+#: square of their distance there is no line of centres, and their velocities do not change.
 VANISHING = 1e-280
 
-#: The gap of discs that part.
+#: The gap of discs that separate.
 NEVER = math.inf
 
 
@@ -65,8 +65,8 @@ class Law(NamedTuple):
 def divided(whole, first, second):
     """Return ``whole`` divided as ``first`` to ``second``, in two parts with exactly this sum.
 
-    Where two bodies share a change of velocity the sum of their parts decides about the energy: a
-    rounding there would be the same in every event, and add up.
+    If two bodies share a change of velocity, the sum of their parts determines the energy: a
+    rounding in it would be the same in every event, and add up.
     """
     larger = whole * (max(first, second) / (first + second))
     return (larger, whole - larger) if first > second else (whole - larger, larger)
@@ -105,7 +105,7 @@ def law_of(scene):
     )
 
 
-# Effects: what is absent (None, the last argument) is compiled to nothing ------------------------
+# Effects: an absent effect (None, the last argument) is compiled to nothing ----------------------
 
 
 @optional(lambda other, own: other)
@@ -220,10 +220,10 @@ def deep_after(state, time, code, kick, law, depth):
 def rough_collision(state, before, dx, dy, code, weights, rough):
     """Return ``state`` with what rough surfaces do at the event: their velocities are reversed.
 
-    ``before`` is the state just before the event and (dx, dy) the separation. Where surfaces touch,
-    disc 1 moves along t = (−dy, dx)/|Δx| against disc 2 at g = Δv·t − (s1 + s2); an impulse along t
-    changes velocities and spins so that g becomes −g. At a wall it is the velocity of the disc's
-    surface against the wall that is reversed.
+    ``before`` is the state just before the event and (dx, dy) the separation. At the contact the
+    surface of disc 1 moves along t = (−dy, dx)/|Δx| against disc 2 at g = Δv·t − (s1 + s2). An
+    impulse along t changes velocities and spins so that g becomes −g. At a wall the velocity of the
+    disc's surface against the wall is reversed.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state
     s1, s2 = before[8], before[9]

@@ -1,8 +1,8 @@
-"""One trajectory, event by event: for people to look at, and for what is asked of one.
+"""One trajectory, event by event.
 
 Every scene has the same columns: time, the centres of all discs, the event, the centres along z,
-and the discs that the event is of. Along periodic axes centres go on beyond the cell of the box;
-``cell_of`` says in which one they are. Each family has its kernel in ``families``.
+and the discs of the event. Along periodic axes centres go on beyond the cell of the box;
+``cell_of`` returns the number of their cell. Each family has its kernel in ``families``.
 """
 
 from itertools import islice, repeat

@@ -1,1 +1,1 @@
-"""Figures of a scene, the drawings of geometry, and the kit that they share."""
+"""Figures of a scene, drawings of geometry, and the kit that both use."""

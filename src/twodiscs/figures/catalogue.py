@@ -1,8 +1,8 @@
-"""Every figure of a scene: its name, where it is drawn, what it reads and when it is of use.
+"""Every figure of a scene: its name, its module, the tables that it reads and its conditions.
 
 A figure is a module with two functions: ``draw(box, tables, **options)`` returns a matplotlib
-figure, and ``caption(shown)`` the text beneath it. Standard library only: the Snakefile imports
-this, and none of the modules that draw.
+figure, and ``caption(shown)`` the text beneath it. This module needs the standard library only,
+because the Snakefile imports it; it imports no module that draws.
 """
 
 from dataclasses import dataclass, field
@@ -13,13 +13,13 @@ from importlib import import_module
 class Entry:
     """A figure: its ``title`` and ``category`` in a report, and the ``module`` that draws it.
 
-    ``options`` are passed to the functions of the module. ``note`` names what the caption has in
-    common with other captions, one of ``figures.kit.captions.NOTES``. ``tables`` are the names of
-    the tables that the figure reads. A figure of no scene also reads the ``main_tables`` of the
-    first scene without effects, if there are any. ``needs`` are quantities, named as in theory.csv,
-    or ``hop_histogram`` or ``trajectory``: the figure shows those of them that the scene computes,
-    and is made if there is one. A drawing needs nothing: it takes only the sides of the box, and
-    shows equal discs between walls. The figure is not made for scenes with an effect that is in
+    ``options`` are passed to the functions of the module. ``note`` names the common text of several
+    captions, one of ``figures.kit.captions.NOTES``. ``tables`` are the names of the tables that the
+    figure reads. A figure of no scene also reads the ``main_tables`` of the first scene without
+    effects, if there are any. ``needs`` are quantities, named as in theory.csv, or
+    ``hop_histogram`` or ``trajectory``. The figure shows the ones that the scene computes, and is
+    made if there is at least one. A drawing needs nothing: it takes only the sides of the box, and
+    shows equal discs between walls. The figure is not made for scenes with an effect in
     ``without``; ``discs`` counts as an effect if there are more than two.
     """
 
@@ -34,18 +34,18 @@ class Entry:
     options: dict = field(default_factory=dict)
 
     def is_called(self, quantities, effects=()):
-        """Say whether a scene that computes the ``quantities`` calls for the figure.
+        """Return whether a scene that computes the ``quantities`` has the figure.
 
-        ``effects`` are those of the scene, if it has any.
+        ``effects`` are the effects of the scene, if it has any.
         """
         if effects and (not self.needs or not self.without.isdisjoint(effects)):
             return False
         return not self.needs or not self.needs.isdisjoint(quantities)
 
     def caption_parts(self, shown):
-        """Return the caption of this figure alone, and what it has in common with others.
+        """Return the caption of this figure, and the text that it has in common with others.
 
-        ``shown`` is a ``Shown``. The symbols are explained in the first part, by each figure.
+        ``shown`` is a ``Shown``. The first text also explains the symbols.
         """
         from twodiscs.figures.kit.captions import NOTES, symbols
 
@@ -55,7 +55,7 @@ class Entry:
         return " ".join(own.split()), " ".join(note.split())
 
     def caption(self, shown=None):
-        """Return the whole caption of what is ``shown``, or of a plain scene.
+        """Return the whole caption for a ``Shown``, or for a plain scene.
 
         This imports the module that draws.
         """
@@ -65,7 +65,7 @@ class Entry:
 
     @property
     def labels(self):
-        """What names the figure in a report, as a dict."""
+        """The labels of the figure in a report, as a dict."""
         return {"figure": self.title}
 
 
@@ -149,7 +149,7 @@ FIGURES = {
     ),
 }  # fmt: skip
 
-#: Not a figure for paper: neither the manuscript nor the rule of figures knows it.
+#: Not for paper: neither the manuscript nor the rule of figures uses it.
 ANIMATION = Entry(
     "The discs, animated",
     DYNAMICS,

@@ -1,4 +1,4 @@
-"""Figures and animations of what the face returns; what is drawn is what the workflow draws."""
+"""Figures and animations of results of the face, the same as those of the workflow."""
 
 import sys
 import warnings
@@ -17,7 +17,7 @@ from twodiscs.figures.radius.over_radius import quantity_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice
 
-#: What can be drawn.
+#: The results that can be drawn.
 DRAWN = (
     "a scene, a trajectory, results of simulate, scan, sample, intervals, transmission or observe, "
     "or a loaded table"
@@ -41,7 +41,7 @@ def plot(result, path, figure, axes=None):
 
 
 def _over_time(result, figure):
-    """Return what draws a result that has a figure of its own, None for others."""
+    """Return the function that draws a result over time, None for other results."""
     for kind, name in ((Observed, "observed"), (Transmission, "transmission")):
         if isinstance(result, kind):
             from twodiscs.figures.motion import over_time
@@ -51,15 +51,15 @@ def _over_time(result, figure):
 
 
 def _in_catalogue(result, figure):
-    """Return what draws a result in a figure of the workflow."""
+    """Return the function that draws a result in a figure of the workflow."""
     box, tables, fitting, options = _what(result)
     if not fitting:
         if "table" in getattr(result, "attrs", {}) and "box" not in result.attrs:
             raise InputError(
-                "result must be a table with the configuration.json of its build beside it, which "
-                f"the target report writes, not {result.attrs['table']!r} alone"
+                f"result must be a table beside the configuration.json of its build, but "
+                f"{result.attrs['table']!r} has none; the target report writes it"
             )
-        raise InputError(f"result must be {DRAWN}, of what a figure shows, not {result!r:.80}")
+        raise InputError(f"result must be {DRAWN}, with a quantity of a figure, not {result!r:.80}")
     name = _chosen(figure, fitting, tables)
     if name in together.KINDS:
         return partial(together.draw, box, {name: tables}, name)
@@ -67,26 +67,26 @@ def _in_catalogue(result, figure):
     if not box.is_plain and not entry.needs:
         more = ", ".join(f"{name} {value}" for name, value in box.calls_for.items())
         raise InputError(
-            f"scene must be two plain discs to be sketched, but it has {more}; draw a trajectory"
+            f"scene must be two plain discs for a drawing, but it has {more}; plot a trajectory"
         )
     draw = import_module(entry.module).draw
     return partial(draw, box, dict.fromkeys(entry.tables, tables), **entry.options, **options)
 
 
 def _is_over_radius(name):
-    """Say whether the figure called ``name`` shows quantities over the radius."""
+    """Return whether the figure ``name`` shows quantities over the radius."""
     return name in together.KINDS or ".radius." in FIGURES[name].module
 
 
 def _shown_by(name):
-    """Return the quantities that the figure called ``name`` shows."""
+    """Return the quantities that the figure ``name`` shows."""
     return together.names_of(name)[0].keys() if name in together.KINDS else FIGURES[name].needs
 
 
 def _chosen(figure, fitting, rows):
-    """Return the name of the ``figure``, one of ``fitting``, or of the first of them if it is None.
+    """Return the ``figure``, one of the names ``fitting``, or the first of them if it is None.
 
-    A warning then names the quantities in ``rows`` that this one does not show.
+    A warning then names the quantities in ``rows`` that this figure does not show.
     """
     if figure is not None:
         return check_choice("figure", figure, fitting)
@@ -97,7 +97,7 @@ def _chosen(figure, fitting, rows):
             warnings.warn(
                 f"the figure {fitting[0]} does not show {', '.join(others)}; "
                 f"figure= chooses one of {', '.join(fitting)}",
-                stacklevel=5,
+                stacklevel=6,
             )
     return fitting[0]
 
@@ -134,7 +134,7 @@ def _png(figure):
 
 
 def _what(result):
-    """Return (box, rows, names of the figures that show them, what else those take)."""
+    """Return (box, rows, names of the figures that show them, options of these figures)."""
     scene = the_scene(result)
     if isinstance(result, Box) or result is scene is not None:
         return result if isinstance(result, Box) else Box.of(scene), [], _drawings(), {}
@@ -153,7 +153,7 @@ def _what(result):
             return box, rows, _figures_of(rows, box), {}
     attributes = getattr(result, "attrs", {})
     if isinstance(attributes, dict) and isinstance(attributes.get("box"), Box):
-        # A table that was loaded; what is absent is None in rows.
+        # A loaded table: rows have None for an empty cell.
         rows = result.astype(object).where(result.notna(), None).to_dict("records")
         table = attributes.get("table")
         fitting = [name for name, entry in FIGURES.items() if entry.tables == (table,)]
@@ -171,7 +171,7 @@ def _drawings():
 
 
 def _figures_of(rows, box):
-    """Return the names of the figures that show quantities of these rows, of a ``Box``."""
+    """Return the names of the figures that show quantities of these rows for a ``Box``."""
     if "left" in rows[0]:
         return ["hop_histogram"]
     shown, names = {*map(quantity_of, rows)}, []
@@ -188,15 +188,15 @@ def _figures_of(rows, box):
 
 
 def rows_of(trajectory):
-    """Return the rows of a trajectory that ``the_scene`` knows; two are the least."""
+    """Return the rows of a trajectory, at least two; ``the_scene`` must find its scene."""
     places = (
         f"{axis}{disc}" for disc in range(1, the_scene(trajectory).discs + 1) for axis in "xy"
     )
     missing = [n for n in ("time", *places, "event") if n not in trajectory]
     if missing or len(trajectory) < 2:
         raise InputError(
-            f"trajectory must have two rows at least, and all of its columns, not {len(trajectory)}"
-            f" rows without {', '.join(missing) or 'none'}"
+            "trajectory must have at least two rows and all of its columns, but has "
+            f"{len(trajectory)} rows and lacks {', '.join(missing) or 'no column'}"
         )
     from twodiscs.comparison.measured.trajectory import require_consecutive
 
@@ -210,6 +210,6 @@ def animate(trajectory, path):
 
     scene = the_scene(trajectory)
     if scene is None or not hasattr(trajectory, "iterrows"):
-        raise InputError(f"trajectory must be what trajectory() returns, not {trajectory!r:.80}")
+        raise InputError(f"trajectory must be a result of trajectory(), not {trajectory!r:.80}")
     with style.context():
         animation.animate(Box.of(scene), scene.radius, rows_of(trajectory), [path])

@@ -1,4 +1,4 @@
-"""All events of a result in one panel, in a figure of ours or in axes of the user."""
+"""All events of a result in one panel, in a new figure or in axes of the user."""
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
@@ -9,23 +9,23 @@ KINDS = {"mean_times": ("time", r"mean time $\tau$"), "areas": ("area", "area $S
 
 
 def names_of(figure):
-    """Return {quantity: its name in the legend} of one of ``KINDS``, and {quantity: its look}."""
+    """Return {quantity: its name in the legend} and {quantity: its look} of one of ``KINDS``."""
     kind = KINDS[figure][0]
     names = {f"{event}_{kind}": name_of(event) for event in LOOKS}
     return names, {f"{event}_{kind}": look for event, look in LOOKS.items()}
 
 
 def draw(box, tables, figure):
-    """Draw all quantities of one of ``KINDS`` in one panel, with the rows of the one table."""
+    """Draw all quantities of one of ``KINDS`` in one panel, with the rows of its table."""
     names, looks = names_of(figure)
     return over_radius(box, tables, names, KINDS[figure][1], "best", looks=looks)
 
 
 def add(axes, box, rows, shown):
-    """Draw those of ``shown``, a set of quantities, into ``axes``, beside what is there.
+    """Draw a set of quantities, ``shown``, into ``axes``, which may have other curves.
 
-    Every call takes colours and markers that have not been used. Names in the legend say which box
-    it is, because ``axes`` may show several.
+    Every call takes unused colours and markers. Names in the legend include the box, because
+    ``axes`` may show several.
     """
     texts = {"volume": "volume"} | names_of("mean_times")[0] | names_of("areas")[0]
     quantities = [

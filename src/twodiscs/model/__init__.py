@@ -1,1 +1,1 @@
-"""Events, effects, the scene, its box and its radii. Standard library only."""
+"""Events, effects, the scene, its box and its radii; imports only the standard library."""

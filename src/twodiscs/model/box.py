@@ -1,30 +1,52 @@
-"""A box, its effects and how many discs it has: a scene without its radius, and its limits."""
+"""A box, its effects and its number of discs: a scene without a radius, and its limits."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from twodiscs.model.checks import SHORTEST, InputError, check_choice, check_length, quote
+from twodiscs.model.checks import (
+    SHORTEST,
+    InputError,
+    answering,
+    check_choice,
+    check_length,
+    did_you_mean,
+    quote,
+)
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.scene import USUAL, Scene, check_scene
 
-#: Larger radii than this share of the shortest side tell nothing of a box that smaller ones do not.
+#: A radius over the shortest side at which all discs are small.
 TINY = 1e-6
 
 
+@answering
 @dataclass(frozen=True)
 class Box:
-    """A box of ``width`` × ``height`` with ``effects``, {name: value}, in which ``discs`` may move.
+    """A box with its effects and its number of discs, for any radius.
 
-    There are two of them unless told, at most 1024. Effects that have the value of their absence
-    are left out. Raises ``InputError`` for a side that is no length, for an unknown effect, and for
-    effects that do not go together.
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    effects : dict, optional
+        {name: value} of the effects of ``Scene``. Effects with the value of their absence are left
+        out.
+    discs : int, default 2
+        The number of discs, from 2 to 1024.
 
-    Example:
+    Raises
+    ------
+    InputError
+        For a side that is no length, for an unknown effect, and for effects that cannot be
+        combined.
 
-        td.Box(1.5, 1.0).largest_radius
+    Examples
+    --------
+    >>> round(td.Box(1.5, 1.0).largest_radius, 12)
+    0.383974596216
     """
 
     width: float
@@ -42,7 +64,8 @@ class Box:
         for name in effects:
             if name not in EFFECTS:
                 name = name if isinstance(name, str) else quote(name)
-                raise InputError(f"{name:.80} is no effect; effects must be some of {known}")
+                hint = did_you_mean(name, EFFECTS)
+                raise InputError(f"{name:.80} is no effect; effects must be some of {known}{hint}")
         checked = {name: EFFECTS[name].checked(value) for name, value in effects.items()}
         named = {name: value for name, value in checked.items() if value != ABSENT[name]}
         object.__setattr__(self, "effects", named)
@@ -54,14 +77,30 @@ class Box:
         return hash((self.width, self.height, *self.calls_for.items()))
 
     def __repr__(self):
-        # Streams are seeded by this text: for two discs it does not mention their number.
+        # This text seeds streams: for two discs it does not have their number.
         more = f", discs={self.discs!r}" if "discs" in self.calls_for else ""
         sides = f"width={self.width!r}, height={self.height!r}"
         return f"Box({sides}, effects={self.effects!r}{more})"
 
     @classmethod
     def of(cls, scene: Scene) -> Box:
-        """Return the box of a ``Scene``; raise ``InputError`` for anything else."""
+        """Return the box of a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            A scene at any radius.
+
+        Returns
+        -------
+        Box
+            Its box, with the same effects and discs.
+
+        Raises
+        ------
+        InputError
+            For anything but a ``Scene``.
+        """
         check_scene(scene)
         return cls(scene.width, scene.height, scene.effects, scene.discs)
 
@@ -69,19 +108,39 @@ class Box:
     def configured(cls, sides, effects, discs=2) -> Box:
         """Return the box of the blocks ``box`` and ``effects`` of a configuration.
 
-        ``sides`` are {"width": …, "height": …} and maybe a depth, which is an effect here; axes may
-        be listed. Raises ``InputError`` as the class does.
+        Parameters
+        ----------
+        sides : dict
+            {"width": …, "height": …} and maybe a depth, which is an effect here.
+        effects : dict
+            {name: value}; axes may be a list.
+        discs : int, default 2
+            The number of discs.
+
+        Returns
+        -------
+        Box
+            The box.
+
+        Raises
+        ------
+        InputError
+            As from the class.
         """
         named = effects | {"periodic": "".join(sorted(effects.get("periodic", "")))}
         named |= {name: side for name, side in sides.items() if name in EFFECTS}
         return cls(sides["width"], sides["height"], named, discs)
 
     def parameters(self) -> dict[str, object]:
-        """Return {"discs": …, "effects": …, "height": …, "width": …}: plain values.
+        """Return the box as plain values, from which ``Box(**parameters)`` makes it again.
 
-        ``Box(**parameters)`` is this box again. Absent effects and two discs are left out. So the
-        parameters of a job in a plain box, and with them its results, do not know that there is
-        anything else.
+        Absent effects and two discs are left out. The parameters of a job in a plain box, and its
+        results, then do not change if effects are added to the package.
+
+        Returns
+        -------
+        dict
+            {"discs": …, "effects": …, "height": …, "width": …}.
         """
         box = {"height": self.height, "width": self.width}
         box = {"effects": dict(self.effects)} | box if self.effects else box
@@ -103,11 +162,38 @@ class Box:
         return not self.calls_for
 
     def scene(self, radius: float) -> Scene:
-        """Return the ``Scene`` at a ``radius``; raise ``InputError`` where there is none."""
+        """Return the scene at a radius.
+
+        Parameters
+        ----------
+        radius : float
+            The radius of disc 1, in length.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Raises
+        ------
+        InputError
+            If the discs do not fit or cannot move.
+        """
         return Scene(self.width, self.height, radius, **self.effects, discs=self.discs)
 
     def fits(self, radius: float) -> bool:
-        """Say whether there is a scene at this ``radius``, a length."""
+        """Return whether there is a scene at a radius.
+
+        Parameters
+        ----------
+        radius : float
+            The radius of disc 1, in length.
+
+        Returns
+        -------
+        bool
+            True if the discs fit and can move.
+        """
         radius = check_length("radius", radius)
         try:
             self.scene(radius)
@@ -117,7 +203,7 @@ class Box:
 
     @cached_property
     def tiny(self) -> Scene:
-        """A scene of tiny discs: what does not depend on the radius can be asked of it."""
+        """A scene of tiny discs, for properties that do not depend on the radius."""
         radius = TINY * self.shortest / max(1.0, self.effects.get("radius_ratio", 1.0))
         return self.scene(max(radius, SHORTEST))
 
@@ -132,12 +218,23 @@ class Box:
         return min(self.sides)
 
     def turned(self) -> Box:
-        """Return the box with x and y exchanged; raise ``InputError`` in a field along y."""
+        """Return the box with x and y exchanged.
+
+        Returns
+        -------
+        Box
+            The box, turned by a quarter.
+
+        Raises
+        ------
+        InputError
+            In a field, which is along y.
+        """
         return Box.of(self.tiny.turned())
 
     @cached_property
     def largest_radius(self) -> float:
-        """The radius at which the discs have no room left; a field may stop them before."""
+        """The radius at which the discs just fit; a field may stop their motion before."""
         return self.tiny.largest_radius
 
     @cached_property
@@ -146,10 +243,10 @@ class Box:
         return self.end(lambda scene: True) if self.effects else self.largest_radius
 
     def end(self, holds):
-        """Return the radius from which on there is no scene, or ``holds`` is no longer true of it.
+        """Return the radius from which on there is no scene, or ``holds(scene)`` is false.
 
-        ``holds`` says something of a ``Scene`` that is true of small discs and false of larger
-        ones. By bisection, to the last digit; below 2⁻⁶⁰ of the shorter side nothing is found.
+        ``holds`` is true for small discs and false for larger ones. The radius is found by
+        bisection, to the last digit, if it is above 2⁻⁶⁰ of the shorter side.
         """
         low, high = 0.0, min(self.sides) / 2
         for _ in range(60):
@@ -162,13 +259,23 @@ class Box:
         return high
 
     def threshold(self, event: str) -> float | None:
-        """Return the radius from which on ``event`` is impossible; None if it always is.
+        """Return the radius from which on an event is impossible.
 
-        For hops of equal discs that is w/4 (vertical) or h/4 (horizontal), unless the discs jam
-        before; for what stays possible to the end it is the last radius.
+        For hops of equal discs it is w/4 (vertical) or h/4 (horizontal), unless the discs jam
+        before. For events that stay possible it is the last radius.
+
+        Parameters
+        ----------
+        event : str
+            One of ``EVENTS``.
+
+        Returns
+        -------
+        float or None
+            In length; None if the event is always impossible.
         """
         if check_choice("event", event, EVENTS) not in HOPS:
-            # In a field it may take a large disc to touch the top.
+            # In a field maybe only a large disc can touch the top.
             nearly = self.scene(self.last_radius * (1 - TINY))
             return self.last_radius if nearly.is_possible(event) else None
         if not self.is_plain:
@@ -177,7 +284,7 @@ class Box:
         return min(self.blocking_radius(event), self.largest_radius)
 
     def blocking_radius(self, hop):
-        """Return w/4 or h/4, where ``hop`` is blocked if the discs of a plain box fit that far.
+        """Return w/4 or h/4, at which ``hop`` becomes blocked in a plain box if the discs fit.
 
         Discs that pass each other on y1 = y2 are side by side along x, and need four radii there.
         """
@@ -187,7 +294,7 @@ class Box:
     def thresholds(self) -> tuple[float, ...]:
         """The radii below the last one at which a hop becomes blocked, ascending, without repeats.
 
-        Those of h/4 and w/4 that fit, where there are no effects.
+        Without effects they are h/4 and w/4, if discs of these radii fit.
         """
         limits = {self.threshold(hop) for hop in HOPS if hop in self.tiny.events}
         return tuple(sorted(radius for radius in limits if radius < self.last_radius))

@@ -1,4 +1,4 @@
-"""Checks of plain arguments, each with one sentence that says what is allowed."""
+"""Checks of plain arguments and of calls; the message of each names the allowed values."""
 
 import math
 import numbers
@@ -6,32 +6,47 @@ import re
 import reprlib
 from collections.abc import Iterable
 from contextlib import contextmanager
+from functools import wraps
 
-#: Lengths outside this range would overflow or underflow when multiplied four at a time.
+#: Products of four lengths outside this range would overflow or underflow.
 SHORTEST, LONGEST = 1e-60, 1e60
 
 #: Seeds and counts are signed 64-bit integers in the kernels.
 LARGEST_INTEGER = 2**63 - 1
 
-#: The most discs there may be, and the most of which the volume of configuration space is computed.
+#: The largest number of discs, and the largest for the volume of configuration space.
 MOST_DISCS, MOST_WITH_VOLUME = 1024, 64
 
 #: Relative errors that have a name.
 PRESETS = {"draft": 1e-2, "paper": 3e-4, "reference": 1e-4}
 
-#: Letters of the longest sentence: what it quotes may be of any length.
+#: Letters of the longest message, which may quote a value of any length.
 LONGEST_SENTENCE = 1000
 
-#: How values are quoted: some of a list, and of the lists in it.
+#: The form of quoted values: some items of a list, and of the lists in it.
 _SHORT = reprlib.Repr()
 _SHORT.maxlevel = 2
 
 
 class InputError(ValueError):
-    """A user's mistake in an argument, a configuration or a file, said in a sentence.
+    """A user's mistake in an argument, a configuration or a file, in one sentence.
 
-    Several sentences stand on a line each. The command lines answer with them alone. Any other
-    exception is a mistake in the program, and keeps its traceback.
+    It is a ``ValueError``; for a call with a wrong argument it is a ``TypeError``, too. The command
+    lines print the sentence only. Any other exception is a mistake in the program, and keeps its
+    traceback.
+
+    Parameters
+    ----------
+    *sentences : str
+        The sentences, one on each line.
+
+    Examples
+    --------
+    >>> try:
+    ...     td.Scene(1.5, 1.0, 0.2, gravity=1)
+    ... except td.InputError as error:
+    ...     print(str(error).rpartition("; ")[2])
+    did you mean field?
     """
 
     def __init__(self, *sentences):
@@ -41,7 +56,7 @@ class InputError(ValueError):
 
 
 def quote(value):
-    """Return how a sentence shows a ``value``: shortened, whatever it is."""
+    """Return the short text of any ``value`` for a message."""
     try:
         return " ".join(_SHORT.repr(value).split())
     except Exception:  # an integer of more than 4300 digits, or an odd class
@@ -50,7 +65,7 @@ def quote(value):
 
 @contextmanager
 def writing_to(path):
-    """Raise ``InputError`` where ``path`` turns out to be nothing that can be written to."""
+    """Raise ``InputError`` if the file ``path`` cannot be written in the block."""
     if "\0" in str(path):
         raise InputError(
             f"path must be a file to write, not {str(path)!r}: it has a null character"
@@ -63,12 +78,12 @@ def writing_to(path):
 
 
 def format_number(value, form=""):
-    """Return a number as the pages write it: 1e60 for what Python calls 1e+60."""
+    """Return a number as the pages write it: 1e60 for Python's 1e+60."""
     return re.sub(r"e\+?(-?)0*(\d)", r"e\1\2", format(value, form))
 
 
 def decimal_hint(value):
-    """Return what a sentence adds that shows text with a decimal comma; "" for anything else."""
+    """Return the hint about a decimal comma in the text ``value``, "" for any other value."""
     if not isinstance(value, str) or not re.fullmatch(r"[-+]?\d+,\d+", value):
         return ""
     return f"; decimals follow a point, {value.replace(',', '.')}"
@@ -77,7 +92,7 @@ def decimal_hint(value):
 def check_number(name, value, low, high, kind="number"):
     """Return ``value`` as a float in [``low``, ``high``], or raise ``InputError`` naming ``name``.
 
-    ``low`` is positive: anything that is not a real number, finite and positive is refused.
+    ``low`` is positive: the value must be a real number, finite and positive.
     """
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise InputError(
@@ -104,7 +119,7 @@ def check_length(name, value):
 
 
 def check_integer(name, value, least=1, most=LARGEST_INTEGER):
-    """Return ``value`` as an int; raise ``InputError`` unless it is an integer in that range."""
+    """Return ``value`` as an int; raise ``InputError`` unless it is an integer in the range."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
         raise InputError(f"{name} must be an integer of at least {least}, not {quote(value)}")
     if not least <= value <= most:
@@ -140,14 +155,14 @@ def check_error(name, value):
 
 
 def check_count(name, value, most=LARGEST_INTEGER):
-    """Return ``value`` ≥ 1 as an int, also from a float that is one, such as 1e6."""
+    """Return ``value`` ≥ 1 as an int, also from an integral float, such as 1e6."""
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     return check_integer(name, value, 1, most)
 
 
 def as_list(values):
-    """Return an iterable as a list, also one that is read once; an array or a text as it is."""
+    """Return an iterable, which may be an iterator, as a list; an array or a text is unchanged."""
     if isinstance(values, str | bytes) or hasattr(values, "__array__"):
         return values
     return [*values] if isinstance(values, Iterable) else values
@@ -166,5 +181,106 @@ def check_ascending(name, values):
         raise InputError(f"{name} must be a sequence of numbers, not {quote(values)}")
     lengths = [check_length(name, value) for value in values]
     if not lengths or sorted(set(lengths)) != lengths:
-        raise InputError(f"{name} must ascend, and there must be some, not {quote(lengths)}")
+        raise InputError(f"{name} must ascend and must not be empty, not {quote(lengths)}")
     return lengths
+
+
+# Calls --------------------------------------------------------------------------------------------
+
+#: The name of an argument here, and its names in other programs. A message proposes the first name
+#: here that the function has.
+ALIASES = {
+    "field": "gravity g acceleration",
+    "discs": "n num n_discs num_discs disks n_particles particles",
+    "samples": "n num n_samples shots",
+    "number": "n num size n_starts n_intervals",
+    "replicas": "n num n_replicas trajectories",
+    "hops": "n num n_hops",
+    "hop": "event events kind",
+    "events": "event hops hop quantities",
+    "quantities": "quantity events event observables",
+    "error": "tol tolerance rtol accuracy precision eps",
+    "duration": "time t t_max tmax total_time length",
+    "times": "time t",
+    "budget": "steps n_steps max_events max_steps",
+    "seed": "rng random_state random_seed",
+    "cores": "threads workers n_jobs processes n_cores",
+    "periodic": "pbc boundary boundaries periodicity",
+    "depth": "length_z lz d",
+    "radius_ratio": "radii ratio size_ratio",
+    "mass_ratio": "mass masses m ratio",
+    "moment_of_inertia": "inertia i rough roughness",
+    "path": "file filename fname output out",
+    "figure": "kind name fig",
+    "ax": "axes axis",
+    "progress": "verbose bar",
+    "radius": "r",
+    "radii": "radius r",
+    "width": "w lx",
+    "height": "h ly",
+}
+
+
+class WrongCall(InputError, TypeError):
+    """A call with an unknown argument, with too many arguments or with too few."""
+
+
+def did_you_mean(name, allowed):
+    """Return the hint about an unknown ``name``: the nearest of ``allowed``, or ""."""
+    from difflib import get_close_matches
+
+    allowed, plain = [*allowed], str(name).lower().replace(" ", "_").replace("-", "_")
+    found = [known for known in allowed if plain in ALIASES.get(known, "").split()]
+    found += [known for known in allowed if known.rpartition("_")[0] == plain]
+    found += get_close_matches(plain, allowed, 1, 0.7)
+    return f"; did you mean {found[0]}?" if found else ""
+
+
+def wrong_call(name, function, given, named):
+    """Return the ``WrongCall`` for the arguments with which ``function`` cannot be called."""
+    from inspect import Parameter, signature
+
+    parameters = signature(function).parameters.values()
+    names = [p.name for p in parameters if p.kind != Parameter.VAR_KEYWORD]
+    plain = [p.name for p in parameters if p.kind == Parameter.POSITIONAL_OR_KEYWORD]
+    unknown = [word for word in named if word not in names]
+    if unknown and len(names) == len(parameters):
+        known = [other for other in names if other != "self"]
+        hint = did_you_mean(unknown[0], [other for other in known if other not in named])
+        listed = f"{name} must be called with some of {', '.join(known)}"
+        return WrongCall(f"{listed}, not {unknown[0]}{hint}")
+    if len(given) > len(plain):
+        left = [p.name for p in parameters if p.kind == Parameter.KEYWORD_ONLY]
+        first = ", ".join(n for n in plain if n != "self")
+        return WrongCall(
+            f"{name} must be called with {', '.join(f'{n}=' for n in left)} by name: only {first} "
+            f"may be given without"
+            if left
+            else f"{name} must be called with {first} and nothing else"
+        )
+    twice = [word for word in plain[: len(given)] if word in named]
+    missing = [
+        p.name
+        for p in parameters
+        if p.default is Parameter.empty and p.name in names
+        if p.name not in (*plain[: len(given)], *named)
+    ]
+    wrong = f"{twice[0]} once" if twice else " and ".join(missing)
+    return WrongCall(f"{name} must be called with {wrong}")
+
+
+def answering(cls):
+    """Return a class whose constructor raises a ``WrongCall`` for wrong arguments."""
+    constructor = cls.__init__
+
+    @wraps(constructor)
+    def __init__(self, *given, **named):
+        try:
+            constructor(self, *given, **named)
+        except TypeError as error:
+            if error.__traceback__.tb_next is None:  # the call raised it, not the body
+                raise wrong_call(cls.__name__, constructor, (self, *given), named) from None
+            raise
+
+    cls.__init__ = __init__
+    return cls

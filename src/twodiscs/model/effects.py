@@ -1,4 +1,4 @@
-"""The effects beyond two equal, smooth discs between walls. Each is declared here, once.
+"""The effects beyond two equal, smooth discs between walls. Each is declared only here.
 
 The fields of ``Scene``, the keys of a configuration, the options of the command line and the labels
 of the figures follow from these declarations.
@@ -14,11 +14,11 @@ from twodiscs.model.checks import LONGEST, SHORTEST, InputError, check_number, q
 class Effect:
     """A physical effect: a number, or axes.
 
-    ``default`` is the value that means its absence, ``low`` and ``high`` the range of every other
-    value (None for ``periodic``, whose value is text such as "xy"), ``unit`` that of the value,
-    ``meaning`` what it is, ``more`` what else to know of it in a configuration, and ``symbol`` how
-    a figure writes it, in mathtext with one place for the value. ``of_box`` says that it is a side
-    of the box, beside width and height.
+    ``default`` is the value that means its absence. ``low`` and ``high`` are the range of every
+    other value (None for ``periodic``, whose value is text such as "xy"), and ``unit`` its unit.
+    ``meaning`` is its definition, and ``more`` a note for a configuration. ``symbol`` is its text
+    in a figure, a format in mathtext for the value. ``of_box`` means that it is a side of the box,
+    beside width and height.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Effect:
 
     @property
     def is_number(self):
-        """Whether the value is a number; otherwise it is text that names axes."""
+        """Whether the value is a number; otherwise it is a text of axes."""
         return self.low is not None
 
     def checked(self, value):
@@ -74,7 +74,7 @@ EFFECTS = {
             "radius of disc 1",
             "the radius of disc 2",
             "$r_2/r_1={:g}$",
-            "Every radius of the configuration is that of disc 1.",
+            "Every radius in the configuration is the radius of disc 1.",
         ),
         Effect(
             "mass_ratio",
@@ -91,7 +91,7 @@ EFFECTS = {
             None,
             None,
             "",
-            "the axes with neither walls nor ends",
+            "the axes without walls, along which the box repeats itself",
             "${}$ periodic",
             "The momentum along them is conserved, unless rough discs meet walls, and it is zero.",
         ),
@@ -103,7 +103,7 @@ EFFECTS = {
             "speed²/length",
             "the uniform acceleration along −y",
             "$g={:g}$",
-            "The potential energy counts in the total of 1/2.",
+            "The total energy of 1/2 includes the potential energy.",
         ),
         Effect(
             "moment_of_inertia",
@@ -119,5 +119,5 @@ EFFECTS = {
     )
 }
 
-#: {name: the value that means its absence}, in the order of the declarations.
+#: {name: value of its absence}, in the order of the declarations.
 ABSENT = {effect.name: effect.default for effect in EFFECTS.values()}

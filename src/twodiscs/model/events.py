@@ -1,8 +1,8 @@
-"""The events whose mean times are known exactly. Each is declared here, once.
+"""The events whose mean times are known exactly. Each is declared only here.
 
-Every table, kernel and figure takes the names from here and in this order. The area of a surface,
-the shell around it and how a kernel sees the event follow from its kind, axis and side, by
-``by_kind``: a kind that a module has forgotten is an error with a sentence when it is imported.
+Every table, kernel and figure takes the names from here, in this order. The area of a surface, its
+shell and the test of a kernel for the event follow from its kind, axis and side, by ``by_kind``. If
+a module lacks a kind, its import raises an error that names the kind.
 """
 
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Event:
-    """A surface in configuration space and when a trajectory passes through it.
+    """A surface in configuration space, and the moment at which a trajectory crosses it.
 
     ``kind`` is "hop" (the discs pass each other: the surface is crossed from both sides),
     "collision" (of the discs), "wall" (disc 1 at one wall) or "walls" (any disc at any wall).
-    ``axis`` is the one along which it has its place; it needs walls there. ``side`` is +1 for the
-    wall at the far end of the axis and −1 for the near one.
+    ``axis`` is the axis of the event, which must have walls. ``side`` is +1 for the wall at the
+    positive end of the axis and −1 for the other.
     """
 
     name: str
@@ -25,7 +25,7 @@ class Event:
 
     @property
     def sides(self):
-        """How many sides the surface is crossed from: 2 for a hop, 1 for everything else."""
+        """The number of sides from which the surface is crossed: 2 for a hop, else 1."""
         return 2 if self.kind == "hop" else 1
 
 
@@ -49,10 +49,10 @@ def _of_kind(*kinds):
     return tuple(event.name for event in DECLARED.values() if event.kind in kinds)
 
 
-#: The events at which the discs exchange sides; those of disc 1 at one wall.
+#: The events at which the discs exchange sides, and the events of disc 1 at one wall.
 HOPS, WALLS = _of_kind("hop"), _of_kind("wall")
 
-#: The events whose surface has a shell of its own; all walls together are corners as well.
+#: The events whose surface has a simple shell; the surface of all walls together has corners.
 SHELLS = _of_kind("hop", "collision", "wall")
 
 #: The events with an axis, {name: axis}.
@@ -60,10 +60,10 @@ AXIS = {event.name: event.axis for event in DECLARED.values() if event.axis}
 
 
 def by_kind(where, makers, events=EVENTS):
-    """Return {name: what the maker of its kind returns for the ``Event``} of these ``events``.
+    """Return {name: result of the maker of its kind for the ``Event``} for these ``events``.
 
-    ``makers`` maps kinds to functions. Raises ``TypeError`` with a sentence that names the kind of
-    which ``where``, a file of this package, says nothing.
+    ``makers`` maps kinds to functions. Raises ``TypeError`` that names the missing kind and
+    ``where``, a file of this package.
     """
     places = {}
     for name in events:

@@ -1,9 +1,9 @@
-"""The families of scenes, and the modules that each of them has.
+"""The families of scenes, and the modules of each family.
 
 A scene is "plain" (two equal, smooth discs between walls), has "effects" (two discs), or has "many"
-discs. Each floor has a module for each family, ``<floor>.families.<family>``, and these have the
-same function names. They are imported by a computed name, so an edit for one family changes the
-fingerprint of no other. A family does not define what it cannot do.
+discs. Each floor has a module for each family, ``<floor>.families.<family>``, with the same
+function names. They are imported by a computed name, so an edit for one family does not change the
+fingerprints of the others. If a family cannot do something, it does not define the function.
 """
 
 from functools import cache
@@ -17,7 +17,7 @@ _PACKAGE = __package__.partition(".")[0]
 
 
 def module_of(floor, family):
-    """Return the dotted name of the module that a ``family`` has on a ``floor``, "theory" say."""
+    """Return the dotted name of the module of a ``family`` on a ``floor``, such as "theory"."""
     return f"{_PACKAGE}.{floor}.families.{family}"
 
 
@@ -27,10 +27,10 @@ def _found(floor, family, function):
 
 
 def of_family(scene, floor, function, what=None):
-    """Return the ``function`` that the family of a ``Scene`` has on a ``floor``.
+    """Return the ``function`` of the family of a ``Scene`` on a ``floor``.
 
-    Raises ``InputError`` where it has none; ``what`` names then what is not possible, in words that
-    follow "for", the name of the function if it is None.
+    Raises ``InputError`` if the family does not have it. In its message ``what``, or the name of
+    the function, follows the word "for".
     """
     found = _found(floor, scene.family, function)
     if found is None:

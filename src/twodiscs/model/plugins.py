@@ -4,7 +4,7 @@ from importlib import metadata
 
 
 def plugin(name):
-    """Return what an installed package offers as ``name``, None if none does.
+    """Return the object that an installed package registers as ``name``, None if none does.
 
     ``tables`` are its tables, {name: ``Table``}; ``build`` is the module of ``twodiscs run`` and
     ``twodiscs new``.

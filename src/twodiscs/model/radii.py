@@ -1,6 +1,6 @@
-"""The radii of a scene, the text keys that name them, and the random streams that belong to them.
+"""The radii of a scene, their text keys, and the seeds of their random streams.
 
-Standard library only: the grid is computed while the Snakefile is read.
+This module imports only the standard library: the grid is computed while the Snakefile is read.
 """
 
 import math
@@ -10,16 +10,16 @@ from itertools import pairwise
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_integer, check_length, quote
 
-#: The stochastic stages, each with random streams of its own.
+#: The methods with random numbers, each with separate streams.
 METHODS = (
     "monte_carlo", "dynamics", "intervals", "trajectory", "unmet", "strip", "passages",
     "observe",
 )  # fmt: skip
 
-#: No grid has more points.
+#: The largest number of points of a grid.
 MOST = 1000
 
-#: Regimes narrower than this fraction of the largest radius get no points of their own.
+#: A regime narrower than this fraction of the largest radius has no points.
 NARROWEST = 1e-6
 
 
@@ -31,13 +31,12 @@ def key(radius):
 def radii(width, height, smallest, count):
     """Return ``count`` ascending radii from ``smallest`` up to just below the largest that fits.
 
-    Every regime has its share of the points, placed like Chebyshev nodes, so that they crowd
-    quadratically towards both sides of h/4 and w/4 and below the largest radius without touching
-    any of the three; from the smallest radius they start evenly. Each is then rounded to the
-    fewest digits that leave it near its place.
+    The points of every regime are Chebyshev nodes: they are dense on both sides of h/4 and w/4 and
+    below the largest radius, but none is at one of the three. From the smallest radius on they
+    begin evenly. Each is then rounded to the fewest digits that leave it near its value.
 
-    Raises ``InputError`` if ``count`` is not an integer from 1 to ``MOST``, or ``smallest`` is not
-    a length below the largest radius or lies on a threshold.
+    Raises ``InputError`` if ``count`` is not an integer from 1 to ``MOST``, or if ``smallest`` is
+    not a length below the largest radius or is a threshold.
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
@@ -47,7 +46,7 @@ def radii(width, height, smallest, count):
             f"smallest must be below the largest radius of the box, {largest!r}, not {smallest!r}"
         )
     if smallest in limits:
-        raise InputError(f"smallest must not be {smallest!r}, where a hop becomes blocked")
+        raise InputError(f"smallest must not be {smallest!r}, at which a hop becomes blocked")
 
     edges = [smallest]
     for limit in (*limits, largest):
@@ -57,14 +56,14 @@ def radii(width, height, smallest, count):
     places = []
     shared = 0.0
     for low, high in regimes:
-        # Half of the points are shared equally between the regimes, half by length.
+        # Half of the points are divided equally among the regimes, half by length.
         shared += 1 / len(regimes) + (high - low) / (largest - smallest)
         n = max(1, round(count * shared / 2)) - len(places)
         if not places:
             fractions = [math.sin(math.pi / 2 * j / n) for j in range(n)]
         else:
             fractions = [math.sin(math.pi / 2 * (j + 0.5) / n) ** 2 for j in range(n)]
-        # Twelve digits of the sines, for the last one depends on the math library.
+        # Twelve digits of the sines, because the last one depends on the math library.
         places += [low + round(fraction, 12) * (high - low) for fraction in fractions]
 
     result = [smallest]
@@ -78,8 +77,8 @@ def radii(width, height, smallest, count):
 def even_radii(smallest, largest, count):
     """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
 
-    Each except the first is rounded to the fewest digits that leave it near its place. Raises
-    ``InputError`` unless 0 < smallest < largest and 1 ≤ count ≤ ``MOST``, an integer.
+    Each except the first is rounded to the fewest digits that leave it near its value. Raises
+    ``InputError`` unless 0 < smallest < largest and ``count`` is an integer from 1 to ``MOST``.
     """
     smallest, largest = check_length("smallest", smallest), check_length("largest", largest)
     count = check_integer("count", count, 1, MOST)
@@ -99,8 +98,8 @@ def shortest_decimal(value, distance, avoid=()):
 def stream_seed(seed, scene, method, key):
     """Return the integer in [0, 2**63) that seeds the streams of one job.
 
-    It depends on the configured ``seed``, the scene's name, the method (one of ``METHODS``)
-    and the radius's key, and on nothing else: no place in a list, nor which other jobs there are.
+    It depends only on the configured ``seed``, the scene's name, the method (one of ``METHODS``)
+    and the radius's key, not on the order of a list or on other jobs.
     """
     seed = check_integer("seed", seed, 0)
     if not isinstance(scene, str):

@@ -1,19 +1,19 @@
-"""The scene: hard discs in a rectangular box, two unless told, and what follows from it.
+"""The scene: hard discs in a rectangular box, two by default, and its geometry.
 
 Coordinates have their origin at the centre of the box. Lengths are in the unit of the box, disc 1
-has mass one and the total energy is 1/2: the speed of disc 1 is at most one, and times are lengths
-over that speed.
+has mass one and the total energy is 1/2. The speed of disc 1 is then at most one, and times are
+lengths over that speed.
 
-The plain scene has equal, smooth discs between walls. A scene may call for effects: unequal radii
+The plain scene has two equal, smooth discs between walls. A scene may have effects: unequal radii
 or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
-are balls), more discs than two. Absent effects are neither simulated nor compiled.
+are balls); or more discs than two. Absent effects are neither simulated nor compiled.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -22,6 +22,7 @@ from twodiscs.model.checks import (
     MOST_DISCS,
     SHORTEST,
     InputError,
+    answering,
     check_choice,
     check_integer,
     check_length,
@@ -37,37 +38,55 @@ from twodiscs.model.family import of_family
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 
 
+@answering
 @dataclass(frozen=True)
 class Scene:
-    """Hard discs in a box of ``width`` × ``height``, two of them, disc 1 of radius ``radius``.
+    """Hard discs in a box, two of them by default, in which disc 1 has mass 1.
 
-    Effects, each absent by default:
+    The total energy is 1/2. Each effect is absent by default. More than two discs are equal and
+    smooth, in the plane, and ``periodic`` "x" is the only effect that they can have: the box is
+    then a ring along x, with a total momentum of 0 along it. A collision or a hop is then of any
+    pair. A hit of the right or the top wall is of one disc, averaged over all initial conditions.
 
-    * ``depth``: the third side of the box; the discs are balls then.
-    * ``radius_ratio``, ``mass_ratio``: of disc 2 to disc 1.
-    * ``periodic``: the axes ("x", "y", "z", a list of them or text such as "xy") with neither wall
-      nor end.
-    * ``field``: the acceleration g along −y, in speed²/length. Heights count from where each disc
-      rests on the bottom, so the potential energy is never negative.
-    * ``moment_of_inertia``: I/(m r²), in (0, 1], of rough discs: at contact the tangential velocity
-      of the surfaces is reversed too, between discs and at walls. None means smooth.
+    Parameters
+    ----------
+    width, height : float
+        Sides of the box, in length, from 1e-60 to 1e60.
+    radius : float
+        The radius of disc 1, in length.
+    depth : float, optional
+        The third side of the box, in length; the discs are balls then.
+    radius_ratio : float, default 1
+        The radius of disc 2 over that of disc 1, from 1e-3 to 1e3.
+    mass_ratio : float, default 1
+        The mass of disc 2 over that of disc 1, from 1e-3 to 1e3.
+    periodic : str or sequence of str, default ""
+        The axes without walls: "x", "y", "z", a list of them or text such as "xy".
+    field : float, default 0
+        The acceleration g along −y, in speed²/length. The height of a disc is 0 on the bottom, so
+        the potential energy is never negative.
+    moment_of_inertia : float, optional
+        I/(m r²) of rough discs, in (0, 1]. Collisions of rough discs, with each other and with
+        walls, also reverse the tangential velocity of the surfaces. Without it discs are smooth.
+    discs : int, default 2
+        The number of discs, from 2 to 1024.
 
-    ``discs`` is their number, an integer from 2 to 1024. More than two are equal and smooth, in the
-    plane, and of the effects only ``periodic`` "x" goes with them: the box is then a ring along x,
-    with a total momentum of 0 along it. A collision or a hop is then that of any pair, a hit of the
-    right or the top wall that of one disc, averaged over all initial conditions.
+    Raises
+    ------
+    InputError
+        For a value of another type or range, for a radius at which the discs do not fit or cannot
+        move at total energy 1/2, and for effects that cannot be combined.
 
-    Raises ``InputError`` for a value that is not of its kind, for a radius that leaves the discs no
-    room or no motion at total energy 1/2, and for effects that do not go together.
-
-    Example:
-
-        td.Scene(1.5, 1.0, 0.2, mass_ratio=2, periodic="x").regime
+    Examples
+    --------
+    >>> td.Scene(1.5, 1.0, 0.2, mass_ratio=2, periodic="x").regime
+    'vertical-hops'
     """
 
     width: float
     height: float
     radius: float
+    _: KW_ONLY
     depth: float | None = None
     radius_ratio: float = 1.0
     mass_ratio: float = 1.0
@@ -105,7 +124,7 @@ class Scene:
         settle("periodic", "".join(sorted(self.periodic)))
         if self.field and "y" in self.periodic:
             raise InputError(
-                "field must be 0 where y is periodic, for nothing would hold the discs, not "
+                "field must be 0 if y is periodic, because the discs would fall for ever, not "
                 f"{self.field!r}"
             )
         if self.moment_of_inertia is not None:
@@ -123,7 +142,7 @@ class Scene:
         )
 
     def __getstate__(self):
-        """Return the fields alone: a copy is the same whatever was asked of the scene before."""
+        """Return only the fields: a copy does not depend on cached properties."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def __repr__(self):
@@ -131,7 +150,7 @@ class Scene:
         return f"Scene({', '.join([sides, *(f'{n}={v!r}' for n, v in self.calls_for.items())])})"
 
     def __str__(self):
-        """Say what the scene is, in a line."""
+        """Return the scene in words, on one line."""
         more = {name: value for name, value in self.effects.items() if name != "depth"}
         words = [f"{name.replace('_', ' ')} {value}" for name, value in more.items()]
         number = {2: "Two"}.get(self.discs, self.discs)
@@ -149,7 +168,18 @@ class Scene:
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
 
     def unit(self, quantity: str) -> str:
-        """Return the unit of a "volume", an "area" or anything that is a "time"."""
+        """Return the unit of a quantity.
+
+        Parameters
+        ----------
+        quantity : str
+            A name that ends in "volume" or "area"; any other is a time.
+
+        Returns
+        -------
+        str
+            The unit, such as "length⁴".
+        """
         dimensions = self.discs * len(self.axes)
         powers = {"volume": dimensions, "area": dimensions - 1}
         kind = quantity.rpartition("_")[2]
@@ -158,11 +188,38 @@ class Scene:
         return "length" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(powers[kind]))
 
     def with_radius(self, radius: float) -> Scene:
-        """Return the same scene with another radius of disc 1."""
+        """Return the same scene with another radius of disc 1.
+
+        Parameters
+        ----------
+        radius : float
+            The radius, in length.
+
+        Returns
+        -------
+        Scene
+            The scene.
+
+        Raises
+        ------
+        InputError
+            If the discs do not fit or cannot move.
+        """
         return replace(self, radius=radius)
 
     def turned(self) -> Scene:
-        """Return the same scene with x and y exchanged; raise ``InputError`` in a field along y."""
+        """Return the same scene with x and y exchanged.
+
+        Returns
+        -------
+        Scene
+            The scene, turned by a quarter.
+
+        Raises
+        ------
+        InputError
+            In a field, which is along y.
+        """
         if self.field:
             raise InputError(f"field must be 0 to exchange the axes, not {self.field!r}")
         periodic = self.periodic.translate(str.maketrans("xy", "yx"))
@@ -170,7 +227,7 @@ class Scene:
 
     @property
     def effects(self) -> dict[str, object]:
-        """The effects that the scene calls for, {name: value} in the order of the fields."""
+        """The effects of the scene, {name: value} in the order of the fields."""
         return {
             name: getattr(self, name)
             for name, default in ABSENT.items()
@@ -179,7 +236,7 @@ class Scene:
 
     @property
     def has_effects(self) -> bool:
-        """Whether the scene calls for any effect."""
+        """Whether the scene has any effect."""
         return bool(self.effects)
 
     @property
@@ -196,7 +253,7 @@ class Scene:
     def calls_for(self):
         """Everything beyond two equal, smooth discs between walls, {name: value}.
 
-        These are its effects, and ``discs`` where they are more than two.
+        These are its effects, and ``discs`` if there are more than two.
         """
         return {n: getattr(self, n) for n, usual in USUAL.items() if getattr(self, n) != usual}
 
@@ -217,15 +274,16 @@ class Scene:
 
     @cached_property
     def conserved(self) -> tuple[str, ...]:
-        """The axes along which the total momentum is conserved; the ensemble has it at 0.
+        """The axes along which the total momentum is conserved; it is 0 in the ensemble.
 
-        Those are the periodic ones, unless there are rough walls, which push discs along them.
+        These are the periodic axes, unless there are rough walls, which change the momentum along
+        them.
         """
         return tuple(self.periodic) if self.moment_of_inertia is None else ()
 
     @cached_property
     def velocity_components(self) -> int:
-        """D: the components of velocities and spins, less the momenta that are conserved."""
+        """D: the number of components of velocities and spins, minus the conserved momenta."""
         spin = self.moment_of_inertia is not None
         return self.discs * (len(self.axes) + spin) - len(self.conserved)
 
@@ -258,7 +316,7 @@ class Scene:
 
     @cached_property
     def contact_distance(self) -> float:
-        """σ: the distance of the centres when the discs touch, twice the radius if equal."""
+        """The distance σ of the centres when the discs touch, twice the radius if equal."""
         return sum(self.radii)
 
     @cached_property
@@ -274,7 +332,7 @@ class Scene:
     def reach(self, axis):
         """Return the largest separation of the centres along ``axis``, as an exact fraction.
 
-        That is the side less σ between walls, and half the side on a periodic axis, where the
+        It is the side minus σ between walls, and half the side on a periodic axis, on which the
         nearest image counts.
         """
         side = Fraction(self.side(axis))
@@ -286,10 +344,10 @@ class Scene:
 
     @cached_property
     def largest_radius(self) -> float:
-        """The radius of disc 1 at which the discs have no room left.
+        """The radius of disc 1 at which the discs just fit.
 
-        For more than three discs it is that of the densest arrangement that is known here. In a
-        channel so narrow that only neighbours can touch no arrangement is denser.
+        For more than three discs it belongs to the densest arrangement that is known here. In a
+        channel so narrow that only neighbours can touch, no arrangement is denser.
         """
         return self._geometry("largest_radius")
 
@@ -301,15 +359,15 @@ class Scene:
     def passed(self) -> tuple[str, ...]:
         """The axes with walls along which the discs can exchange sides.
 
-        For more than three discs those along which geometry does not exclude it.
+        For more than three discs these are the axes along which geometry does not exclude it.
         """
         return self._geometry("passed")
 
     def room(self, hop):
-        """Return how far apart discs that are level along the axis of ``hop`` can be, less σ.
+        """Return the largest distance of discs at a ``hop``, minus σ.
 
-        For equal discs of the plane that is B − σ for the horizontal hop, A − σ for the vertical
-        one; it is negative where the hop is blocked.
+        For equal discs in the plane it is B − σ for the horizontal hop and A − σ for the vertical
+        one. It is negative if the hop is blocked.
         """
         spread, sigma = self.spread(DECLARED[hop].axis), self.exact_contact
         return float(spread - sigma**2) / (math.sqrt(spread) + float(sigma))
@@ -318,18 +376,18 @@ class Scene:
     def fastest(self):
         """The largest relative velocity of the centres, √(1/m1 + 1/m2) at total energy 1/2.
 
-        That is the length of the gradient of a separation, too, in the metric of the masses.
+        It is also the length of the gradient of a separation, in the metric of the masses.
         """
         return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses))
 
     @cached_property
     def vertical_hops(self):
-        """Whether the discs can pass each other on y1 = y2; equal discs of the plane if w > 4r."""
+        """Whether the discs can pass each other on y1 = y2; equal discs in the plane if w > 4r."""
         return "y" in self.passed
 
     @cached_property
     def horizontal_hops(self):
-        """Whether the discs can pass each other on x1 = x2; equal discs of the plane if h > 4r."""
+        """Whether the discs can pass each other on x1 = x2; equal discs in the plane if h > 4r."""
         return "x" in self.passed
 
     @cached_property
@@ -345,18 +403,18 @@ class Scene:
     def ergodic_components(self) -> int | None:
         """The number of disjoint parts of configuration space.
 
-        Each hop that is blocked between walls doubles it. A periodic axis has a way around. More
-        than two discs have N! components if they keep their order, (N − 1)! on a ring, more in a
-        short channel where heights have components of their own, 1 if all discs pass each other
-        with room to spare, and None where the number is not known.
+        Each hop that is blocked between walls doubles it. On a periodic axis discs can go around.
+        More than two discs have N! components if they keep their order, (N − 1)! on a ring, and
+        more in a short channel, in which the heights of one order also form several components.
+        They have 1 if any two of them can be exchanged. If the number is not known, it is None.
         """
         return self._geometry("ergodic_components")
 
     @cached_property
     def confined(self):
-        """Whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2.
+        """Whether disc 1 reaches a wall of x, and one of y, only from one side of disc 2.
 
-        False for more than two discs: their times are averages over all initial conditions.
+        It is False for more than two discs: their times are averages over all initial conditions.
         """
         return self._geometry("confined")
 
@@ -366,26 +424,29 @@ class Scene:
         return self.radius_ratio == self.mass_ratio == 1
 
     def share(self, event):
-        """Return the share of trajectories that can see ``event``.
+        """Return the fraction of trajectories that can have ``event``.
 
-        That is 1/2 for a wall that disc 1 reaches from its own side of disc 2 only, else 1.
+        It is 1/2 for a wall that disc 1 reaches only from one side of disc 2, else 1.
         """
         declared = DECLARED[event]
         return 0.5 if declared.kind == "wall" and self.confined["xy".index(declared.axis)] else 1.0
 
     def multiplicity(self, event):
-        """Return the mean count of ``event`` in one mean time, with all that is equal to it.
+        """Return the number of events with the rate of ``event`` by symmetry.
 
-        Mirror images and equal discs leave four of the pairs of a disc and a wall that have one
-        rate, two of them within the reach of a trajectory where the discs keep their sides. A field
-        has no mirror image along y. It is 2N for walls of more than two discs, and 1 for everything
-        but walls.
+        By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If
+        the discs keep their sides, a trajectory can reach two of them. With a field there is no
+        mirror image along y. It is 2N for walls of more than two discs, and 1 for all events except
+        wall hits.
         """
         return self._geometry("multiplicity", DECLARED[event])
 
     @cached_property
     def events(self) -> tuple[str, ...]:
-        """Those of ``EVENTS`` that have a place in the scene, whether or not they are possible."""
+        """The ``EVENTS`` that exist in the scene: hops and walls need walls along their axis.
+
+        They include events that are impossible at this radius.
+        """
         return tuple(event.name for event in DECLARED.values() if self._has_place(event))
 
     def _has_place(self, event):
@@ -394,7 +455,23 @@ class Scene:
         return event.kind == "collision" or bool(self.walled)
 
     def is_possible(self, event: str) -> bool:
-        """Say whether ``event`` ever happens; hops can be blocked, and a field keeps discs down."""
+        """Return whether an event ever happens; hops can be blocked, and a field keeps discs down.
+
+        Parameters
+        ----------
+        event : str
+            One of ``EVENTS``.
+
+        Returns
+        -------
+        bool
+            False if no trajectory has the event.
+
+        Raises
+        ------
+        InputError
+            For anything but one of ``EVENTS``.
+        """
         if check_choice("event", event, EVENTS) not in self.events:
             return False
         declared = DECLARED[event]
@@ -415,16 +492,16 @@ def check_scene(value):
 def hopping_along(scene, hop, axis):
     """Return an equivalent ``Scene`` and hop, axes exchanged so that the hop is along ``axis``.
 
-    ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). In a field, where axes
-    cannot be exchanged, both are returned as they are. One compiled kernel then serves both hops.
-    Raises ``InputError`` for a hop that is unknown.
+    ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). One compiled kernel can
+    then simulate both hops. In a field axes cannot be exchanged, and both are returned unchanged.
+    Raises ``InputError`` for an unknown hop.
     """
     if AXIS[check_choice("hop", hop, HOPS)] == axis or scene.field:
         return scene, hop
     return scene.turned(), next(other for other in HOPS if other != hop)
 
 
-#: The values of the fields that nobody has to give, {name: value}.
+#: The default values of fields, {name: value}.
 USUAL = {field.name: field.default for field in fields(Scene)[3:]}
 
 if {name: value for name, value in USUAL.items() if name != "discs"} != ABSENT:

@@ -1,8 +1,8 @@
-"""The sources that a module of these packages is made of, and a fingerprint of them.
+"""The source files that a module of these packages imports, and a fingerprint of them.
 
-The workflow passes fingerprints to its jobs, so that an edit reruns what it can change and nothing
-else: they follow the import statements, and see neither comments nor docstrings nor time stamps.
-Standard library only: the Snakefile imports this.
+The workflow passes fingerprints to its jobs, so that an edit reruns only the jobs that it can
+change. Fingerprints follow the import statements; they do not depend on comments, docstrings or
+time stamps. This module needs only the standard library, because the Snakefile imports it.
 """
 
 import ast
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from twodiscs.model.checks import InputError
 
-#: The folder of the packages, and those whose sources count.
+#: The folder of the packages, and the packages whose sources count.
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("twodiscs", "twodiscs_paper")
 
@@ -26,12 +26,13 @@ STRING_OR_COMMENT = re.compile(
 
 
 def imported(*modules, without=()):
-    """Return the sorted paths of all files of ``PACKAGES`` that importing ``modules`` may read.
+    """Return the sorted paths of all files of ``PACKAGES`` that an import of ``modules`` may read.
 
-    Modules are dotted names, "twodiscs.dynamics.counting" say. Imports are followed wherever they
-    stand, in functions too, through ``__init__.py`` files and relative names. A module that is
-    imported by a computed name is not followed. Those in ``without`` are left out, with what only
-    they import. Raises ``InputError`` for a name that is no module of ``PACKAGES``.
+    Modules are dotted names, such as "twodiscs.dynamics.counting". All import statements are
+    followed, also in functions, through ``__init__.py`` files and with relative names. A module
+    that is imported by a computed name is not followed. Modules in ``without`` are left out, with
+    the modules that only they import. Raises ``InputError`` for a name that is no module of
+    ``PACKAGES``.
     """
     left_out, queue = {_parts(module) for module in without}, list(map(_parts, modules))
     collected = set()
@@ -59,14 +60,14 @@ def modules():
 
 
 def imports_of(module):
-    """Return the modules that the code of one imports itself, named as by ``modules``."""
+    """Return the modules that a module imports directly, named as by ``modules``."""
     parents = {module[:depth] for depth in range(1, len(module) + 1)}
     return [name for name in _imports(module) if name not in parents]
 
 
 @cache
 def fingerprint(*modules, without=()):
-    """Return 16 hexadecimal digits that change with the code of ``modules`` and what they import.
+    """Return 16 hexadecimal digits that change with the code of ``modules`` and of their imports.
 
     ``without``, a tuple, and errors are as in ``imported``.
     """
@@ -90,14 +91,14 @@ def _file(name):
 def _read(path):
     """Return (hash of a source without comments, docstrings and blank lines, its imports).
 
-    The hash is that of the text, not of the syntax tree, whose form depends on the version of
-    Python. Strings that are statements of their own are docstrings, of attributes too. Imports are
-    triples (dotted module, number of leading dots, names).
+    The hash is of the text, not of the syntax tree, whose form depends on the version of Python.
+    Strings that are whole statements are docstrings, also of attributes. Imports are triples
+    (dotted module, number of leading dots, names).
     """
     text = path.read_bytes()
     lines, imports = text.splitlines(), []
     queue = [ast.parse(text, filename=str(path))]
-    while queue:  # of statements only: what they are made of is half of the time
+    while queue:  # of statements only: a walk through expressions doubles the time
         node = queue.pop()
         for block in ("body", "orelse", "finalbody", "handlers", "cases"):
             queue += getattr(node, block, ())
@@ -117,7 +118,7 @@ def _is_text(node):
 
 
 def _cut(lines, node):
-    """Empty the part of ``lines`` that a ``node`` covers."""
+    """Remove the text of a ``node`` from ``lines``."""
     first, last = node.lineno - 1, node.end_lineno - 1
     before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
     lines[first : last + 1] = [before + after] + [b""] * (last - first)
@@ -125,7 +126,7 @@ def _cut(lines, node):
 
 @cache
 def _imports(name):
-    """Return the modules of ``PACKAGES`` that the module ``name`` imports, its parents included.
+    """Return the modules of ``PACKAGES`` that the module ``name`` imports, and its parents.
 
     The packages themselves are left out: every module imports them, and none depends on them.
     """

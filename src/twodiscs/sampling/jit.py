@@ -1,13 +1,13 @@
-"""Numba, set up in one place: which arithmetic, which vector width, where compiled code is kept.
+"""The settings of Numba: its arithmetic, its vector width and the folder for compiled code.
 
-Arithmetic is plain IEEE 754: no fastmath, no contraction, and kernels call nothing of a math
-library but the square root, which is correctly rounded. So every processor and vector width gives
-the same bits.
+Arithmetic is plain IEEE 754: no fastmath, no contraction, and the only function of a math library
+that kernels call is the square root, which is correctly rounded. This makes the bits the same on
+every processor and for every vector width.
 
-Compiled code is kept by numba's own cache, in a folder named by the ``fingerprint`` of the module
-that a kernel stands in: numba alone looks at that one file, and would go on using a kernel whose
-imported event law has been edited. Import this module, not numba, wherever something is compiled:
-the settings must precede the import.
+Numba's cache keeps compiled code, in a folder named by the ``fingerprint`` of the kernel's module.
+Numba itself compares only the file of that module, and would keep a kernel after an edit of the
+event law that the module imports. Import this module, not numba, to compile anything: the settings
+must precede the import of numba.
 """
 
 import atexit
@@ -27,7 +27,7 @@ from twodiscs.model.sources import PACKAGES, fingerprint
 
 
 def _use_wide_vectors():
-    """Lift LLVM's preference for 256-bit vectors on a processor with 512; a user's choice wins."""
+    """Let LLVM use 512-bit vectors if the processor has them, unless the user set a width."""
     if "NUMBA_CPU_NAME" in os.environ or "NUMBA_CPU_FEATURES" in os.environ:
         return
     from llvmlite import binding
@@ -39,8 +39,8 @@ def _use_wide_vectors():
 
 _use_wide_vectors()
 
-# Objects that numba makes when it is imported stay: a garbage collection there takes a fifth of
-# the start.
+# The objects of numba's import stay in memory: garbage collections meanwhile take a fifth of the
+# start.
 collecting = gc.isenabled()
 gc.disable()
 
@@ -49,10 +49,10 @@ from numba.core import caching, types  # noqa: E402
 from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
-# No kernel needs BLAS, and importing SciPy's, where numba looks for it, takes a quarter of a start.
-# For numba there is none, then; its own functions for inner products take their place.
+# No kernel needs BLAS. Numba would import SciPy's, which takes a quarter of the start. We hide it;
+# numba then uses its own functions for inner products.
 if (blas := "scipy.linalg.cython_blas") not in sys.modules:
-    sys.modules[blas] = None  # so an import of it fails
+    sys.modules[blas] = None  # makes its import fail
     import numba.np.arraymath
 
     del sys.modules[blas]
@@ -67,24 +67,25 @@ if numba.config.DISABLE_JIT:
         "a negative number is an error; to step through one kernel, call its attribute py_func"
     )
 
-# Threads that nobody waits for end with the process, but in the midst of a compilation it crashes.
+# Daemon threads end with the process. During a compilation that crashes it, so we wait.
 atexit.register(global_compiler_lock.acquire)
 
-#: How everything is compiled: division by zero gives infinity, as IEEE 754 has it. No kernel is
-#: called from C.
+#: The options of every compilation: division by zero gives infinity, as IEEE 754 requires. No
+#: kernel is called from C.
 OPTIONS = {
     "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
 }  # fmt: skip
 
-#: Compiled code of edited sources is removed when no process has used it for this many seconds.
+#: Compiled code of older sources is removed after this number of seconds without use.
 UNUSED = 30 * 86400
 
 
 @cache
 def cache_home():
-    """Return the folder for compiled code, None where no such folder can be written to.
+    """Return the folder for compiled code, None if no folder can be written to.
 
-    It is NUMBA_CACHE_DIR, ``twodiscs`` in XDG_CACHE_HOME or in ``~/.cache``, or else the package's.
+    It is the first that can be written to of NUMBA_CACHE_DIR, ``twodiscs`` in XDG_CACHE_HOME or in
+    ``~/.cache``, and the folder of the package.
     """
     homes = [Path(__file__).parents[1] / "__pycache__"]
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
@@ -92,7 +93,7 @@ def cache_home():
     elif chosen := os.environ.get("XDG_CACHE_HOME"):
         homes.insert(0, Path(chosen) / "twodiscs")
     else:
-        with suppress(RuntimeError):  # who runs this may have no entry in the list of users
+        with suppress(RuntimeError):  # the user may have no entry in the list of users
             homes.insert(0, Path.home() / ".cache" / "twodiscs")
     for home in homes:
         with suppress(OSError):
@@ -100,7 +101,7 @@ def cache_home():
             if os.access(home, os.W_OK | os.X_OK):
                 return home
     print(
-        "Compiled code is kept nowhere, so every process compiles anew: none of the folders "
+        "Compiled code cannot be kept, so every process compiles again: none of the folders "
         f"{', '.join(map(str, homes))} can be written to; NUMBA_CACHE_DIR names another one",
         file=sys.stderr,
     )
@@ -111,7 +112,7 @@ def cache_home():
 def cache_folder(module):
     """Return the folder of the compiled code of a ``module``, a dotted name.
 
-    Folders that were unused for long are removed when a new one is made.
+    When a folder is new, old folders without use for ``UNUSED`` seconds are removed.
     """
     folder = cache_home() / f"kernels-{fingerprint(module)}"
     if not folder.exists():
@@ -124,17 +125,17 @@ def cache_folder(module):
 
 
 class BySources(caching.UserProvidedCacheLocator):
-    """Tells numba's cache where a function is kept: its sources are in the name of the folder."""
+    """Gives numba's cache the folder of a function, whose name has the fingerprint of sources."""
 
     def __init__(self, function, file):
         self._cache_path = str(cache_folder(function.__module__))
 
     def get_source_stamp(self):
-        """Return what else compiled code depends on; numba sees to its own version and Python's."""
+        """Return what compiled code depends on beside the versions of numba and Python."""
         return numba.llvmlite.__version__
 
     def get_disambiguator(self):
-        """Return nothing: a module has one function of a name, wherever it stands."""
+        """Return an empty text: a module has one function of a name, on any line."""
         return "kernel"
 
     @classmethod
@@ -144,15 +145,15 @@ class BySources(caching.UserProvidedCacheLocator):
 
 
 class CacheFile(caching.IndexDataCacheFile):
-    """Numba's files of one function; a damaged one, or a full disk, costs a compilation."""
+    """Numba's files of one function; after damage, or on a full disk, it is compiled again."""
 
     def load(self, key):
-        """Return what is kept for ``key``, None if there is nothing or a file is damaged."""
+        """Return the compiled kernel for ``key``, None if there is none or a file is damaged."""
         try:
             return super().load(key)
         except OSError:
             raise
-        except Exception:  # which one depends on the byte at which a pickle ends
+        except Exception:  # its type depends on the byte at which a pickle ends
             print(f"{self._index_path} is damaged; the kernel is compiled again", file=sys.stderr)
             with suppress(OSError):
                 os.unlink(self._index_path)
@@ -170,9 +171,9 @@ class CacheFile(caching.IndexDataCacheFile):
 
 
 def compiled(function):
-    """Compile ``function`` with the house settings; what a kernel calls is compiled into it.
+    """Compile ``function`` with ``OPTIONS``; the functions that it calls are compiled into it.
 
-    It is kept on disk, where that is possible.
+    The code is kept on disk if possible.
     """
     if cache_home() is None or function.__module__.partition(".")[0] not in PACKAGES:
         return numba.njit(function, **OPTIONS)
@@ -190,14 +191,15 @@ def compiled(function):
 def _compile_once(cache, name):
     """Let one process at a time compile the function of a ``cache``: others wait, and load it.
 
-    A function is locked before what it calls, so no two processes wait for each other.
+    A function is locked before the functions that it calls, so no two processes wait for each
+    other.
     """
     load, save, held = cache.load_overload, cache.save_overload, []
 
     def load_or_lock(signature, context):
         found = load(signature, context)
         if found is None and not held:
-            with suppress(OSError):  # a file system without locks: then both compile
+            with suppress(OSError):  # without locks in the file system both compile
                 held.append(os.open(Path(cache.cache_path, f"{name}.lock"), os.O_CREAT | os.O_RDWR))
                 fcntl.flock(held[0], fcntl.LOCK_EX)
             if (found := load(signature, context)) is not None and held:
@@ -215,15 +217,15 @@ def _compile_once(cache, name):
 
 
 def inlined(function):
-    """Compile ``function`` into whatever calls it, however long it is: for the innermost loops."""
+    """Compile ``function`` into its callers, whatever its length: for the innermost loops."""
     return numba.njit(function, forceinline=True, **OPTIONS)
 
 
 def optional(absent):
-    """Decorate a function of an effect; ``absent`` takes its place where its last argument is None.
+    """Decorate a function of an effect; ``absent`` replaces it if its last argument is None.
 
-    Which of them it is follows from the type of that argument, when the kernel that calls it is
-    compiled: the other one is not even looked at, so it need make no sense for these arguments.
+    The type of this argument decides when the kernel that calls it is compiled. The other function
+    is not compiled, so it need not be valid for these arguments.
     """
 
     def decorate(present):

@@ -1,24 +1,24 @@
 """Rejection sampling of the volume and, by thin shells, of the surfaces of configuration space.
 
-Centres are drawn uniformly in the prism; a sample that does not overlap belongs to the volume, and
-one that also lies within ε of a surface belongs to its shell. Shell thickness is measured along
-the normal in configuration space, g = 0 being the surface and |∇g| = 1:
+Centres are drawn uniformly in the prism. A sample without overlap belongs to the volume. If it is
+also within ε of a surface, it belongs to the surface's shell. The thickness of a shell is along the
+normal in configuration space; the surface is g = 0 with |∇g| = 1:
 
     vertical hop     |y1 − y2|/√2 ≤ ε, from both sides        horizontal hop  likewise in x
     disc collision   0 ≤ (|Δx| − σ)/√2 ≤ ε                    right wall      0 ≤ a − x1 ≤ ε
                                                               top wall        0 ≤ b − y1 ≤ ε
 
-A shell of finite thickness is biased; ``exact.shell_expectation`` is what it estimates exactly.
-Where the prism is almost all overlap, ``conditioned_point`` takes the place of ``sample_point``;
-``better_point`` is whichever of them is the better one.
+A shell of finite thickness is biased; ``exact.shell_expectation`` is its exact expectation. If the
+discs overlap in almost all of the prism, ``conditioned_point`` takes the place of ``sample_point``.
+``better_point`` chooses between them.
 
-A coordinate is one of 2³² equidistant values, so that two of them come from one draw of 64 bits
-and their difference is an integer. The grain shifts a probability by some 2⁻³² of the prism, far
-below the error of any number of samples that can be drawn.
+A coordinate is one of 2³² equidistant values, the grains. Two coordinates come from one draw of 64
+bits, and their difference is an integer. The grains change a probability by some 2⁻³² of the prism,
+far below the error of any number of samples that can be drawn.
 
-Scenes with effects are sampled one draw at a time (``weighted_blocks``), with the weight of the
-invariant measure as the probability that a sample counts: so their errors are binomial too.
-Thickness is then measured in the metric of the masses, as ``weighted.shell_expectation`` has it.
+Scenes with effects are sampled one draw at a time (``weighted_blocks``). The weight of the
+invariant measure is the probability that a sample counts, so errors are binomial here too. The
+thickness is in the metric of the masses, as in ``weighted.shell_expectation``.
 """
 
 import math
@@ -32,6 +32,7 @@ from twodiscs.model.checks import InputError, check_choice, check_fraction, chec
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
 from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
 from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import kinetic_fraction, power_chance, prism_of, propose_in_prism
@@ -41,17 +42,17 @@ from twodiscs.theory import exact
 
 LANES = 64
 
-#: Samples of the prism that share a random stream: 2¹⁴ passes over the lanes.
+#: Samples of the prism with one random stream: 2¹⁴ passes over the lanes.
 BLOCK = LANES << 14
 
-#: Passes between two readings of the packed counts; eight fields of eight bits.
+#: Passes between two readings of the packed counts, eight fields of eight bits.
 PASSES = 128
 
-#: Proposals of the conditioned sampler that share a random stream.
+#: Proposals of the conditioned sampler with one random stream.
 PROPOSALS = 1 << 16
 
-#: How many times the time of a sample of the prism one of them takes, roughly; and one that is
-#: weighted, in a scene with effects.
+#: The time of a proposal, or of a sample in a scene with effects, over the time of a sample of the
+#: prism, roughly.
 COST_RATIO = 64
 WEIGHTED_COST_RATIO = 40
 
@@ -59,14 +60,14 @@ WEIGHTED_COST_RATIO = 40
 # Plain scenes -----------------------------------------------------------------------------------
 
 
-#: A count of the volume, of each shell and of the samples at the right and at the top: eight fields
-#: of eight bits are all that an integer of 64 bits holds.
+#: The counts: of the volume, of each shell, and of the samples in both the right and the top shell.
+#: An integer of 64 bits has eight fields of eight bits.
 SETS = 2 + len(SHELLS)
 if SETS > 8:
     raise TypeError(f"sampling/montecarlo.py has room for 6 shells, not for {len(SHELLS)}")
 
-# How a sample that leaves the discs apart shows that it lies in a shell: a function of the squares
-# of the separations and of the distance, of the place of disc 1, and of the ends of all shells.
+# Whether a sample without overlap is in a shell: functions of the squares of the separations and of
+# the distance, of the centre of disc 1, and of the ends of all shells.
 
 
 def _hop_shell(event):
@@ -93,13 +94,13 @@ IN_SHELL = by_kind(
 )
 
 
-def _and(add, unit, seen):
-    """Return ``add`` extended by one shell: it adds a ``unit`` to the count of what is ``seen``."""
+def _and(add, unit, in_shell):
+    """Return ``add`` extended by one shell: a ``unit`` is added for a sample ``in_shell``."""
 
     @inlined
     def add_all(count, squares, square, centre, ends):
         count = add(count, squares, square, centre, ends)
-        return count + (unit if seen(squares, square, centre, ends) else 0)
+        return count + (unit if in_shell(squares, square, centre, ends) else 0)
 
     return add_all
 
@@ -112,7 +113,7 @@ BOTH = 8 * (1 + SHELLS.index("right_wall")), 8 * (1 + SHELLS.index("top_wall"))
 
 @inlined
 def sets_of(squares, square, centre, ends):
-    """Return the sets that a sample is in, an integer with a field of eight bits for each."""
+    """Return the sets of a sample: an integer with a field of eight bits, 0 or 1, for each set."""
     sets = in_shells(1, squares, square, centre, ends)
     return sets + (((sets >> BOTH[0]) & (sets >> BOTH[1]) & 1) << (8 * (SETS - 1)))
 
@@ -120,8 +121,8 @@ def sets_of(squares, square, centre, ends):
 def shell_ends(epsilon, collision, wall):
     """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELLS``.
 
-    ``collision`` gives the square of the distance where a shell of disc collisions of this
-    thickness ends, ``wall`` the place where one of an axis and side begins.
+    ``collision`` returns the square of the distance at which a shell of disc collisions of this
+    thickness ends, ``wall`` the coordinate at which the shell of an axis and side begins.
     """
     makers = {
         "hop": lambda event, thick: 2.0 * (thick * thick),
@@ -136,9 +137,9 @@ def shell_ends(epsilon, collision, wall):
 def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
     """Count the samples of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
-    ``ends`` are those of the shells, with places in grains. Returns int64 counts: volume, shells in
-    the order of ``SHELLS``, right and top together. ``areas`` is True, or None where only the
-    volume is wanted: the shells are then not compiled.
+    ``ends`` are the ends of the shells, with coordinates in grains. Returns int64 counts: volume,
+    shells in the order of ``SHELLS``, right and top together. ``areas`` is True, or None if only
+    the volume is asked for: the shells are then not compiled.
     """
     s0, s1 = np.empty(LANES, np.uint64), np.empty(LANES, np.uint64)
     packed, totals = np.zeros(LANES, np.int64), np.zeros(SETS, np.int64)
@@ -185,15 +186,15 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
 def shell_thickness(scene, event, fraction):
     """Return ε for the shell of ``event``: a ``fraction`` of the radius, or of the room if smaller.
 
-    The room is the distance of the radius from the one at which the surface vanishes: the largest
-    radius, or for a hop w/4 or h/4. Beyond it a hop's shell is empty, as is its surface. In a box
-    more than twice as long as wide the discs keep room along it up to the largest radius: long − 4r
-    is then that of collisions and of the walls at the far ends.
+    The room is the difference between the radius and the radius at which the surface vanishes: the
+    largest radius, or for a hop w/4 or h/4. Beyond it a hop's surface and shell are empty. If the
+    box is more than twice as long as wide, the discs can move along it up to the largest radius:
+    long − 4r is then the room of collisions and of the walls at the far ends.
 
-    With effects it is a fraction of the smaller radius or of the room, in units of the lightest
-    disc's metric, so that the shell is no thicker than that anywhere (√2 of it for the separation
-    of two discs) and stays inside the box. The room is that to the largest radius or, for a hop,
-    the width of the gap between the discs when they pass each other as far apart as they can be.
+    With effects ε is a fraction of the smaller radius or of the room, in the metric of the lightest
+    disc. The shell is then no thicker than this anywhere (√2 of it for the separation of two discs)
+    and stays inside the box. The room is the distance to the largest radius or, for a hop, the
+    largest gap between the discs when they pass each other.
 
     Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
@@ -234,17 +235,14 @@ def sample_point(scene, quantities, samples, shell, seed):
 
     ``quantities`` is a list of ``"volume"`` and ``"<event>_area"``; ``samples`` is rounded up to
     whole blocks of 2²⁰; ``shell`` sets the thickness of the shells (``shell_thickness``); ``seed``
-    is an integer ≥ 0. Returns a dict for a JSON file: radius, method, samples, and for each sampled
-    quantity its hits, its measure and ε, so that measure × hits / samples is the estimate. The
-    area of all walls takes no shell of its own: ``right_and_top`` is how many samples lie in both
-    shells.
+    is an integer ≥ 0. Returns a ``MonteCarloPoint``. The area of all walls needs no shell: it
+    follows from the areas at the right and at the top.
 
-    In a scene with effects a sample of the prism in which the discs do not overlap counts for the
-    volume with the probability (1 − U/E)₊^(D/2 − 1), and for a shell it lies in with (1 −
-    U/E)₊^((D − 1)/2). All walls have an entry of their own there: for each sample one disc and one
-    wall are picked at random, so that its measure is that of the prism times their number. A sample
-    takes some forty times as long. Raises ``InputError`` for an unknown quantity or a number out of
-    range.
+    In a scene with effects a sample without overlap counts for the volume with the probability
+    (1 − U/E)₊^(D/2 − 1), and for a shell that it is in with (1 − U/E)₊^((D − 1)/2). All walls are a
+    separate quantity there: each sample picks one disc and one wall randomly, so the measure is the
+    volume of the prism times the number of pairs. A sample takes some forty times as long. Raises
+    ``InputError`` for an unknown quantity or a number out of range.
     """
     sampler = of_family(check_scene(scene), "sampling", "rejection", "shells")
     return _drawn(sampler(scene, quantities, shell, seed), samples)
@@ -262,7 +260,7 @@ def in_prism(scene, quantities, shell, seed):
     ranges = {"x": scene.range_x, "y": scene.range_y}
 
     def first_grain(axis, side, thick):
-        """Return the first grain that lies in the shell of a wall, or the last one."""
+        """Return the first grain in the shell of a wall, for a wall at the low side the last."""
         first = math.ceil((1.0 - thick / ranges[axis]) * 2.0**32 - 0.5)
         return first if side > 0 else 2**32 - 1 - first
 
@@ -280,7 +278,7 @@ def in_prism(scene, quantities, shell, seed):
 
 
 def _shelled(scene):
-    """Return the events that are sampled by a shell of their own."""
+    """Return the events that Monte Carlo samples by a shell."""
     return of_family(scene, "sampling", "shelled")
 
 
@@ -290,7 +288,7 @@ def _shells(scene, quantities, shell):
     for quantity in quantities:
         check_choice("quantity", quantity, allowed)
     if not quantities:
-        raise InputError("quantities must name at least one quantity, not none")
+        raise InputError("quantities must name at least one quantity, but is empty")
     shell = check_fraction("shell", shell)
     wanted = {quantity.removesuffix("_area") for quantity in quantities}
     if "any_wall" in wanted and "any_wall" not in _shelled(scene):
@@ -300,23 +298,19 @@ def _shells(scene, quantities, shell):
 
 
 def _point(scene, method, wanted, epsilon, samples, measure, counts):
-    """Return the dict for a JSON file; ``measure`` is the volume that the samples fill."""
+    """Return the ``MonteCarloPoint``; ``measure`` is the volume that the samples fill."""
     sampled = {}
     if "volume" in wanted:
-        sampled["volume"] = {"hits": int(counts[0]), "measure": measure, "epsilon": None}
-    # A sample looks at both sides of a hop, and at one disc and one of its walls.
+        sampled["volume"] = Hits(int(counts[0]), measure, None)
+    # A hop's shell has two sides. For all walls, a sample looks at one disc and one of its walls.
     multiplicity = {"hop": 1 / 2, "walls": 4 * len(scene.walled)}
     for event, thickness, hits in zip(_shelled(scene), epsilon, counts[1:], strict=False):
         if event in wanted:
-            sampled[f"{event}_area"] = {
-                "hits": int(hits),
-                "measure": multiplicity.get(DECLARED[event].kind, 1) * measure / thickness,
-                "epsilon": thickness,
-            }
-    point = {"radius": scene.radius, "method": method, "samples": samples, "quantities": sampled}
-    if {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene):
-        point["right_and_top"] = int(counts[SETS - 1])
-    return point
+            factor = multiplicity.get(DECLARED[event].kind, 1)
+            sampled[f"{event}_area"] = Hits(int(hits), factor * measure / thickness, thickness)
+    joined = {"right_wall", "top_wall"} <= wanted and "any_wall" not in _shelled(scene)
+    both = int(counts[SETS - 1]) if joined else None
+    return MonteCarloPoint(scene.radius, method, samples, sampled, both)
 
 
 @compiled
@@ -324,9 +318,9 @@ def propose_blocks(seed, first, stop, draw, ends):
     """Count the proposals of blocks ``first`` … ``stop`` − 1 that fall into each set.
 
     The counts are those of ``sample_blocks``; ``draw`` is the ``SeparationSampler`` of the scene.
-    Distances are taken from the walls and from contact, as the proposals give them, so that shells
-    keep their thickness where the discs hardly fit: ``ends`` are those of |Δx|² − σ² for collisions
-    and of −1 times the distance from the far wall.
+    The proposals give distances from the walls and from contact, so that shells keep their
+    thickness if the discs hardly fit. ``ends`` are ends of |Δx|² − σ² for collisions and of −1
+    times the distance from the far wall.
     """
     totals = np.zeros(SETS, np.int64)
     for block in range(first, stop):
@@ -337,7 +331,7 @@ def propose_blocks(seed, first, stop, draw, ends):
                 continue
             v = draw.range_y - slack_y
             bits = next_bits(state)
-            # Disc 1 has a share of the room that is left, and the separation if it is the far one.
+            # Disc 1 has a random part of the free length, plus the separation if it is farther.
             to_right = slack_x * uniform(state)
             to_right += u if bits & np.uint64(1 << 62) else 0.0
             to_top = slack_y * uniform(state)
@@ -349,15 +343,15 @@ def propose_blocks(seed, first, stop, draw, ends):
 
 
 def conditioned_point(scene, quantities, samples, shell, seed):
-    """Estimate the volume and areas of a ``Scene`` by draws that keep to where the discs fit.
+    """Estimate the volume and areas of a ``Scene`` by draws of separations at which the discs fit.
 
-    For radii where the prism is almost all overlap, up to the largest one: at least a quarter of
-    the proposals is accepted at any radius. A proposal is a sample of a set whose volume, twice
-    ``SeparationSampler.mass``, is known; so its point has the form of that of ``sample_point``, for
-    the same arguments, and the errors are binomial too. ``samples`` counts proposals and is rounded
-    up to whole blocks of 2¹⁶. A sample costs some forty times that of the prism, which is the
-    better choice wherever it accepts a few in a hundred. Raises ``InputError`` as ``sample_point``
-    does.
+    It is for radii at which the discs overlap in almost all of the prism: at least a quarter of the
+    proposals is accepted at any radius, up to the largest one. A proposal is a sample of a set
+    whose volume, twice ``SeparationSampler.mass``, is known. The point therefore has the same form
+    as from ``sample_point``, for the same arguments, and the errors are binomial too. ``samples``
+    counts proposals and is rounded up to whole blocks of 2¹⁶. A sample takes some forty times the
+    time of a sample of the prism, which is better if a few per cent of them are accepted. Raises
+    ``InputError`` as ``sample_point`` does.
     """
     if not check_scene(scene).is_plain:
         raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")
@@ -389,9 +383,8 @@ def conditioned(scene, quantities, shell, seed):
 # Scenes with effects ----------------------------------------------------------------------------
 
 
-# How a sample shows that it lies in a shell, as a function of the random state, the prism, the
-# place of disc 1, the separation, and how far the shell reaches. Where that is None it is not
-# compiled.
+# Whether a sample is in a shell: functions of the random state, the prism, the centre of disc 1,
+# the separation, and the end of the shell. If the end is None, the shell is not compiled.
 
 
 def _weighted_hop(event):
@@ -413,7 +406,7 @@ def _weighted_wall(event):
 
 
 def _at_random_wall(state, prism, centre, separation, end):
-    """Say whether a disc is in the shell of a wall, both of them picked at random."""
+    """Return whether a random disc is in the shell of a random wall."""
     thickness, walled = end
     pick = int(4 * len(walled) * uniform(state))
     axis, first = walled[pick // 4], pick & 2 == 0
@@ -435,9 +428,9 @@ IN_WEIGHTED_SHELL = by_kind(
 
 
 def weighted_ends(scene, epsilon):
-    """Return how far the shells of a ``Scene`` reach for thicknesses ε, 0 where one is not wanted.
+    """Return the ends of the shells of a ``Scene`` for thicknesses ε, 0 for shells left out.
 
-    Both are in the order of ``EVENTS``. None in the place of all ends says that there are none.
+    Both are in the order of ``EVENTS``. The result is None if there is no shell.
     """
     if not any(epsilon):
         return None
@@ -461,16 +454,16 @@ def weighted_ends(scene, epsilon):
 
 @optional(lambda state, fraction, power, weights: True)
 def counted(state, fraction, power, weights):
-    """Say whether a sample counts, with the probability ``fraction`` to the ``power``/2."""
+    """Return whether a sample counts, with the probability ``fraction`` to the ``power``/2."""
     return power_chance(state, fraction, power)
 
 
-def _and_weighted(count_some, k, seen):
+def _and_weighted(count_some, k, in_shell):
     """Return ``count_some`` extended by shell ``k``, whose count is next in totals."""
 
     @optional(lambda totals, state, prism, centre, separation, end: None)
     def count_one(totals, state, prism, centre, separation, end):
-        totals[k + 1] += seen(state, prism, centre, separation, end)
+        totals[k + 1] += in_shell(state, prism, centre, separation, end)
 
     @inlined
     def count_all(totals, state, prism, centre, separation, ends):
@@ -487,9 +480,9 @@ for k, event in enumerate(EVENTS):
 
 @optional(lambda totals, state, prism, centre, separation, fraction, ends: None)
 def count_shells(totals, state, prism, centre, separation, fraction, ends):
-    """Count a sample that counts for the volume in the shells, ``totals`` from 1 on.
+    """Count a sample of the volume in the shells that it is in, ``totals`` from 1 on.
 
-    Volume and area are weighted with powers of the kinetic share that differ by 1/2.
+    The weights of volume and area are powers of the kinetic fraction that differ by 1/2.
     """
     if counted(state, fraction, 1, prism.weights):
         _count_each(totals, state, prism, centre, separation, ends)
@@ -521,7 +514,7 @@ def weighted_blocks(seed, first, stop, prism, ends):
 def weighted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of ``sample_point`` for a scene with effects."""
     wanted, epsilon = _shells(scene, quantities, shell)
-    # Spins have no place in configuration space: one kernel less to compile.
+    # Configuration space has no spins: without them there is one kernel less to compile.
     seed, prism = check_integer("seed", seed, 0), prism_of(scene)._replace(inertia=None)
     ends, axes = weighted_ends(scene, epsilon), range(len(scene.axes))
     measure = math.prod(4 * prism.half_1[axis] * prism.half_2[axis] for axis in axes)
@@ -537,20 +530,20 @@ def weighted(scene, quantities, shell, seed):
 
 
 def better_point(scene, quantities, samples, shell, seed):
-    """Estimate the volume and areas of a ``Scene`` by the sampler that suits it.
+    """Estimate the volume and areas of a ``Scene`` by the best sampler for it.
 
-    That is ``sample_point`` with effects, and where a sample of the prism is free with a
-    probability of at least 1/``COST_RATIO``; else it is ``conditioned_point``, with as many samples
-    as take the same time. Arguments, result and errors are those of either. For more than two discs
-    it is ``many.measures.inserted``, which has no shells.
+    The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
+    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned_point``, with the number
+    of samples that takes the same time. Both have the same arguments, results and exceptions. For
+    more than two discs it is ``many.measures.inserted``, which has no shells.
     """
     return SamplingRun(scene, quantities, samples, shell, seed).run()
 
 
 def plan(scene, samples):
-    """Return what makes the ``Sampler`` that suits a ``Scene``, and the number of its samples.
+    """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples.
 
-    ``samples`` are those of the prism; more than two discs are inserted as many times.
+    ``samples`` are samples of the prism, or insertions for more than two discs.
     """
     return of_family(check_scene(scene), "sampling", "plan")(scene, samples)
 
@@ -562,10 +555,10 @@ def in_blocks(samples):
 
 @dataclass(frozen=True)
 class SamplingRun:
-    """``better_point`` in blocks: frozen, its arguments checked.
+    """``better_point`` in blocks, with checked arguments.
 
-    ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are those of
-    ``sample_point``, which says what is an ``InputError``.
+    ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are the arguments of
+    ``sample_point``, and raise the same ``InputError``.
     """
 
     scene: Scene
@@ -594,10 +587,10 @@ class SamplingRun:
         return {"all": fixed(work, blocks, sampler.block, sampler.cost_ratio)}
 
     def point(self, outcomes):
-        """Return the dict for a JSON file, given {"all": its ``Outcome``}."""
+        """Return the point, given {"all": its ``Outcome``}."""
         (counts,), blocks = outcomes["all"][:2]
         return self._sampler.point(blocks * self._sampler.block, counts)
 
     def run(self, progress=None, cores=1, kept=None):
-        """Return the dict for a JSON file, all done in this process (see ``all_in_rounds``)."""
+        """Do all samples in this process and return the point (see ``all_in_rounds``)."""
         return self.point(all_in_rounds(self.parts, progress, cores, kept))

@@ -1,8 +1,8 @@
 """Draws of scenes with effects from the invariant measure, by rejection from the prism.
 
-The prism holds all places of both centres. The density of configurations is ∝ (E − U)^(D/2 − 1)
-where the discs do not overlap, with D velocity components, and velocities scaled by √mass are
-uniform on a sphere in D dimensions.
+The prism has all positions of both centres. Without overlap the density of configurations is ∝
+(E − U)^(D/2 − 1), with D velocity components, and velocities scaled by √mass are uniform on a
+sphere in D dimensions.
 """
 
 import math
@@ -18,16 +18,17 @@ from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uni
 
 
 class Neck(NamedTuple):
-    """Where |Δ| along one axis is small: there the separation along the others has a least size.
+    """The configurations near the surface of a hop, where |Δ| along one axis is small.
 
-    It is 0 where there is none. Between walls either disc keeps within ``span`` of its own one.
+    There |Δ| along the other axes has a minimum, maybe 0. If it is above 0 between walls, each disc
+    is within ``span`` of a different wall.
     """
 
     axis: int  # 0 for x, 1 for y
     within: float  # the largest |Δ| along it
-    least: tuple  # of |Δ| along x, y, z
-    span: tuple  # the largest |Δ| less that
-    most: float  # the largest share of the energy that is kinetic
+    least: tuple  # the minimum of |Δ| along x, y, z
+    span: tuple  # the largest |Δ| minus the minimum
+    most: float  # the largest kinetic fraction of the energy
 
 
 class PrismSampler(NamedTuple):
@@ -48,7 +49,7 @@ class PrismSampler(NamedTuple):
     weights: tuple | None  # of the potential: 2 g m1, 2 g m2
     depth: bool | None
     inertia: tuple | None  # 1/√(κ m) of disc 1 and 2
-    neck: Neck | None = None  # where all places are to be
+    neck: Neck | None = None  # the neck to which draws are restricted
 
 
 def neck_of(scene, hop, within):
@@ -60,14 +61,14 @@ def neck_of(scene, hop, within):
     for a, reach in squares.items():
         least[a] = math.sqrt(max(missing + reach, 0))
         span[a] = float(min(-missing, reach)) / (float(scene.reach(a)) + least[a])
-    # In a field the upper disc is that high at least.
+    # In a field the upper disc is at least at this height.
     rise = least["y"] - abs(scene.radii[0] - scene.radii[1])
     most = 1 - 2 * scene.field * min(scene.masses) * max(rise, 0.0)
     return Neck("xy".index(axis), float(within), tuple(least.values()), tuple(span.values()), most)
 
 
 def prism_of(scene, hop=None, within=None):
-    """Return the ``PrismSampler`` of a ``Scene``, in the neck ``within`` that of a ``hop``."""
+    """Return the ``PrismSampler`` of a ``Scene``, for a ``hop`` in its neck (see ``neck_of``)."""
 
     def half(axis, radius):
         if axis not in scene.axes:
@@ -94,9 +95,9 @@ def prism_of(scene, hop=None, within=None):
 
 
 def proposed_measure(prism):
-    """Return the volume that ``propose_anywhere`` fills, times the largest weight of a place.
+    """Return the volume that ``propose_anywhere`` fills, times the largest weight.
 
-    The weighted volume of the places that are accepted, over this, is the chance of a proposal.
+    The acceptance of a proposal is the weighted volume of the scene (in the neck) over this.
     """
     neck, measure = prism.neck, 1.0
     for axis, (half_1, half_2) in enumerate(zip(prism.half_1, prism.half_2, strict=True)):
@@ -127,13 +128,13 @@ def nearest(separation, period):
 
 @optional(lambda y1, y2, half1, half2, weights: 1.0)
 def kinetic_fraction(y1, y2, half1, half2, weights):
-    """Return 1 − U/E, the share of the energy that is kinetic; negative where U exceeds E = 1/2."""
+    """Return 1 − U/E, the kinetic fraction of the energy E = 1/2; it is negative if U > E."""
     return 1.0 - weights[0] * (y1 + half1) - weights[1] * (y2 + half2)
 
 
 @compiled
 def power_chance(state, fraction, power):
-    """Say yes with the probability ``fraction`` to the ``power``/2, for 0 ≤ ``power``."""
+    """Return True with the probability ``fraction`` to the ``power``/2, for 0 ≤ ``power``."""
     if fraction <= 0.0:
         return False
     chance = 1.0
@@ -145,14 +146,14 @@ def power_chance(state, fraction, power):
 
 @optional(lambda state, prism, depth: (0.0, 0.0))
 def propose_deep(state, prism, depth):
-    """Return (z1, dz), in the plane twice 0."""
+    """Return (z1, dz), both 0 in the plane."""
     z1 = prism.half_1[2] * signed_uniform(state)
     return z1, nearest(z1 - prism.half_2[2] * signed_uniform(state), prism.period[2])
 
 
 @compiled
 def propose_in_prism(state, prism):
-    """Return (x1, y1, z1, dx, dy, dz): a place of disc 1 and the separation, drawn in the prism.
+    """Return (x1, y1, z1, dx, dy, dz): a centre of disc 1 and the separation, drawn in the prism.
 
     Separations are to the nearest image on periodic axes. In the plane z1 and dz are 0.
     """
@@ -167,8 +168,9 @@ def propose_in_prism(state, prism):
 def propose_apart(state, prism, axis, neck):
     """Return (q1, Δ, whether it counts) along an axis other than that of the ``neck``.
 
-    Between walls disc 1 is drawn near one of them and disc 2 near the other. Where there is much
-    room they may come in the opposite order, which is drawn by the opposite choice already.
+    Between walls disc 1 is drawn near one wall and disc 2 near the other. If ``span`` is large, the
+    draw may have the opposite order. It then does not count, because the opposite choice of walls
+    draws it already.
     """
     half_1, half_2, span = prism.half_1[axis], prism.half_2[axis], neck.span[axis]
     if neck.least[axis] == 0.0:
@@ -185,13 +187,13 @@ def propose_apart(state, prism, axis, neck):
 
 @optional(lambda state, prism, neck, depth: (0.0, 0.0, True))
 def propose_deep_apart(state, prism, neck, depth):
-    """Return (z1, dz, whether they count), in the plane twice 0."""
+    """Return (z1, dz, whether they count), both 0 in the plane."""
     return propose_apart(state, prism, 2, neck)
 
 
 @optional(lambda state, prism, neck: propose_in_prism(state, prism))
 def propose_anywhere(state, prism, neck):
-    """Return what ``propose_in_prism`` does, within a ``neck`` if there is one."""
+    """Return a proposal as ``propose_in_prism`` does, within a ``neck`` if there is one."""
     half_1, half_2 = prism.half_1[neck.axis], prism.half_2[neck.axis]
     q1, apart = half_1 * signed_uniform(state), neck.within * signed_uniform(state)
     other, separation, counts = propose_apart(state, prism, 1 - neck.axis, neck)
@@ -212,10 +214,10 @@ def of_most(fraction, neck):
 
 @compiled
 def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
-    """Return the kinetic share of the energy if a proposal is accepted, and −1 if it is not.
+    """Return the kinetic fraction of the energy if a proposal is accepted, and −1 if it is not.
 
-    Discs that do not overlap are accepted with the probability share^(``power``/2), in a strip over
-    the largest one.
+    Discs that do not overlap are accepted with the probability fraction^(``power``/2); in a neck
+    the fraction is divided by its largest value.
     """
     if dx * dx + dy * dy + dz * dz < prism.sigma * prism.sigma:
         return -1.0
@@ -227,7 +229,7 @@ def fraction_if_accepted(state, prism, y1, dx, dy, dz, power):
 
 @compiled
 def draw_in_prism(state, prism):
-    """Return (x1, y1, z1, dx, dy, dz, kinetic share) from the invariant measure."""
+    """Return (x1, y1, z1, dx, dy, dz, kinetic fraction) from the invariant measure."""
     while True:
         x1, y1, z1, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
         fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
@@ -239,7 +241,7 @@ def draw_in_prism(state, prism):
 def draw_on_surface(state, prism, axis):
     """Return the same on the surface of a hop along ``axis`` (0 for x, 1 for y).
 
-    The density there is ∝ (E − U)^((D − 1)/2), as the flux through the surface is.
+    The density there is ∝ (E − U)^((D − 1)/2), like the flux through the surface.
     """
     low = min(prism.half_1[axis], prism.half_2[axis])
     while True:
@@ -257,8 +259,8 @@ def draw_on_surface(state, prism, axis):
 def draw_direction(state, n, direction):
     """Fill ``direction`` with a unit vector, uniform in ``n`` ≤ 6 dimensions.
 
-    Pairs of components have squares whose sums are the spacings of sorted uniform numbers, and
-    directions of their own. In an odd dimension one component too many is left out.
+    The squared lengths of pairs of components are the spacings of sorted uniform numbers, and each
+    pair has a random direction. In an odd dimension the last component is left out.
     """
     low, high = 1.0, 1.0
     if n > 2:
@@ -284,11 +286,11 @@ def draw_direction(state, n, direction):
 def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
     """Fill ``velocity`` (u1, v1, w1, s1, u2, v2, w2, s2) from the invariant measure.
 
-    Scaled by roots of masses and moments of inertia, and along an axis with total momentum 0 of the
-    reduced mass, the components that there are lie on a sphere of radius ``speed``. With a
-    ``normal_axis`` (0 or 1; −1 for none) the relative velocity along it has the law of a flux
-    through the surface of a hop instead: for a normal component n its density is ∝ |n| (1 −
-    n²)^((D − 3)/2), so that √(1 − n²) is the largest of D − 1 uniform numbers.
+    The components are scaled by the roots of masses and moments of inertia; along an axis with
+    total momentum 0 there is one, scaled by the root of the reduced mass. They are uniform on a
+    sphere of radius ``speed``. With a ``normal_axis`` (0 or 1; −1 for none) the relative velocity
+    along it has the law of the flux through the surface of a hop. Its normal component n has a
+    density ∝ |n| (1 − n²)^((D − 3)/2), so that √(1 − n²) is the largest of D − 1 uniform numbers.
     """
     n, rest, normal = prism.components, 1.0, 0.0
     if normal_axis >= 0:
@@ -329,6 +331,6 @@ def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
 
 @optional(lambda direction, used, speed, velocity, inertia: None)
 def add_spins(direction, used, speed, velocity, inertia):
-    """Fill in the spins of rough discs from the components of ``direction`` that are not used."""
+    """Fill in the spins of rough discs from the unused components of ``direction``."""
     velocity[3] = speed * direction[used] * inertia[0]
     velocity[7] = speed * direction[used + 1] * inertia[1]

@@ -1,16 +1,16 @@
 """Draws of plain scenes from the invariant measure: configurations, velocities, hop crossings.
 
-Rejection from the whole prism dies out as the radius grows. Here the separations u = |x1 − x2| and
-v = |y1 − y2| are drawn instead; their density is (A − u)(B − v) outside the circle u² + v² = σ².
-Integrated over v it is g(u) = (A − u)(B − k)₊²/2 with k = √(σ² − u²)₊:
+For large radii, rejection from the whole prism accepts almost nothing. Here the separations
+u = |x1 − x2| and v = |y1 − y2| are drawn instead. Their density is (A − u)(B − v) outside the
+circle u² + v² = σ². Integrated over v it is g(u) = (A − u)(B − k)₊²/2 with k = √(σ² − u²)₊:
 
 * for u ≥ σ, g is a triangle and is drawn directly;
 * for u < σ, B − k has a bound that is a sum of positive powers of s = u − u₀ (u₀ = √(σ² − B²)₊):
-  (B − σ) + s²/σ where B ≥ σ, and s (2u₀ + s)/(B + k₁) where B < σ, with k₁ the smallest k. Each is
-  at most twice B − k, so that at least a quarter of the proposals is accepted, whatever the radius.
+  (B − σ) + s²/σ for B ≥ σ, and s (2u₀ + s)/(B + k₁) for B < σ, with k₁ the smallest k. Each is at
+  most twice B − k, so at least a quarter of the proposals is accepted at any radius.
 
-The powers are drawn as order statistics of uniform numbers, so nothing here needs more than
-+ − × / and √.
+The powers are drawn as order statistics of uniform numbers, so the arithmetic is + − × / and √
+only.
 """
 
 import math
@@ -36,23 +36,22 @@ class SeparationSampler(NamedTuple):
     half_y: float  # b
     range_y: float  # B
     sigma: float  # σ
-    arch: float  # no more than σ + k
-    start: float  # u₀, where the arc enters the rectangle
-    stop: float  # u₁ = min(σ, A), where it leaves, or where the strip ends
+    arch: float  # a lower bound of σ + k
+    start: float  # u₀, at which the arc enters the rectangle
+    stop: float  # u₁ = min(σ, A), at which it leaves, or at which the strip ends
     span: float  # u₁ − u₀
     beyond_x: float  # A − u₁
     beyond_y: float  # (B − σ)₊
     least_k: float  # k₁ = √(σ² − u₁²)
     weights: tuple  # cumulative probabilities of the seven parts of the proposal
-    mass: float  # integral of the proposal; the accepted share is V/2 over it
+    mass: float  # integral of the proposal; the acceptance is V/2 over it
 
 
 def draw_constants(scene, within=None):
     """Return the ``SeparationSampler`` of a ``Scene``; with u < ``within`` < σ, if that is given.
 
-    Such a strip needs an open horizontal hop: σ < B.
-    The differences of lengths that cancel near a threshold or near the largest radius are rounded
-    once, from exact fractions.
+    Such a strip needs an open horizontal hop: σ < B. Differences of lengths that cancel near a
+    threshold or near the largest radius are computed from exact fractions and rounded once.
     """
     w, h, r = Fraction(scene.width), Fraction(scene.height), Fraction(scene.radius)
     range_x, range_y, sigma = float(w - 2 * r), float(h - 2 * r), float(2 * r)
@@ -72,8 +71,8 @@ def draw_constants(scene, within=None):
         room = (w - 2 * r) ** 2 + (h - 2 * r) ** 2 - (2 * r) ** 2
         span = float(room) / (range_x + start)
 
-    # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s). Products, not powers,
-    # whose last digit depends on the math library, nor ``sum``, whose depends on Python's version.
+    # The bound of (B − k)² as Σ c_j s^j, times A − u = (A − σ)₊ + (span − s). Powers are products,
+    # because the last digit of ``**`` depends on the math library, and that of ``sum`` on Python.
     if beyond_y > 0:
         powers = {0: beyond_y * beyond_y, 2: 2 * beyond_y / arch, 4: 1 / (arch * arch)}
     else:
@@ -95,9 +94,9 @@ def draw_constants(scene, within=None):
 def propose_separation(state, draw):
     """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
 
-    The distances from the far corner, A − u and B − v, keep their relative accuracy where the discs
-    hardly fit, and so does the last value where they touch. A proposal is accepted with the
-    probability V/2 over ``draw.mass``, and then has the law of the invariant measure.
+    The distances from the far corner, A − u and B − v, keep their relative accuracy if the discs
+    hardly fit, and the last value keeps it near contact. A proposal is accepted with probability
+    V/2 over ``draw.mass``; accepted proposals have the law of the invariant measure.
     """
     choice = uniform(state)
     if choice < draw.weights[0]:
@@ -159,8 +158,8 @@ def pair_at_distance(state, half, slack, order):
 def draw_configuration(state, draw, side_x, side_y):
     """Return centres (x1, y1, x2, y2), uniform over the allowed configurations.
 
-    ``side_x`` > 0 asks for x1 > x2, < 0 for x1 < x2, 0 for either with equal chance; ``side_y``
-    likewise. Where a hop is blocked this chooses the ergodic component.
+    ``side_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``side_y``
+    likewise. If a hop is blocked, this chooses the ergodic component.
     """
     slack_x, slack_y, _ = draw_separation(state, draw)
     bits = next_bits(state)
@@ -173,7 +172,7 @@ def draw_configuration(state, draw, side_x, side_y):
 
 @compiled
 def draw_in_disc(state):
-    """Return (p, q, p² + q²) uniform in the unit disc without its centre."""
+    """Return (p, q, p² + q²), with (p, q) uniform in the unit disc without its centre."""
     while True:
         p, q = signed_uniform(state), signed_uniform(state)
         square = p * p + q * q
@@ -197,9 +196,9 @@ def draw_velocity(state):
 def draw_crossing(state, half_x, half_y, beyond_x):
     """Return a state (x1, y1, x2, y2, u1, v1, u2, v2) on y1 = y2, weighted by the flux through it.
 
-    Positions are uniform on the surface (|x1 − x2| ≥ σ has slack (A − σ)√U). The component of the
-    velocity along the surface's normal, n = (v1 − v2)/√2, has density ∝ |n| √(1 − n²): then 1 − n²
-    is the square of the largest of three uniform numbers.
+    Positions are uniform on the surface: A − |x1 − x2| is (A − σ)√U with a uniform number U. The
+    component of the velocity along the surface's normal, n = (v1 − v2)/√2, has density
+    ∝ |n| √(1 − n²), so 1 − n² is the square of the largest of three uniform numbers.
     """
     slack = beyond_x * math.sqrt(uniform(state))
     bits = next_bits(state)

@@ -1,8 +1,8 @@
-"""States of the invariant measure, and of that on the surface of a hop, for every scene.
+"""States of the invariant measure, and of its flux through the surface of a hop, for every scene.
 
 A state is a column of (x1, y1, x2, y2, u1, v1, u2, v2): centres, then velocities. Balls append
 (z1, z2, w1, w2), rough discs (s1, s2), their spins as the speeds rω of their surfaces. An array of
-starts has ``COMPONENTS`` rows; those that a scene has no use for are zero.
+initial states has ``COMPONENTS`` rows; rows that a scene does not use are zero.
 """
 
 import math
@@ -26,24 +26,24 @@ from twodiscs.sampling.separations import (
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Starts that one call of a kernel draws at most: a tenth of a second without effects.
+#: The most initial states in one call of a kernel: a tenth of a second without effects.
 CALL = 2**18
 
-#: Starts that are drawn into an array which stays in the cache.
+#: Initial states in an array that stays in the processor's cache.
 PIECE = 2**13
 
-#: Rows of an array of starts.
+#: Rows of an array of initial states.
 COMPONENTS = 12
 
 
 def require_room(scene):
-    """Raise ``InputError`` for a ``Scene`` whose starts cannot be drawn, or not be followed."""
+    """Raise ``InputError`` for a ``Scene`` whose initial states cannot be drawn or followed."""
     scene.require_followable()
     require_free_fraction(scene)
 
 
 def require_free_fraction(scene):
-    """Raise ``InputError`` for a ``Scene`` whose initial states hardly ever have room."""
+    """Raise ``InputError`` for a ``Scene`` whose draws of initial states almost always overlap."""
     of_family(scene, "sampling", "require_free_fraction")(scene)
 
 
@@ -55,9 +55,9 @@ def components(scene):
 def origins(scene, hop=None, within=None):
     """Return (``SeparationSampler``, ``PrismSampler``) of a ``Scene``, one of which is None.
 
-    With a ``hop`` they keep ``within`` a distance of its surface, one that is no more than √2 times
-    the smaller radius. In a plain scene that is for the horizontal hop. A scene with effects needs
-    room (``require_room``), or draws from its prism hardly end.
+    With a ``hop`` their states are ``within`` a distance of its surface, at most √2 times the
+    smaller radius; in a plain scene the hop is horizontal. For a scene with effects call
+    ``require_room`` first, because draws from its prism may hardly ever be accepted.
     """
     return of_family(scene, "sampling", "origins")(scene, hop, within)
 
@@ -99,7 +99,7 @@ def _anywhere(state, prism, direction, velocity, surface):
 
 @optional(_anywhere)
 def draw_state(state, prism, direction, velocity, surface):
-    """Return a place as ``draw_in_prism`` does, or one on a ``surface``, and fill ``velocity``."""
+    """Return centres as ``draw_in_prism`` does, or on a ``surface``, and fill ``velocity``."""
     drawn = draw_on_surface(state, prism, surface)
     draw_velocities(state, prism, math.sqrt(drawn[6]), surface, direction, velocity)
     return drawn
@@ -115,8 +115,8 @@ def set_pair(initial_states, i, k, a, b, present):
 def fill_start(state, prism, surface, initial_states, i):
     """Write a state of the invariant measure to column ``i`` of ``initial_states``.
 
-    With a ``surface`` (0 for x1 = x2, 1 for y1 = y2; None for anywhere) it is one of the measure on
-    that surface, weighted by the flux through it.
+    With a ``surface`` (0 for x1 = x2, 1 for y1 = y2, None for no surface) the state is on this
+    surface, with the law of the flux through it.
     """
     direction, velocity = np.empty(6), np.empty(8)
     x1, y1, z1, dx, dy, dz, _ = draw_state(state, prism, direction, velocity, surface)
@@ -162,17 +162,17 @@ def _plain_start(state, draw, surface, start, prism):
 
 @optional(_plain_start)
 def start_on_surface(state, draw, surface, start, prism):
-    """Fill the column ``start`` (12, 1) with a state on the surface of a hop, by its flux."""
+    """Fill the column ``start`` (12, 1) with a state on the surface of a hop, weighted by flux."""
     fill_start(state, prism, surface, start, 0)
 
 
 def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
-    They are the first ones of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
-    ``COMPONENTS`` rows; ``sides`` choose the ergodic component of a plain scene (see
-    ``draw_configuration``). Of N > 2 discs there are 4N rows, in the order of ``components``.
-    ``progress``, if given, is called now and then with how many are drawn, and ``number``.
+    They are the first states of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
+    ``COMPONENTS`` rows. ``sides`` choose the ergodic component of a plain scene (see
+    ``draw_configuration``). For N > 2 discs there are 4N rows, in the order of ``components``.
+    ``progress``, if given, is called repeatedly with the number of drawn states, and ``number``.
     """
     require_room(scene)
     draw = of_family(scene, "sampling", "states")
@@ -185,7 +185,7 @@ def states_of_two(scene, number, seed, block, sides, progress):
     draw, prism = origins(scene)
     state = in_a_thread(open_stream, np.uint64(seed), block)
 
-    # The kernel takes whole arrays, goes on with the stream, and has no use for some of the rows.
+    # The kernel fills whole arrays, continues the stream, and does not use all rows.
     used, buffer = len(components(scene)), np.zeros((COMPONENTS, min(number, PIECE)))
 
     def fill(first, stop):

@@ -1,9 +1,9 @@
 """Random numbers that are the same on every machine: one stream for each block of work.
 
-The generator is xoshiro256++ (Blackman and Vigna, ACM Trans. Math. Softw. 47, 36 (2021)), its
-state filled by SplitMix64 from the seed of the stream and the number of the block. So a block
-gives the same numbers whoever computes it, in whatever order, and a shard of the work is a range
-of blocks.
+The generator is xoshiro256++ (Blackman and Vigna, ACM Trans. Math. Softw. 47, 36 (2021)).
+SplitMix64 fills its state from the seed of the stream and the number of the block. A block
+therefore has the same numbers in every process and order, and a shard of the work is a range of
+blocks.
 """
 
 import numpy as np

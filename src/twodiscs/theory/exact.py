@@ -2,9 +2,10 @@
 
 Speeds are uniform on the unit sphere in four dimensions, so the mean time between events of an
 ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
-(Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes with effects have other constants and weights. More
-than two discs have an exact value in some scenes; where none is known it is None, which is another
-state than impossible: ``Scene.is_possible``. Each family has its theory in ``families``.
+(Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes with effects have other constants and weights. For
+more than two discs exact values are known in some scenes. A value that is not known is None;
+``Scene.is_possible`` tells whether the event is impossible. Each family has its theory in
+``families``.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from twodiscs.model.events import DECLARED, EVENTS, HOPS
 from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene
 
-TYPE_CHECKING = False  # what reads types takes it for true; the module typing is not for free
+TYPE_CHECKING = False  # type checkers take it for true; the import of typing takes time
 if TYPE_CHECKING:
     from typing import TypedDict
 
@@ -34,32 +35,46 @@ if TYPE_CHECKING:
         mean_times: dict[str, float | None]
 
 
-#: The least share of the prism, in which both centres keep to their ranges, that must be free of
-#: overlaps in a scene with effects: starts are drawn from the prism by rejection.
+#: The least fraction of the prism (both centres in their ranges) without overlap in a scene with
+#: effects: initial states are drawn from the prism by rejection.
 MIN_FRACTION = 1e-4
 
 
 @lru_cache(maxsize=1024)
 def measures(scene):
-    """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are remembered."""
+    """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are cached."""
     return of_family(scene, "theory", "volume_and_areas")(scene)
 
 
 def volume(scene: Scene) -> float:
-    """Return the volume of the configuration space of a ``Scene``, in length⁴ (6 for balls).
-
-    For N discs it is in length^2N, and None where no exact value is known. In a field it is
-    ∫ (1 − U/E)₊^(D/2 − 1) dq, with the potential energy U, E = 1/2 and D =
-    ``scene.velocity_components``. Raises ``InputError`` for anything that is not a ``Scene``.
+    """Return the volume of the configuration space of a scene.
 
     For two discs it is within a few roundings of the exact value, for every box and radius. For
-    three discs relative errors are some 1e-14. For more in a channel they are less than 1e-12 if it
-    is longer than the discs in a row, and some 1e-11 if not. Where more than two discs hardly fit
-    they are larger.
+    three discs relative errors are some 1e-14. For more discs in a channel they are less than 1e-12
+    if it is longer than the discs in a row, and some 1e-11 if not. Errors are larger if more than
+    two discs hardly fit.
 
-    Example:
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
 
-        td.volume(scene)
+    Returns
+    -------
+    float
+        In length⁴ for two discs, length⁶ for balls, length²ᴺ for N discs; None if no exact value is
+        known. In a field it is ∫ (1 − U/E)₊^(D/2 − 1) dq, with the potential energy U, E = 1/2 and
+        D = ``scene.velocity_components``.
+
+    Raises
+    ------
+    InputError
+        For anything that is not a ``Scene``.
+
+    Examples
+    --------
+    >>> round(td.volume(scene), 12)
+    0.236114482448
     """
     return measures(check_scene(scene))[0]
 
@@ -67,30 +82,42 @@ def volume(scene: Scene) -> float:
 def areas(scene: Scene) -> dict[str, float]:
     """Return {event: area of its surface in configuration space} of a ``Scene``, in length³.
 
-    Keys are ``EVENTS`` in their order. The area is exactly 0.0 where the event is impossible
-    or has no place; that of all walls is 4 (right + top) in a plain scene. It is in length⁵ for
-    balls, carries 1/√mass (1 for disc 1), and has the weight (1 − U/E)₊^((D − 1)/2) in a field (see
-    ``volume``). For more than two discs it is None where no exact value is known. Accuracy and
-    errors as for ``volume``.
-
-    Example:
-
-        td.areas(scene)["disc_collision"]
-    """
+    Keys are ``EVENTS`` in their order. An area is exactly 0.0 if the event is impossible or does
+    not exist in the scene. The area of all walls is 4 (right + top) in a plain scene. Areas are in
+    length⁵ for balls; they have a factor 1/√mass (1 for disc 1), and the weight
+    (1 − U/E)₊^((D − 1)/2) in a field (see ``volume``). For more than two discs an area is None if
+    no exact value is known. Accuracy and exceptions are those of ``volume``."""
     return dict(measures(check_scene(scene))[1])
 
 
 def rate(scene: Scene, event: str) -> float:
-    """Return how often ``event`` happens per unit of time, over all initial conditions; 0 if never.
+    """Return the mean number of an event per unit of time, over all initial conditions.
 
-    This is the mean over the whole configuration space. Where disc 1 reaches the right (top) wall
-    from its own side of disc 2 only, a trajectory that can reach it hits it twice as often:
-    ``mean_times``. None where no exact value is known. Raises ``InputError`` for anything that is
-    not a ``Scene`` or one of ``EVENTS``.
+    This is the mean over the whole configuration space. If disc 1 reaches the right (top) wall from
+    one side of disc 2 only, a trajectory that can reach the wall hits it twice as often (see
+    ``mean_times``).
 
-    Example:
+    Parameters
+    ----------
+    scene : Scene
+        The box, the discs and their effects.
+    event : str
+        One of ``EVENTS``.
 
-        td.rate(scene, "any_wall")
+    Returns
+    -------
+    float
+        In 1/time; 0 if the event never happens, None if no exact value is known.
+
+    Raises
+    ------
+    InputError
+        For anything that is not a ``Scene`` or one of ``EVENTS``.
+
+    Examples
+    --------
+    >>> round(td.rate(scene, "any_wall"), 12)
+    2.804358669238
     """
     volume, areas = measures(check_scene(scene))
     check_choice("event", event, EVENTS)
@@ -98,11 +125,11 @@ def rate(scene: Scene, event: str) -> float:
 
 
 def passing_rate(scene, hop):
-    """Return how often the discs pass each other in a ``hop``, in both directions together.
+    """Return the rate at which the discs pass each other in a ``hop``, in both directions together.
 
-    That is ``rate``, and on a periodic axis, where it is no event of the ``Scene``, how often their
-    separation to the nearest image changes its sign at 0. Raises ``InputError`` for anything that
-    is not a ``Scene`` or a hop.
+    Between walls it equals ``rate``. On a periodic axis a hop is no event of the ``Scene``; the
+    result is then the rate at which the separation to the nearest image changes its sign at 0.
+    Raises ``InputError`` for anything that is not a ``Scene`` or a hop.
     """
     check_choice("hop", hop, HOPS)
     if DECLARED[hop].axis not in check_scene(scene).periodic:
@@ -112,16 +139,17 @@ def passing_rate(scene, hop):
 
 
 def event_rate(scene):
-    """Return the wall hits and disc collisions per unit of time of a ``Scene``, hops not counted.
+    """Return the wall hits and disc collisions per unit of time of a ``Scene``, without hops.
 
-    None where no exact value is known. Raises ``InputError`` for anything that is not a ``Scene``.
+    It is None if no exact value is known. Raises ``InputError`` for anything that is not a
+    ``Scene``.
     """
     walls, collisions = rate(scene, "any_wall"), rate(scene, "disc_collision")
     return None if walls is None else walls + collisions
 
 
 def work_per_event(scene):
-    """Return how many times as much an event costs as usual, at most; 1 in a box without ends."""
+    """Return an upper bound on the cost of an event over the usual cost, 1 between walls."""
     work = of_family(check_scene(scene), "theory", "work_per_event")
     return work(scene, event_rate(scene))
 
@@ -134,17 +162,13 @@ def events_per_interval(scene, hop):
 def mean_times(scene: Scene) -> dict[str, float | None]:
     """Return {event: mean time between two of them}, for disc 1 of mass 1 and total energy 1/2.
 
-    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None where the event is
-    impossible. Wall times are those of disc 1 on the trajectories that can reach the wall: half of
-    configuration space where a blocked hop keeps disc 1 from it in the other half. Where a larger
-    disc 1 keeps its side and still reaches both walls, the time is one over the mean of its two
-    rates. For more than two discs it is also None where no exact value is known, and wall times
-    are averages over all initial conditions. Accuracy and errors as for ``volume``.
-
-    Example:
-
-        td.mean_times(scene)["vertical_hop"]
-    """
+    Keys are ``EVENTS`` in their order, values lengths over unit speed, or None if the event is
+    impossible. Wall times are times of disc 1 on the trajectories that can reach the wall. If a
+    blocked hop keeps disc 1 from it in one half of configuration space, they fill the other half.
+    If a larger disc 1 stays on its side and still reaches both walls, the time is one over the mean
+    of its two rates. For more than two discs a time is also None if no exact value is known, and
+    wall times are averages over all initial conditions. Accuracy and exceptions are those of
+    ``volume``."""
     rates = {event: rate(scene, event) for event in EVENTS}
     return {event: scene.share(event) / value if value else None for event, value in rates.items()}
 
@@ -154,12 +178,7 @@ def exact(scene: Scene) -> Exact:
 
     Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Values that are not
     known for more than two discs are None. Raises
-    ``InputError`` for anything that is not a ``Scene``.
-
-    Example:
-
-        td.exact(scene)["regime"]
-    """
+    ``InputError`` for anything that is not a ``Scene``."""
     return {
         "regime": check_scene(scene).regime,
         "ergodic_components": scene.ergodic_components,
@@ -171,20 +190,20 @@ def exact(scene: Scene) -> Exact:
 
 
 def replicas_needed(scene, event, error):
-    """Return how many initial states show the crowds of an ``event``, for a relative ``error``.
+    """Return the number of initial states that a relative ``error`` of an ``event`` needs.
 
-    That is 0 for smooth discs; see ``clusters``.
+    It is 0 for smooth discs; rough discs have bursts of events (see ``clusters``).
     """
     return of_family(scene, "theory", "replicas_needed")(scene, event, error)
 
 
 def least_free_fraction(scene):
-    """Return the least share of the prism that must be free, 0 if draws do not need the prism."""
+    """Return the least free fraction of the prism, 0 if draws do not use the prism."""
     return of_family(check_scene(scene), "theory", "least_free_fraction")
 
 
 def free_fraction(scene):
-    """Return the share of the prism in which the discs are free, weighted in a field."""
+    """Return the fraction of the prism without overlap, weighted in a field."""
     ranges = (
         scene.side(axis) - (0 if axis in scene.periodic else 2 * radius)
         for axis in scene.axes
@@ -194,10 +213,10 @@ def free_fraction(scene):
 
 
 def fraction_near(scene, hop, distance):
-    """Return the share of configuration space where the discs are almost level along a hop's axis.
+    """Return the fraction of configuration space within a ``distance`` of a ``hop``.
 
-    That is the probability, in the invariant measure, of a separation of at most ``distance`` along
-    the axis of ``hop``, a length up to √2 times the smaller radius. Raises ``InputError`` for
+    It is the probability, in the invariant measure, of a separation of at most ``distance`` along
+    the axis of the hop, a length up to √2 times the smaller radius. Raises ``InputError`` for
     anything that is not a ``Scene`` or a hop, and for another distance.
     """
     check_choice("hop", hop, HOPS)
@@ -212,20 +231,20 @@ def fraction_near(scene, hop, distance):
 
 
 def shell_expectation(scene, event, epsilon):
-    """Return what a shell of thickness ``epsilon`` around the surface of ``event`` estimates.
+    """Return the exact expectation of a shell of thickness ``epsilon`` at the surface of ``event``.
 
-    That is the exact volume of the shell over ε, or over 2ε for hops, in length³; it tends to the
-    area of the surface as ε → 0. Distances g in configuration space from the surface:
+    It is the volume of the shell over ε, or over 2ε for hops, in length³. It tends to the area of
+    the surface as ε → 0. Distances g in configuration space from the surface:
 
         vertical hop     |g| ≤ ε, g = (y1 − y2)/√2         horizontal hop   likewise in x
         disc collision   0 ≤ g ≤ ε, g = (distance − σ)/√2
         right wall       0 ≤ g ≤ ε, g = a − x1             top wall         0 ≤ g ≤ ε, g = b − y1
 
-    Just beyond the radius where a hop becomes blocked its shell is not empty yet, though its area
-    is 0. Shells of scenes with effects, whose discs may differ in mass, are in
-    ``weighted.shell_expectation``. Raises ``InputError`` for anything that is not a ``Scene``, for
-    an ``epsilon`` that is not a length up to the radius, for an event that has no place in the
-    scene, and for ``any_wall``, which has no shell of its own in a plain scene.
+    Just beyond the radius at which a hop becomes blocked, its area is 0, but its shell is not yet
+    empty. ``weighted.shell_expectation`` has the shells of scenes with effects, in which masses may
+    differ. Raises ``InputError`` for anything that is not a ``Scene``, for an ``epsilon`` that is
+    not a length up to the radius, for an event that does not exist in the scene, and for
+    ``any_wall``, which has no shell in a plain scene.
     """
     expectation = of_family(check_scene(scene), "theory", "shell_expectation", "shells")
     check_choice("event", event, shells(scene))
@@ -238,5 +257,5 @@ def shell_expectation(scene, event, epsilon):
 
 
 def shells(scene):
-    """Return the events whose surface has a shell of its own; not of more than two discs."""
+    """Return the events whose surface has a shell, for two discs."""
     return of_family(check_scene(scene), "theory", "shells")(scene)

@@ -23,10 +23,10 @@ def check_plain_scene(scene):
 def closed_form(scene):
     """Return {"volume": V, "areas": {event: area}} from closed forms, in plain doubles.
 
-    For reading, for comparisons and to show how they fail: just above a threshold they can lose
-    half of the digits or more, and near the largest radius, at r = (1 − δ) r_max, all of them (the
-    volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for numbers. Raises ``InputError`` for
-    anything that is not a plain ``Scene``.
+    These are for reading and for comparisons, and show how closed forms fail. Just above a
+    threshold they can lose half of the digits or more. Near the largest radius, at
+    r = (1 − δ) r_max, they lose all of them (the volume like 1e-16/δ⁴). Use ``volume`` and
+    ``areas`` for numbers. Raises ``InputError`` for anything that is not a plain ``Scene``.
     """
     r = check_plain_scene(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
@@ -34,7 +34,7 @@ def closed_form(scene):
     angle = math.asin(min(b / r, 1.0)) - math.acos(min(a / r, 1.0))
 
     def side(a, b):
-        """Return the terms of V, A_coll and the two wall areas that say whether discs can pass."""
+        """Return the terms of V, A_coll and two wall areas that appear if discs can pass."""
         if a >= r:
             return 64 / 3 * a * r**3 - 8 * r**4, r * r - 2 * a * r, 16 / 3 * r**3, 0.0
         k = math.sqrt(r * r - a * a)
@@ -94,13 +94,13 @@ def small_radius_time(box, event, radius=0.0):
 
 
 def threshold_time(scene, event):
-    """Return the leading law of a mean time where its event dies out; None where it is impossible.
+    """Return the leading law of a mean time at the radius at which its event ends.
 
-    A hop that becomes blocked before the discs jam gets rare like (w/4 − r)⁻² (vertical) or
-    (h/4 − r)⁻² (horizontal). All other times follow from the room left below the largest radius
-    r_max: they vanish like r_max − r, except that if one side is more than twice the other those of
-    disc collisions and of the walls at the far ends stay finite. Raises ``InputError`` for anything
-    that is not a plain ``Scene`` or one of ``EVENTS``.
+    It is None if the event is impossible. If a hop becomes blocked before the discs jam, its time
+    diverges like (w/4 − r)⁻² (vertical) or (h/4 − r)⁻² (horizontal). All other times depend on the
+    distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
+    twice the other, the times of disc collisions and of the walls at the far ends stay finite.
+    Raises ``InputError`` for anything that is not a plain ``Scene`` or one of ``EVENTS``.
     """
     w, h, r = check_plain_scene(scene).width, scene.height, scene.radius
     declared = DECLARED[check_choice("event", event, EVENTS)]
@@ -114,12 +114,12 @@ def threshold_time(scene, event):
             return one_sided / math.sqrt(8) * arc.range_y
         critical = volume(Scene(along, across, along / 4))
         return one_sided / math.sqrt(8) * critical / ((across - along / 2) * arc.beyond_x**2)
-    # The axes along and across the box, whose names a box higher than wide exchanges.
+    # The axes along and across the box; in a box higher than wide they are exchanged.
     long, short = "xy" if w >= h else "yx"
     w, h = max(w, h), min(w, h)
     arc = Arc.of(Scene(w, h, r))
     if w >= 2 * h:
-        # The arc is straight on the scale of the room left: V = x² y², x = A − σ, y = B.
+        # The arc is straight on the scale of the free lengths: V = x² y², x = A − σ, y = B.
         x, y = arc.beyond_x, arc.range_y
         collision, walls = x / math.sqrt(8), {long: x / 2, short: y}
         any_wall = x * y / (x + y) / 4
@@ -149,7 +149,7 @@ class Law(NamedTuple):
 
 
 def leading_law(box, event):
-    """Return the ``Law`` of a mean time in a plain ``Box``, or None where it stays finite.
+    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite.
 
     Raises ``InputError`` for a box with effects, and an event that is not one of ``EVENTS``.
     """

@@ -1,17 +1,17 @@
 """Volume, areas and shells of two equal discs between walls, for every radius.
 
-Only the separations u = |x1 − x2| and v = |y1 − y2| matter. They lie in [0, A] × [0, B] with the
-density 4 (A − u)(B − v), outside the arc (u, v) = σ (cos θ, sin θ). The volume of configuration
-space and the areas of the surfaces where events happen are
+The integrals depend only on the separations u = |x1 − x2| and v = |y1 − y2|. They are in
+[0, A] × [0, B] with the density 4 (A − u)(B − v), outside the arc (u, v) = σ (cos θ, sin θ). The
+volume of configuration space and the areas of the surfaces of events are
 
     V       = 4 ∬ (A − u)(B − v) 1[u² + v² ≥ σ²] du dv
     A_coll  = −√2 ∂V/∂σ         A_right = ½ ∂V/∂A           A_top = ½ ∂V/∂B
     A_hop,v = √2 B (A − σ)₊²    A_hop,h = √2 A (B − σ)₊²    A_walls = 4 (A_right + A_top)
 
-Written out in powers and inverse sines (``laws.closed_form``) these cancel to nothing near the
-largest radius. Here they are sums of positive terms: integrals over the arc of products of the
-slacks A − σ cos θ and B − σ sin θ, each itself a sum of positive terms. Every length, angle and
-difference that cancels is rounded once, from exact fractions of the given doubles.
+Powers and inverse sines (``laws.closed_form``) cancel near the largest radius, and no digit is
+left. Here volume and areas are sums of positive terms: integrals over the arc of products of
+A − σ cos θ and B − σ sin θ, each itself a sum of positive terms. Every length, angle and difference
+that cancels is computed from exact fractions of the given doubles and rounded once.
 """
 
 import math
@@ -21,8 +21,8 @@ from typing import NamedTuple
 from twodiscs.model.events import DECLARED, by_kind
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 
-#: The integrands are trigonometric polynomials of degree 4 at most over a quarter of a turn, or as
-#: smooth as that: sixteen nodes are exact to rounding.
+#: The integrands are trigonometric polynomials of degree 4 at most over a quarter turn, or equally
+#: smooth: sixteen nodes are exact to rounding.
 RULE = gauss_legendre(16)
 
 #: Exact for cubics.
@@ -32,8 +32,8 @@ CUBIC = gauss_legendre(2)
 class Arc:
     """The arc u² + v² = σ² within [0, A] × [0, B], for exact A, B, σ > 0.
 
-    A point on it is named by its squared abscissa u², an exact fraction, which falls from ``start``
-    (at the angle β) to ``stop`` (at α) as θ grows. Where A² + B² ≤ σ² nothing is left of the arc.
+    A point on it is given by its squared abscissa u², an exact fraction, which falls from ``start``
+    (at the angle β) to ``stop`` (at α) as θ grows. If A² + B² ≤ σ², the arc is empty.
     """
 
     def __init__(self, range_x, range_y, sigma):
@@ -91,7 +91,7 @@ class Arc:
 
 
 class Measures(NamedTuple):
-    """Volume of configuration space and the areas that take an integral."""
+    """Volume of configuration space and the areas that are integrals."""
 
     volume: float
     disc_collision: float
@@ -126,7 +126,7 @@ def exact(scene):
 
 
 def hop_area(arc):
-    """Return the area of y1 = y2, √2 B (A − σ)₊²; that of x1 = x2 for the arc ``turned``."""
+    """Return the area of y1 = y2, √2 B (A − σ)₊², or of x1 = x2 for the arc ``turned``."""
     return math.sqrt(2) * arc.range_y * arc.beyond_x**2
 
 
@@ -143,9 +143,9 @@ def _hop_shell(arc, epsilon):
 def _wall_shell(arc, epsilon):
     """Return the volume with x1 ≥ a − ε, over ε.
 
-    With x1 = a − g it is the mean over g of ∫ W over [−g, A − g], where W(u) = (B − √(σ² − u²)₊)₊².
-    Disc 2 on the left gives ∫ W min(1, (A − u)/ε), disc 2 on the right ∫ W (1 − u/ε)₊, which is
-    V/(2ε) with ε in the place of A.
+    With x1 = a − g it is the mean over g of ∫ W over [−g, A − g], with W(u) = (B − √(σ² − u²)₊)₊².
+    Disc 2 on the left gives ∫ W min(1, (A − u)/ε). Disc 2 on the right gives ∫ W (1 − u/ε)₊, which
+    is V/(2ε) with ε in place of A.
     """
     range_x, range_y, sigma = arc.exact
     thick = Fraction(epsilon)
@@ -181,7 +181,7 @@ def _collision_shell(arc, epsilon):
 
 
 def shell_expectation(scene, event, epsilon):
-    """Return what a shell of a plain ``Scene`` estimates; see ``exact.shell_expectation``.
+    """Return the exact expectation of a shell in a plain ``Scene``, see the module ``exact``.
 
     ``event`` is one of ``SHELLS``, ``epsilon`` a length up to the radius.
     """

@@ -12,20 +12,20 @@ from twodiscs.theory.plain import Arc
 def density_at_zero(scene, hop):
     """Return the density at 0⁺ of the interval between hops of one kind, in 1/time.
 
-    It is None where the hop is blocked.
+    It is None if the hop is blocked.
 
     An interval t → 0 is a hop, one bounce and the hop back. At a vertical hop both centres are at a
-    distance d from the wall that their mean y moves to, uniform on [0, B] and independent of the
-    velocities. The disc that is ahead bounces, and they meet again after t = 2d/|v1 + v2|, so that
-    the density of t at 0 is the mean of |v1 + v2|/(2B), weighted by the flux ∝ |v1 − v2|. The
-    components n, m = (v1 ∓ v2)/√2 are uniform in the unit disc, so that ⟨|n m|⟩/⟨|n|⟩ is
-    (1/2π)/(4/3π) and
+    distance d from the wall that their mean y moves to. It is uniform on [0, B] and independent of
+    the velocities. The disc that is ahead bounces, and both have the same y again after
+    t = 2d/|v1 + v2|. The density of t at 0 is therefore the mean of |v1 + v2|/(2B), weighted by the
+    flux ∝ |v1 − v2|. The components n, m = (v1 ∓ v2)/√2 are uniform in the unit disc, so that
+    ⟨|n m|⟩/⟨|n|⟩ is (1/2π)/(4/3π) and
 
         p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
 
-    No other way back is as short: a collision of the discs only drives them further to the sides to
-    which they hopped. Raises ``InputError`` for anything that is not a plain ``Scene`` or
-    one of ``HOPS``.
+    No other way back is as short: a collision of the discs moves them farther from the surface that
+    they crossed. Raises ``InputError`` for anything that is not a plain ``Scene`` or one of
+    ``HOPS``.
     """
     check_choice("hop", hop, HOPS)
     if not check_plain_scene(scene).is_possible(hop):
@@ -37,11 +37,12 @@ def density_at_zero(scene, hop):
 def drift_probability(scene, time, axis="x"):
     """Return the exact probability that discs drift along an ``axis`` in separate rows for a time.
 
-    That is P(|y1 − y2| ≥ σ throughout ``time``) = 2 A² (B − σ)₊⁴/(π V time²) from the invariant
-    measure, for "x", and A ↔ B for "y". It holds for time ≥ 2 (B − σ)₊, the diameter of the square
-    in which the slacks move: all drifts that stay in it have |(v1, v2)| ≤ 1, where the density of
-    two components of a unit vector in four dimensions is 1/π everywhere. Raises ``InputError`` for
-    anything that is not a plain ``Scene``, an unknown axis and a shorter time.
+    For "x" it is P(|y1 − y2| ≥ σ throughout ``time``) = 2 A² (B − σ)₊⁴/(π V time²) from the
+    invariant measure, for "y" the same with A ↔ B. It holds for time ≥ 2 (B − σ)₊, the diameter of
+    the square in which the distances between discs and walls move. All drifts that stay in it have
+    |(v1, v2)| ≤ 1, and the density of two components of a unit vector in four dimensions is 1/π
+    there. Raises ``InputError`` for anything that is not a plain ``Scene``, an unknown axis and a
+    shorter time.
     """
     check_choice("axis", axis, ("x", "y"))
     arc = Arc.of(check_plain_scene(scene))
@@ -56,14 +57,14 @@ def drift_probability(scene, time, axis="x"):
 def tail_constant(scene, event):
     """Return C of the tail P(T > t) → C/t³ of the time between events, in time³.
 
-    ``event`` is a disc collision or a hop. C is 0.0 where no neutral motion is left, and the tail
-    falls faster than any power as far as is known; it is None where the event is impossible.
+    ``event`` is a disc collision or a hop. C is 0.0 if there is no neutral motion; the tail then
+    falls faster than any power, as far as is known. It is None if the event is impossible.
 
-    Discs that move along x, with slow drifts v1, v2, pass clear of each other as long as
-    |y1 − y2| ≥ σ. With wall hits unfolded, the slacks between discs and walls move on a straight
-    line in the square |p| + |q| ≤ B − σ, and do not leave it within t for a drift in an area
-    2 (B − σ)²/t². For both orders of the discs, a density 1/π of (v1, v2) at 0 and likewise along y
-    the invariant measure has
+    Discs that move along x, with slow drifts v1, v2, do not touch as long as |y1 − y2| ≥ σ. With
+    wall hits unfolded, the distances between discs and walls move on a straight line in the square
+    |p| + |q| ≤ B − σ. They do not leave it within t for a drift in an area 2 (B − σ)²/t². With both
+    orders of the discs, a density 1/π of (v1, v2) at 0 and the same along y the invariant measure
+    gives
 
         P(no collision within t) → 2 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / (π V t²),
 
@@ -73,16 +74,17 @@ def tail_constant(scene, event):
 
     and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
 
-    Proved is that P(none within t) is at least this once t ≥ 2√((A − σ)₊² + (B − σ)₊²), where the
-    drifts of both axes have it exactly (``drift_probability``), and for hops at least its own term;
-    and that no other family of directions of two or more dimensions avoids collisions: unfolded
-    flights are straight lines on a torus of four dimensions, on which the centres coincide on the
-    four planes x1 = ±x2, y1 = ±y2; a plane of directions that is transversal to one of these meets
-    it, and only (u1, u2) and (v1, v2) are transversal to none. Argued, not proved, is that what is
-    left (neighbourhoods of periodic motions, of the order t⁻³ each in P(none within t)) adds up to
-    less, and, for hops, that what comes before and after the drift, with disc collisions, is
-    forgotten exponentially fast. Raises ``InputError`` for anything that is not a plain ``Scene``,
-    and for a wall.
+    Two statements are proved. First, P(none within t) is at least this for
+    t ≥ 2√((A − σ)₊² + (B − σ)₊²), for which the drifts of both axes have exactly this probability
+    (``drift_probability``); for hops it is at least the hop's term. Second, no other family of
+    directions of two or more dimensions avoids collisions. Unfolded flights are straight lines on a
+    torus of four dimensions, on which the centres coincide on the four planes x1 = ±x2, y1 = ±y2. A
+    plane of directions that is transversal to one of these intersects it, and only (u1, u2) and
+    (v1, v2) are transversal to none. Two statements are argued, not proved: the other motions
+    (neighbourhoods of periodic motions, each of order t⁻³ in P(none within t)) add up to less; and,
+    for hops, the motion before and after the drift, with disc collisions, decorrelates
+    exponentially fast. Raises ``InputError`` for anything that is not a plain ``Scene``, and for a
+    wall.
     """
     check_choice("event", event, (*HOPS, "disc_collision"))
     arc, area = Arc.of(check_plain_scene(scene)), areas(scene)[event]

@@ -1,25 +1,25 @@
-"""Exact volumes, areas and mean times of every scene, whatever effects it calls for.
+"""Exact volumes, areas and mean times of every scene of two discs, with any effects.
 
-Velocities times √mass (spins times √moment of inertia) are uniform on a sphere in D dimensions, D
-the number of components less the momenta that are conserved and 0. At total energy E = 1/2 and
-potential energy U the invariant density of configurations is ∝ (1 − U/E)^(D/2 − 1), the speed
-√(1 − U/E). With the mean c_D of a component of the uniform unit vector, an event at g = 0 happens
-at the one-sided rate (c_D/2) A/V, where
+Velocities times √mass (spins times √moment of inertia) are uniform on a sphere in D dimensions. D
+is the number of components minus the number of conserved momenta, which are 0. At total energy
+E = 1/2 and potential energy U the invariant density of configurations is ∝ (1 − U/E)^(D/2 − 1), the
+speed √(1 − U/E). With the mean size c_D of a component of the uniform unit vector, an event at
+g = 0 has the one-sided rate (c_D/2) A/V. Here
 
     V = ∫ (1 − U/E)₊^(D/2 − 1) dq                A = ∫ (1 − U/E)₊^((D−1)/2) δ(g) √(∇gᵀ M⁻¹ ∇g) dq
     c_D = Γ(D/2) / (√π Γ((D + 1)/2))
 
 are integrals over both centres: c_4/2 = 2/(3π), Chernov's constant (J. Stat. Phys. 88, 1 (1997)).
-Momenta that are conserved do not count, for ∇g has no part along them. Without a field V is the
-volume of configuration space; V and A are in powers of the length, masses in that of disc 1.
+Conserved momenta do not matter, because ∇g has no component along them. Without a field V is the
+volume of configuration space. V and A are in powers of the length, masses in the mass of disc 1.
 
-Of an axis only the separation t of the centres matters. For either order of the discs its density
-f(t), the integral over their common motion, is elementary: U is linear along it (``Branch``). V is
-the integral of Π f over Σ t² ≥ σ², A for disc collisions one over Σ t² = σ²; for a hop t is 0 along
-its axis, for a wall the disc stays there. These are done an axis at a time, over the angle θ of
-t = ρ cos θ, where ρ² is what the axes before leave of σ². The rest of the range of an axis is
-never found as a difference: the room Σ reach² − σ² is rounded once and passed on from axis to axis.
-So the sums are accurate up to the largest radius.
+Along an axis the integrand depends only on the separation t of the centres. For either order of the
+discs its density f(t), the integral over their common motion, is elementary, because U is linear
+(``Branch``). V is the integral of Π f over Σ t² ≥ σ², and A for disc collisions is one over
+Σ t² = σ². For a hop t is 0 along its axis; for a wall the disc is at the wall. The integrals are
+done axis by axis, over the angle θ of t = ρ cos θ; ρ² is σ² minus t² of the axes before. The rest
+of the range of an axis is never computed as a difference: the room Σ reach² − σ² is rounded once
+and passed on from axis to axis. The sums are therefore accurate up to the largest radius.
 """
 
 import math
@@ -38,7 +38,7 @@ from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legend
 
 # Functions of arrays ------------------------------------------------------------------------------
 
-# NumPy's own have other last digits on a processor with AVX-512 than on one without.
+# NumPy's functions have different last digits on processors with and without AVX-512.
 _pow, _arctan2 = (np.vectorize(function, otypes=[float]) for function in (math.pow, math.atan2))
 
 
@@ -55,7 +55,7 @@ def _rule(triples):
     return np.array([t for t, _, _ in triples]), np.array([weight for _, _, weight in triples])
 
 
-#: Exact for the densities of an axis without field, linear in pieces.
+#: Exact for the densities of an axis without field, which are piecewise linear.
 LINEAR = _rule(gauss_legendre(2))
 
 #: Exact to rounding for a piece of the arc between two such axes, a trigonometric polynomial.
@@ -76,11 +76,11 @@ def _nodes(cuts, rule):
 
 
 class Interval(NamedTuple):
-    """Where the centre of a disc may be along an axis; exact lengths from the lower wall."""
+    """The range of a disc's centre along an axis; exact lengths from the lower wall."""
 
     low: Fraction
     high: Fraction
-    rest: Fraction  # where its potential energy is 0
+    rest: Fraction  # the position with potential energy 0
     slope: Fraction  # U/E per length, 0 without a field along the axis
 
 
@@ -89,10 +89,10 @@ class Branch:
     """Density of the separation t of two centres along an axis, for one order of the discs.
 
     f(t) = ∫ (1 − U/E)₊^p over their common motion, for t from ``start`` to ``reach``, exact lengths
-    ≥ 0; ``kinks`` are the places between where f is not analytic. It is a function of the slack
-    z = reach − t: the interval open to the common motion has the length min(flat, near + z, far −
-    z), and at its lower end 1 − U/E is min(first + upper z, second − lower z), falling by upper +
-    lower per length. If flat is 0 one of the discs is held, and f is (1 − U/E)₊^p there.
+    ≥ 0; ``kinks`` are the t between them at which f is not analytic. f is a function of the slack
+    z = reach − t. The interval of the common motion has the length min(flat, near + z, far − z). At
+    its lower end 1 − U/E is min(first + upper z, second − lower z), and it falls by upper + lower
+    per length. If flat is 0, one of the discs is fixed, and f is (1 − U/E)₊^p there.
     """
 
     reach: Fraction
@@ -104,17 +104,17 @@ class Branch:
 
     @property
     def curved(self):
-        """Whether f is more than linear in pieces."""
+        """Whether f is not piecewise linear."""
         return bool(self.energies[1])
 
     @property
     def slacks(self):
-        """The slacks of the reach, of the kinks and of the start, in this order."""
+        """The slacks at the reach, at the kinks and at the start, in this order."""
         return np.array([float(self.reach - t) for t in (self.reach, *self.kinks, self.start)])
 
     @property
     def marks(self):
-        """The separations where integrals over other axes are not analytic in what this leaves."""
+        """The separations at which integrals are not analytic in the rest for the other axes."""
         return {Fraction(0), self.reach, self.start, *self.kinks}
 
     def density(self, z):
@@ -147,17 +147,17 @@ class Branch:
 
 
 def _branch(upper, lower, power, farthest=None):
-    """Return the ``Branch`` with one ``Interval`` above another; None if nothing is left of it.
+    """Return the ``Branch`` with one ``Interval`` above another; None if it is empty.
 
-    ``farthest`` is a separation to cut it off at.
+    ``farthest``, if given, is its largest separation.
     """
 
     def energy(q):
         """Return 1 − U/E with both centres at ``q``."""
         return 1 - upper.slope * (q - upper.rest) - lower.slope * (q - lower.rest)
 
-    # The lower end of the common motion is where one disc is at its low end, the upper one, where
-    # one is at its high end; there U rises or falls with t.
+    # At the lower end of the common motion one disc is at its low end, at the upper end one is at
+    # its high end; U at these ends rises or falls with t.
     reach, start = upper.high - lower.low, max(Fraction(0), upper.low - lower.high)
     kinks = {upper.low - lower.low, upper.high - lower.high}
     if upper.slope:
@@ -183,13 +183,13 @@ def _branch(upper, lower, power, farthest=None):
 
 
 def _walled(first, second, power, farthest=None):
-    """Return {``Branch``: how often} of an axis between walls, from the two ``Interval``s."""
+    """Return {``Branch``: multiplicity} of an axis between walls, from the two ``Interval``s."""
     branches = (_branch(first, second, power, farthest), _branch(second, first, power, farthest))
     return Counter(branch for branch in branches if branch)
 
 
 def _periodic(side, farthest=None):
-    """Return {``Branch``: how often} of a periodic axis, where the nearest image counts."""
+    """Return {``Branch``: multiplicity} of a periodic axis, on which the nearest image counts."""
     side = Fraction(side)
     reach = side / 2 if farthest is None else min(side / 2, farthest)
     lengths = float(side), float(side), float(2 * side)
@@ -202,8 +202,8 @@ def _periodic(side, farthest=None):
 def _outside(branches, square, room, surface, less=None):
     """Return ∫ Π f over Σ t² ≥ ``square``, or −∂/∂√square of it for a ``surface``.
 
-    ``room`` is Σ reach² − square; both are arrays of one shape, and so is what is returned.
-    ``less`` returns square − c of an exact c, where that is known better than from ``square``.
+    ``room`` is Σ reach² − square; both are arrays of one shape, which the result has, too. ``less``
+    returns square − c of an exact c, if it is known better than from ``square``.
     """
     first, *rest = branches
     square = np.maximum(square, 1e-300)
@@ -213,7 +213,7 @@ def _outside(branches, square, room, surface, less=None):
             return first.beyond(square, room)
         return first.density(np.maximum(room, 0.0) / (reach + rho))
 
-    # From (t0, k0) on the arc t² + k² = ρ², where k is left to the other axes, downwards.
+    # The arc t² + k² = ρ² from (t0, k0) downwards; k is for the other axes.
     others = float(sum(branch.reach**2 for branch in rest))
     if less:
         excess = -less(first.reach**2)
@@ -223,9 +223,9 @@ def _outside(branches, square, room, surface, less=None):
     t0, k0_square = np.minimum(reach, rho)[..., None], np.maximum(-excess, 0.0)[..., None]
     k0, room0 = np.sqrt(k0_square), np.minimum(room, others)[..., None]
 
-    # The integrand is not analytic where t is a mark of its own axis or k² is a sum of squares of
-    # marks of the others, of which the last is that of their reaches. With y = t0 − t, neither y
-    # nor t is found as a difference where it is small, for k² − k0² = y (t0 + t).
+    # The integrand is not analytic if t is a mark of its axis or k² is a sum of squares of marks of
+    # the others, the last of which belongs to their reaches. With y = t0 − t, neither y nor t is
+    # computed as a difference when it is small, because k² − k0² = y (t0 + t).
     sums = _sums(rest)
     k_square = np.array([float(c) for c in sums])
     missing = np.array([float(sums[-1] - c) for c in sums])
@@ -241,7 +241,7 @@ def _outside(branches, square, room, surface, less=None):
     y = np.concatenate((falls, below), axis=-1)
     y = np.sort(np.clip(y, 0.0, np.maximum(end[0], 0.0)), axis=-1)
 
-    # The same as angles from where the arc begins.
+    # The same as angles from the begin of the arc.
     k = np.sqrt(k0_square + y * (t0 + t))
     sine = y * (t0 + t) / np.maximum(t0 * k + t * k0, 1e-300)
     angles = _arctan2(sine, (t0 * t + k0 * k) / square[..., None])
@@ -270,7 +270,7 @@ def _at_distance(branches, sigma, surface, further=0.0):
     rise = further * (2 * float(sigma) + further)
 
     def less(c):
-        """Return the square less an exact ``c``."""
+        """Return the square minus an exact ``c``."""
         return np.array(float(sigma**2 - c) + rise)
 
     room = -less(sum(branch.reach**2 for branch in branches))
@@ -285,13 +285,13 @@ def _beyond_contact(branches, sigma):
 
 @lru_cache(maxsize=1024)
 def _near_contact(branches, sigma, thickness):
-    """Return ∫ Π f over σ² ≤ Σ t² ≤ (σ + thickness)², over the thickness; at 0 thickness, too."""
+    """Return ∫ Π f over σ² ≤ Σ t² ≤ (σ + thickness)², over the thickness, which may be 0."""
     if not thickness:
         return _at_distance(branches, sigma, True)
     inner, outer = (_beyond_contact(branches, d) for d in (sigma, sigma + thickness))
     if inner - outer > 1e-3 * inner:
         return (inner - outer) / float(thickness)
-    # The difference would cancel. Cuts are where the growing sphere touches an edge or a corner.
+    # The difference would cancel. At the cuts the growing sphere touches an edge or a corner.
     touches = [float(c - sigma**2) / (float(sigma) + math.sqrt(c)) for c in _sums(branches)]
     cuts = np.unique(np.clip([0.0, *touches, float(thickness)], 0.0, min(touches[-1], thickness)))
     nodes = zip(*(part.ravel() for part in _nodes(cuts, SINGULAR)), strict=True)
@@ -302,7 +302,7 @@ def _near_contact(branches, sigma, thickness):
 def _sum_of_orders(axes, integral, *arguments):
     """Return the sum of an integral over all orders of the discs along ``axes``.
 
-    ``axes`` are {``Branch``: how often} of one axis each, y with its field before the others.
+    ``axes`` are {``Branch``: multiplicity} of one axis each, y with its field before the others.
     """
     return math.fsum(
         math.prod(often) * integral(branches, *arguments)
@@ -315,14 +315,14 @@ def _sum_of_orders(axes, integral, *arguments):
 class _Space:
     """The configuration space of a ``Scene`` with the weight (1 − U/E)₊^p.
 
-    ``level`` is {axis: the largest separation of the centres along it}, for a part of that space.
+    ``level`` is {axis: the largest separation of the centres along it}, for a part of the space.
     """
 
     def __init__(self, scene, power, level=None):
         self.scene, self.power, self.level = scene, power, level or {}
         self.sigma = scene.exact_contact
         self.order = sorted(scene.axes, key="yxz".index)
-        # Many integrals share them.
+        # Many integrals use them.
         self.axis, self.wall = cache(self.axis), cache(self.wall)
 
     def intervals(self, axis):
@@ -335,14 +335,14 @@ class _Space:
         ]
 
     def axis(self, axis, farthest=None):
-        """Return {``Branch``: how often} of ``axis``."""
+        """Return {``Branch``: multiplicity} of ``axis``."""
         farthest = self.level.get(axis) if farthest is None else farthest
         if axis in self.scene.walled:
             return _walled(*self.intervals(axis), self.power, farthest)
         return _periodic(self.scene.side(axis), farthest)
 
     def axes(self, **replaced):
-        """Return {``Branch``: how often} of all axes except those that are ``replaced``."""
+        """Return {``Branch``: multiplicity} of all axes, some of which are ``replaced``."""
         return [replaced[a] if a in replaced else self.axis(a) for a in self.order]
 
     def beyond(self, **replaced):
@@ -350,15 +350,15 @@ class _Space:
         return _sum_of_orders(self.axes(**replaced), _beyond_contact, self.sigma)
 
     def within(self, axis, distance):
-        """Return the measure of those with a separation up to a ``distance`` along ``axis``."""
+        """Return the measure of separations up to a ``distance`` along ``axis``."""
         return self.beyond(**{axis: self.axis(axis, farthest=distance)})
 
     def contact(self, thickness=0):
-        """Return the measure of those at a distance of σ to σ + ``thickness``, per length."""
+        """Return the measure of distances from σ to σ + ``thickness``, per length."""
         return _sum_of_orders(self.axes(), _near_contact, self.sigma, Fraction(thickness))
 
     def passing(self, axis):
-        """Return the measure of the configurations that are level along ``axis``, per length."""
+        """Return the measure of the separation 0 along ``axis``, per length."""
         others = [self.axis(other) for other in self.order if other != axis]
         if axis in self.scene.periodic:
             density = float(self.scene.side(axis))
@@ -382,7 +382,7 @@ class _Space:
 
 
 def _walls(scene, event):
-    """Return the (axis, disc, whether the far wall) that count for the wall ``event``."""
+    """Return (axis, disc, whether the far wall) of all hits that count for the wall ``event``."""
     declared = DECLARED[event]
     if declared.kind == "walls":
         return list(product(scene.walled, (0, 1), (False, True)))
@@ -424,15 +424,16 @@ def areas_near(scene, axis, distance):
 def areas(scene):
     """Return {event: weighted area A} of a ``Scene``, keys ``EVENTS`` in their order.
 
-    In length³ (length⁵ for balls) over the square root of a mass; exactly 0.0 where the event is
-    impossible or has no place. ``any_wall`` sums over both discs and all walls.
+    They are in length³ (length⁵ for balls) over the square root of a mass, and exactly 0.0 if the
+    event is impossible or does not exist in the scene. ``any_wall`` is the sum over both discs and
+    all walls.
     """
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     return {event: _area(space, event) for event in EVENTS}
 
 
 def passing_area(scene, hop):
-    """Return A of a ``hop``, whose axis may be periodic: there it is no event of the ``Scene``."""
+    """Return A of a ``hop``; on a periodic axis, too, though it is no event of the ``Scene``."""
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     return scene.fastest * space.passing(AXIS[hop])
 
@@ -446,19 +447,19 @@ def volume_near(scene, hop, distance):
 
 
 def shell_expectation(scene, event, epsilon):
-    """Return what a shell of thickness ``epsilon`` around the surface of ``event`` estimates.
+    """Return the exact expectation of a shell of thickness ``epsilon`` at the surface of ``event``.
 
-    That is the integral of (1 − U/E)₊^((D−1)/2) over the shell, over ε, or over 2ε for hops; it
+    It is the integral of (1 − U/E)₊^((D−1)/2) over the shell, divided by ε, or by 2ε for hops. It
     tends to the area as ε → 0. Distances from the surface are in the metric of the masses, in which
     its normal has unit length; with k = √(1/m1 + 1/m2):
 
         vertical hop     |y1 − y2| ≤ k ε                  horizontal hop   likewise in x
         disc collision   0 ≤ distance − σ ≤ k ε
-        right wall       0 ≤ (distance of disc 1 from its place at the wall) ≤ ε/√m1
+        right wall       0 ≤ (distance of disc 1 from contact with the wall) ≤ ε/√m1
         top wall         likewise
         any wall         the sum of the shells of both discs at all walls, ε/√m each
 
-    ``event`` has a place in the scene, ``epsilon`` is a length up to the radius.
+    ``event`` exists in the scene, ``epsilon`` is a length up to the radius.
     """
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     thickness = Fraction(epsilon) * Fraction(scene.fastest)

@@ -1,1 +1,1 @@
-"""Which formulas of the source are right, and what decides it."""
+"""Which formulas of the source are right, with the evidence."""

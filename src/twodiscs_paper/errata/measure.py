@@ -1,9 +1,9 @@
-"""Which formulas of the source are right and which are not, and what decides it.
+"""Which formulas of the source are right and which are wrong, with the evidence.
 
-Each of the ``statements`` is computed as printed and set against the truth, integrated to fifty
-digits, in several boxes and at several radii of every regime that it is stated for. The ratio of
-the two gives the verdict. Measurements have a veto: where Monte Carlo or dynamics contradicts the
-truth there is no table. Where they can tell printed from true, they are quoted.
+Each of the ``statements`` is computed as printed and compared with the truth, integrated to fifty
+digits, in several boxes and at several radii of every regime for which it is stated. The ratio of
+the two gives the verdict. Measurements have a veto: if Monte Carlo or dynamics contradicts the
+truth, there is no table. If they can distinguish printed from true, they are quoted.
 """
 
 import math
@@ -22,20 +22,20 @@ WIDTH, HEIGHT = 1.5, 1.0
 #: Exact values of theory.csv must agree with the quadrature to this accuracy.
 STABLE = 1e-12
 
-#: Standard errors from which on a measurement decides against a formula, or stops everything.
+#: The number of standard errors at which a measurement counts against a formula, or stops the job.
 AGAINST, VETO = 5, 6
 
-#: Relative standard error up to which a measurement is looked at, and speaks for a formula.
-TELLING = 0.02
+#: The largest relative standard error of a measurement that is used, and that supports a formula.
+PRECISE = 0.02
 
 
 # Measurements -------------------------------------------------------------------------------------
 
 
 def _relative(rows):
-    """Yield (row, measured over exact, its error) of rows that tell."""
+    """Yield (row, measured over exact, its error) of rows with a small enough error."""
     for row in rows:
-        if row["exact"] and row["stderr"] and row["stderr"] <= TELLING * row["exact"]:
+        if row["exact"] and row["stderr"] and row["stderr"] <= PRECISE * row["exact"]:
             value = row["estimate"] - row.get("bias", 0.0)
             yield row, value / row["exact"], row["stderr"] / row["exact"]
 
@@ -43,9 +43,10 @@ def _relative(rows):
 def measurements(tables):
     """Return {(quantity, radius): {method: (measured/exact, its error)}} from rows of tables.
 
-    ``tables`` maps volume, areas and mean_times, each of which may be missing, to rows. Areas and
-    times stand for each other, by the exact volume; the volume is measured by the dynamics of disc
-    collisions, by their exact area. The thickness of shells is allowed for.
+    ``tables`` maps volume, areas and mean_times, each of which may be missing, to rows. With the
+    exact volume, areas measure times and times measure areas. With the exact area of disc
+    collisions, their mean time measures the volume. The bias by the thickness of shells is
+    subtracted.
     """
     quotients = {}
 
@@ -72,8 +73,10 @@ def measurements(tables):
 
 @dataclass(frozen=True)
 class Finding:
-    """What came out for one regime or limit: ratio printed/true, and what was measured, as part of
-    what is printed, with its error, by method. No ratio for claims and undefined values.
+    """The result for one regime or limit: the ratio printed/true, and the measurements by method.
+
+    A measurement is a ratio measured/true of the printed quantity, with its error. Claims and
+    undefined values have no ratio.
     """
 
     right: bool
@@ -83,7 +86,7 @@ class Finding:
 
 
 def _ratio(statement, q):
-    """Return printed over true, or None if what is printed is no number."""
+    """Return printed over true, or None if the printed value is no real number."""
     try:
         printed = statement.printed(q)
     except ZeroDivisionError:
@@ -93,10 +96,10 @@ def _ratio(statement, q):
 
 
 def _tabled_radius(name, quantity, quotients):
-    """Return the radius of the tables at which to look at a regime or limit, None if there is none.
+    """Return the radius of the tables that represents a regime or limit, or None without one.
 
-    That is the nearest to the limit, or the nearest to the radius to report, if possible where
-    both methods measured the quantity.
+    It is the radius nearest to the limit, or nearest to the radius to report, if possible one at
+    which both methods measured the quantity.
     """
     radii = [radius for measured, radius in quotients if measured == quantity]
     if name in LIMITS:
@@ -112,7 +115,7 @@ def _tabled_radius(name, quantity, quotients):
 
 
 def _boxes(name, tabled):
-    """Return the boxes of a regime or limit, the one to report first, and the radius to report."""
+    """Return the boxes of a regime or limit, first the box to report, and the radius to report."""
     if name is None:
         return [MpScene.of(*box) for box in GENERAL], None
     if name in REGIMES:
@@ -126,7 +129,7 @@ def _boxes(name, tabled):
 
 
 def _confirm(quantity, radius, measured, exact):
-    """Return the true value; raise ``InputError`` where theory.csv or a measurement differs."""
+    """Return the true value; raise ``InputError`` if theory.csv or a measurement differs."""
     true = QUANTITIES[quantity](MpScene.of(WIDTH, HEIGHT, radius))
     stable = exact.get((radius, quantity))
     if stable is not None and abs(stable / true - 1) > STABLE:
@@ -136,14 +139,14 @@ def _confirm(quantity, radius, measured, exact):
     for method, (factor, error) in measured.items():
         if abs(factor - 1) > VETO * error:
             raise InputError(
-                f"{method} must agree with the truth, but finds {shown(factor, error)} of the "
-                f"{quantity} at radius {radius!r}"
+                f"{method} must agree with the truth, but finds {format_value(factor, error)} of "
+                f"the {quantity} at radius {radius!r}"
             )
     return true
 
 
 def _find(statement, name, quotients, exact):
-    """Return the ``Finding`` on a statement for one regime or limit, or None for no radius."""
+    """Return the ``Finding`` on a statement for one regime or limit, or without a radius."""
     tabled = _tabled_radius(name, statement.quantity, quotients) if statement.quantity else None
     boxes, radius = _boxes(name, tabled)
     if statement.is_claim:
@@ -154,8 +157,8 @@ def _find(statement, name, quotients, exact):
     if tabled:
         factors = quotients[statement.quantity, tabled]
         true = _confirm(statement.quantity, tabled, factors, exact)
-        # A relative deviation of the whole is a larger one of its part. What stands for a limit is
-        # measured at a radius nearby, and its ratio to the truth carried over.
+        # A relative deviation of the total is a larger relative deviation of a part. For a limit,
+        # the ratio to the truth is measured at a radius nearby and carried over.
         lever = 1
         if name in REGIMES:
             lever = true / (statement.share * statement.true(boxes[0]))
@@ -165,7 +168,7 @@ def _find(statement, name, quotients, exact):
     return Finding(right, ratios[0], radius, measured)
 
 
-def shown(value, error):
+def format_value(value, error):
     """Return a value with its error in units of the last digit, as 0.9996(3)."""
     exponent = math.floor(math.log10(error))
     if round(error / 10.0**exponent) == 10:
@@ -175,7 +178,7 @@ def shown(value, error):
 
 
 def _evidence(finding):
-    """Return what decides: theory, and every measurement that can tell."""
+    """Return the evidence: theory, and every measurement that can distinguish printed from true."""
     parts = ["theory"]
     for method, (value, error) in finding.measured.items():
         if finding.ratio is None:
@@ -186,24 +189,24 @@ def _evidence(finding):
             continue
         value, error = float(value / finding.ratio), float(error / abs(finding.ratio))
         differs = abs(value - 1) > AGAINST * error
-        if error <= TELLING if finding.right else differs:
-            parts.append(f"{method} {shown(value, error)}")
+        if error <= PRECISE if finding.right else differs:
+            parts.append(f"{method} {format_value(value, error)}")
     return "; ".join(parts)
 
 
 def judge(statement, quotients=None, exact=None):
     """Return the row of errata.csv on one ``Statement``.
 
-    ``quotients`` is what ``measurements`` returns, ``exact`` maps (radius, quantity) to the values
-    of theory.csv. The row tells of the first regime or limit for which the statement fails, if it
-    does for any. Raises ``InputError`` where a measurement or theory.csv contradicts the truth.
+    ``quotients`` is the result of ``measurements``; ``exact`` maps (radius, quantity) to the values
+    of theory.csv. If the statement fails, the row is about the first regime or limit in which it
+    does. Raises ``InputError`` if a measurement or theory.csv contradicts the truth.
     """
     with mp.workdps(DIGITS):
         findings = [
             _find(statement, name, quotients or {}, exact or {})
             for name in statement.where or (None,)
         ]
-        told = next((finding for finding in findings if not finding.right), findings[0])
+        first = next((finding for finding in findings if not finding.right), findings[0])
         right = [finding.right for finding in findings]
         verdict = "right" if all(right) else "right-in-range" if any(right) else "wrong"
         return {
@@ -212,10 +215,10 @@ def judge(statement, quotients=None, exact=None):
             "place": statement.place,
             "verdict": verdict,
             "severity": statement.severity,
-            "ratio": None if told.ratio is None else float(told.ratio),
-            "radius": told.radius,
+            "ratio": None if first.ratio is None else float(first.ratio),
+            "radius": first.radius,
             "correction": statement.correction,
-            "decided_by": _evidence(told),
+            "decided_by": _evidence(first),
         }
 
 
@@ -223,8 +226,8 @@ def rows(tables, box):
     """Return the rows of errata.csv, in the order of the source.
 
     ``tables`` maps theory, volume, areas and mean_times to the rows of a scene in this ``Box``;
-    each may be missing. Those of another box than the source's say nothing about it, so that theory
-    decides alone. Raises ``InputError`` as ``judge`` does.
+    each may be missing. Tables of another box than the source's are not used: then only theory
+    decides. Raises ``InputError`` as ``judge`` does.
     """
     if (box.width, box.height) != (WIDTH, HEIGHT):
         tables = {}

@@ -2,11 +2,11 @@
 
 W. P. K. Zapfe, D. P. Sanders and R. Rodríguez-Mota, Exact hopping and collision times for two hard
 discs in a box, arXiv:1908.04749. A function stands for one formula; its docstring begins with the
-formula's label if there is one. It takes a ``MpScene`` and returns what is printed, misprints
-included, at the working precision of mpmath. Not for use as physics: ``errata`` says which are
-right.
+formula's label if there is one. It takes a ``MpScene`` and returns the printed value, with its
+misprints, at the working precision of mpmath. Do not use these functions as physics: ``errata``
+says which are right.
 
-Integrals are evaluated over the printed limits. Where all hops are open the source has α = π/2 and
+Integrals are evaluated over the printed limits. If all hops are open, the source has α = π/2 and
 β = 0, and otherwise sin α = b/r and cos β = a/r.
 """
 
@@ -393,7 +393,7 @@ def collision_area_appendix(q):
 
 
 def collision_area_substituted(q):
-    """The same with α = π/2 and b = 0, as said below it."""
+    """The same with α = π/2 and b = 0, as stated below it."""
     return collision_area_general(q.a, mpf(0), q.r, mp.pi / 2, mpf(0))
 
 
@@ -430,7 +430,7 @@ def wall_whole_less_excluded(q):
 
 
 def wall_whole(q):
-    """A_whole, of which a quarter is said to be 8ab²."""
+    """A_whole; the source says that a quarter of it is 8ab²."""
     return 4 * (8 * q.a * q.b**2)
 
 
@@ -446,7 +446,7 @@ def wall_upper(q):
 
 
 def wall_lower(q):
-    """The lower triangle, said to be A_u with a in place of b."""
+    """The lower triangle; the source says that it is A_u with a instead of b."""
     return mpf(8) / 3 * q.a**2 * q.lower
 
 

@@ -1,7 +1,7 @@
-"""What the source states, formula by formula, and what is right instead where it is not.
+"""The statements of the source, formula by formula, with the correction of each wrong one.
 
 Every displayed formula that can be checked is a ``Statement``, in the order of the source, and so
-are a few claims in its text. Whether it is right is not said here: ``errata`` finds out.
+are a few claims in its text. ``errata`` decides whether a statement is right.
 """
 
 from collections.abc import Callable
@@ -13,15 +13,15 @@ from twodiscs.theory.numerics import reference
 from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, largest_radius, mean_time
 from twodiscs_paper.errata import published
 
-#: A regime that formulas are stated for: its boxes and radii (width, height, radius). The first is
-#: the one to report, unless the tables have a radius near it.
+#: The regimes of formulas: boxes and radii (width, height, radius). The first is reported, unless
+#: the tables have a radius near it.
 REGIMES = {
     "all-hops": ((1.5, 1.0, 0.2), (1.5, 1.0, 0.05), (1.5, 1.0, 0.24), (3.0, 1.0, 0.1)),
     "vertical-hops": ((1.5, 1.0, 0.3), (1.5, 1.0, 0.26), (1.5, 1.0, 0.37), (3.0, 1.0, 0.4)),
     "no-hops": ((1.5, 1.0, 0.38), (1.5, 1.0, 0.376), (1.5, 1.0, 0.3835), (1.2, 1.0, 0.32)),
 }
 
-#: Where to try what does not depend on the radius, and is reported without one.
+#: Boxes and radii for statements that do not depend on the radius and are reported without one.
 GENERAL = ((1.5, 1.0, 0.2), (1.5, 1.0, 0.3), (1.5, 1.0, 0.38))
 
 #: A limit: its boxes (width, height), the radius that is approached, and from which side.
@@ -33,7 +33,7 @@ LIMITS = {
     "largest radius, w > 2h": (((3.0, 1.0), (2.5, 1.0)), lambda q: q.h / 2, -1),
 }
 
-#: How far from its limit a limit is evaluated.
+#: The distance from the limiting radius at which a limit is evaluated.
 NEAR = mpf("1e-30")
 
 #: Printed and true are the same if their ratio is 1 to this accuracy.
@@ -52,7 +52,7 @@ def cylinder_is_round_a_line(q):
 
 
 def contact_is_zero(q):
-    """Whether g_coll is zero where the discs touch, and positive where they are farther apart."""
+    """Whether g_coll is zero if the discs touch, and positive if they are farther apart."""
     touching, apart = (
         published.contact(mpf(0), x * mp.cos(1), mpf(0), x * mp.sin(1), q.r)
         for x in (2 * q.r, 3 * q.r)
@@ -61,7 +61,7 @@ def contact_is_zero(q):
 
 
 def gradient_is_right(q):
-    """Whether ∇g_coll has the components of the derivative, and the norm that is given for it."""
+    """Whether ∇g_coll has the components of the derivative, and the printed norm."""
     touching = 2 * q.r * mp.cos(1), mpf(0), 2 * q.r * mp.sin(1), mpf(0)
     orders = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
     true = [mp.diff(lambda *x: published.contact(*x, q.r), touching, order) for order in orders]
@@ -71,18 +71,18 @@ def gradient_is_right(q):
 
 
 def wall_is_zero(q):
-    """Whether g_wall is zero where disc 1 touches the right wall."""
+    """Whether g_wall is zero if disc 1 touches the right wall."""
     return published.wall(q.w / 2 - q.r, q) == 0
 
 
 def hop_surface_is_across_y(q):
-    """Whether the normal of y1 = y2 is that of a surface orthogonal to Y = (y1 + y2)/√2."""
+    """Whether the surface y1 = y2 is orthogonal to Y = (y1 + y2)/√2."""
     normal, axis = (1, -1), (1, 1)
     return normal[0] * axis[1] == normal[1] * axis[0]
 
 
 def regimes_are_as_listed(q):
-    """Whether the hops that are open at this radius are those of the list of regimes."""
+    """Whether the hops that are open at this radius are as in the list of regimes."""
     listed = [
         hops
         for hops, low, high in (
@@ -97,22 +97,22 @@ def regimes_are_as_listed(q):
 
 
 def two_components_are_there(q):
-    """Whether r is where the appendix looks for two components."""
+    """Whether r is in the range that the appendix gives for two components."""
     return q.w / 4 < q.r < q.h / 4
 
 
 def four_components_are_there(q):
-    """Whether r is where the appendix looks for four components."""
+    """Whether r is in the range that the appendix gives for four components."""
     return q.h < 4 <= q.r
 
 
 def collision_time_vanishes(q):
-    """Whether the time between disc collisions vanishes with the room left."""
+    """Whether the time between disc collisions vanishes at the largest radius."""
     return mean_time("disc_collision", q) < mp.sqrt(NEAR)
 
 
 def collision_time_is_smooth(q):
-    """Whether the curvature of the time between disc collisions stays finite beside h/4."""
+    """Whether the curvature of the time between disc collisions stays finite near h/4."""
 
     def curvature(distance):
         step = distance / 8
@@ -129,7 +129,7 @@ def collision_time_is_smooth(q):
 
 
 def hop_tails_are_exponential(q):
-    """Whether no motion avoids vertical hops for long, so that their times may have such a tail.
+    """Whether no motion avoids vertical hops for long, so that an exponential tail is possible.
 
     Below h/4 discs that move along x pass clear of each other (``theory.tail_constant``).
     """
@@ -143,14 +143,14 @@ def hop_tails_are_exponential(q):
 class Statement:
     """A formula or claim of the source.
 
-    ``label`` is its label there or a short name, ``place`` the section or appendix, ``where`` names
-    the regimes or limits that it is stated for. ``printed`` gives what is printed for a
-    ``MpScene``; without a ``truth`` it says whether a claim holds. ``quantity`` is what the tables
-    measure of it; the formula enters there ``share`` times, so that ``truth`` is that fraction of
-    it unless given. Without ``where`` the radius does not matter. ``correction`` says what is right
-    instead, or what else to know, with formulas between backticks. ``number`` is that of the
-    equation in the PDF of arXiv; ``severity`` is major (numbers come out wrong), minor (a range or
-    a part) or slip (nothing else is wrong for it).
+    ``label`` is its label there or a short name, ``place`` the section or appendix. ``where`` names
+    the regimes or limits for which it is stated; without ``where`` the radius does not matter.
+    ``printed`` returns the printed value for a ``MpScene``; for a claim, it returns whether the
+    claim holds. ``quantity`` is the measured quantity in which the formula enters ``share`` times;
+    unless given, ``truth`` is this quantity over ``share``. ``correction`` is the right formula or
+    a remark, with formulas between backticks. ``number`` is the number of the equation in the PDF
+    of arXiv. ``severity`` is major (numbers are wrong), minor (a range or a part is wrong) or slip
+    (nothing else becomes wrong by it).
     """
 
     label: str
@@ -165,19 +165,19 @@ class Statement:
     severity: str | None = None
 
     def true(self, q):
-        """Return what is true of a ``MpScene``."""
+        """Return the true value for a ``MpScene``."""
         return self.truth(q) if self.truth else QUANTITIES[self.quantity](q) / self.share
 
     @property
     def is_claim(self):
-        """Whether there is nothing to divide by."""
+        """Whether the statement is a claim, without a value to divide by."""
         return self.truth is None and self.quantity is None
 
 
 ALL, VERTICAL, NONE = ((name,) for name in REGIMES)
 HOPS, BLOCKED, ANY = ALL + VERTICAL, VERTICAL + NONE, ALL + VERTICAL + NONE
 
-#: What hop, disc and wall times have in common where all hops are open.
+#: The numerator that hop, disc and wall times share if all hops are open.
 NUMERATOR = "N = 2a²b² − 2πabr² + (8/3)(a + b)r³ − r⁴"
 
 
@@ -191,7 +191,7 @@ def _time_from(area, sides):
 
 
 def _quarter_time(q):
-    """The time on the right wall if each of four components had the whole wall to itself."""
+    """A quarter of the time on the right wall, as if each of four components had the full wall."""
     return _time_from(reference.right_wall_area, 1)(q) / 4
 
 

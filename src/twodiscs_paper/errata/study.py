@@ -1,4 +1,4 @@
-"""Corrections to the source, each with what decides it."""
+"""Corrections to the source, with the evidence for each."""
 
 from twodiscs_paper.errata.table import Errata
 from twodiscs_paper.study import Study
@@ -11,7 +11,7 @@ def _reads(configuration):
 
 STUDY = Study(
     "errata",
-    builds="which formulas of the source are right, and what decides it",
+    builds="which formulas of the source are right, with the evidence",
     tables=(Errata,),
     seconds=3.0,
     order=1,

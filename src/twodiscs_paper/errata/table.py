@@ -9,34 +9,35 @@ class Errata(Table):
     label: TEXT
     """its label in the source, or a short name"""
     number: TEXT
-    """of the equation in the PDF of arXiv, as LaTeX counts it; empty where it has none"""
+    """number of the equation in the PDF of arXiv, as LaTeX counts it; empty if it has none"""
     place: TEXT
     """section or appendix"""
     verdict: TEXT
-    """right; wrong; right-in-range: right in some of the regimes that it is stated for"""
+    """right; wrong; right-in-range: right in some of the regimes for which it is stated"""
     severity: TEXT
     """
-    of what is not right: major (numbers come out wrong), minor (a range or a part is), slip
-    (nothing else is wrong for it)
+    of a fault: major (numbers are wrong), minor (a range or a part is wrong), slip (nothing else
+    becomes wrong by it)
     """
     ratio: NUMBER
     """
-    printed/true, where it fails if it does; empty for claims and where what is printed is no real
-    number
+    printed/true, in the first regime where the formula fails, if it fails; empty for claims and if
+    the printed value is no real number
     """
     radius: LENGTH
     """
-    radius of the ratio, in the box 1.5 × 1; of a limit the radius that is approached; empty where
-    it does not matter, or where another box decides
+    radius of the ratio, in the box 1.5 × 1; for a limit the limiting radius; empty if the radius
+    does not matter, or if another box decides
     """
     correction: TEXT
-    """what is right instead, or what else to know; formulas stand between backticks"""
+    """the right formula, or a remark; formulas stand between backticks"""
     decided_by: TEXT
     """
-    theory (quadrature to 50 digits), and each method that can tell, with its ratio measured/printed
-    and the error of the last digit (its distance from 0 where 0 is printed). Areas and times
-    measure each other by the exact volume; where a part is printed, the rest is taken as exact; the
-    ratio for a limit is measured at the radius given and carried over by theory
+    theory (quadrature to 50 digits), and each method that can distinguish printed from true, with
+    its ratio measured/printed and the error of the last digit (if 0 is printed, its distance from
+    0). With the exact volume, areas and times measure each other; if only a part is printed, the
+    rest is taken as exact; the ratio for a limit is measured at the given radius and carried over
+    by theory
     """
 
     @staticmethod

@@ -1,1 +1,1 @@
-"""What the workflow needs: configuration, jobs, sources, forecast, verify, manuscript."""
+"""The parts of the workflow: configuration, jobs, forecast, verify, manuscript."""

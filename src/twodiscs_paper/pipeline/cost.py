@@ -1,38 +1,37 @@
-"""What a job will take, asked in one place: its work, seconds of a usual core, limits, shards.
+"""The cost of a job, in one place: its work, seconds of a usual core, limits of time, shards.
 
-The work of a job is that of the blocks that are planned for it: they follow from the exact rates
-and the errors asked for, and their price from what they are made of. It is counted in events of
-the plain ensemble, and the shards of a point are those blocks. A job that does not run in shards
-stops when its errors are reached, mostly earlier.
+The work of a job is the work of its planned blocks. Their number follows from the exact rates and
+the requested errors, their cost from their contents. Work is counted in events of the plain
+ensemble. The shards of a point are these blocks. A job without shards stops when its errors are
+reached, usually earlier.
 """
 
 import math
 
 from twodiscs_paper.pipeline.jobs.point import STAGES
 
-#: What a core does in a second: events and configurations that are drawn, and how many times slower
-#: effects make it, at most.
+#: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
 
-#: What an event of a budget takes at most, as events of the plain ensemble: one from a strip with
-#: its draws.
+#: The largest cost of an event of a budget, in events of the plain ensemble: an event from a strip,
+#: with its draws.
 DEAREST = 16.0
 
-#: What a sample of more than two discs takes for each of them, as samples of the prism. An event of
-#: theirs takes their pairs.
+#: The cost of a sample of more than two discs, for each disc, in samples of the prism. The cost of
+#: an event is proportional to the number of pairs.
 DRAW = 10.0
 
-#: The limit of a job is so many times its price, and so many minutes more to start it.
+#: The limit of time of a job is ``PATIENCE`` times its cost, and ``MINUTES`` more to start it.
 PATIENCE, MINUTES = 4.0, 10.0
 
-#: So many radii tell what many of them will take.
+#: The number of radii from which the cost of all radii is estimated.
 SOME = 100
 
 DAY = 86400.0
 
 
 def run_of(scene, stage, radius):
-    """Return what the job of a ``SceneRequest`` at a ``radius`` runs.
+    """Return the run of the job of a ``SceneRequest`` at a ``radius``.
 
     ``stage`` is monte_carlo, dynamics or intervals.
     """
@@ -45,18 +44,18 @@ def _work(run):
 
 
 def seconds(scene, stage, radius):
-    """Return the processor time of a point, its shards included, roughly, without any start."""
+    """Return roughly the processor time of a point with its shards, without the start of jobs."""
     return _seconds(scene, stage, _work(run_of(scene, stage, radius)))
 
 
 def _seconds(scene, stage, work):
-    """Return the seconds that so much work takes."""
+    """Return the seconds that ``work`` takes."""
     speed = SAMPLES_PER_SECOND if stage == "monte_carlo" else EVENTS_PER_SECOND
     return work / speed * (SLOWER if scene.box.effects else 1.0)
 
 
 def _most(scene, stage):
-    """Return the work that one radius may take, by the budgets alone."""
+    """Return the most work that one radius may take, by its budgets."""
     discs = scene.box.discs
     sample, event, interval = 1.0, DEAREST, 1.0
     if "discs" in scene.box.calls_for:
@@ -72,14 +71,14 @@ def _most(scene, stage):
 def minutes(scene, stage):
     """Return the limit of time of a job of a ``stage``, point or shard, in minutes.
 
-    It follows from the budgets: no theory is asked.
+    It follows from the budgets, without theory.
     """
     most = min(_most(scene, stage), scene.shard_events)
     return math.ceil(MINUTES + PATIENCE * _seconds(scene, stage, most) / 60)
 
 
 def study_seconds(study, configuration):
-    """Return what the tables of a ``Study`` take, roughly."""
+    """Return roughly the seconds that the tables of a ``Study`` take."""
     return study.seconds(configuration) if callable(study.seconds) else study.seconds
 
 
@@ -91,7 +90,7 @@ def study_minutes(study, configuration):
 def days(scenes):
     """Return the processor time of all jobs of ``scenes`` at their radii, roughly, in days.
 
-    Theory is asked only where the budgets alone allow for a day, and at some of many radii.
+    Theory is used only if the budgets allow for more than a day, and then at some of many radii.
     """
     total = 0.0
     for scene in scenes:
@@ -114,8 +113,8 @@ def _days(scene):
 def shards(scene, stage, radius):
     """Return the shards (part, first, stop) of a point, blocks ``first`` … ``stop`` − 1 of a part.
 
-    Without any it is one job. They depend on the exact rates alone, so they are known before any
-    job runs; a smaller error asks for more of the same ones.
+    A point without shards is one job. Shards depend only on the exact rates, so they are known
+    before any job runs. A smaller error adds shards to the same ones.
     """
     if _most(scene, stage) <= scene.shard_events:
         return []
@@ -132,5 +131,5 @@ def shards(scene, stage, radius):
 
 
 def _per_shard(scene, part):
-    """Return how many blocks of a part a shard has: a power of two, so that shards stay."""
+    """Return the number of blocks in a shard of a part: a power of two, so that shards stay."""
     return 1 << max(0, math.floor(math.log2(scene.shard_events / part.block_work)))

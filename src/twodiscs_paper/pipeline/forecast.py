@@ -1,9 +1,9 @@
-"""What a configuration is going to take, before it is paid for.
+"""Forecast the processor time of a configuration.
 
-A pilot at each radius does the first blocks of a job: it says how fast this machine is, with as
-many pilots at once as there will be jobs, and how many more blocks the errors asked for take. A
-point in shards takes all the blocks that are planned. What a job takes besides, to start Python and
-to load compiled code, is seen by running one that does nothing.
+A pilot at each radius does the first blocks of a job. It gives the speed of this machine, with as
+many pilots in parallel as there will be jobs, and the number of blocks that the requested errors
+need. A point in shards takes all its planned blocks. The time to start Python and to load compiled
+code is measured by a job that does nothing.
 """
 
 import subprocess
@@ -23,17 +23,17 @@ from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline import cost
 from twodiscs_paper.pipeline.configuration.load import load
 
-#: The events or samples that a pilot does at most beyond one block.
+#: The most events or samples of a pilot, unless one block has more.
 EVENTS = 4e7
 
-#: Pilots of a stage of a scene, evenly spread over its radii where there are more of them.
+#: The most pilots of a stage of a scene, evenly spread over its radii.
 MOST_PILOTS = 64
 
 #: The seconds of the documents, and of the compiler: round figures.
 DOCUMENTS = {"paper": 1.5, "report": 5.0}
 COMPILATION = 12.0
 
-#: Jobs that do nothing, by what they stand for, as arguments of ``python -m``.
+#: Jobs with almost no work, for each kind of job, as arguments of ``python -m``.
 NOTHING = {
     "jobs": (
         "twodiscs_paper.pipeline.jobs.point dynamics --width 1.5 --height 1 --radius 0.2 --budget 1"
@@ -51,19 +51,19 @@ NOTHING = {
 
 
 class Pilot(NamedTuple):
-    """What one job will take: its events (samples, intervals), and processor time in seconds."""
+    """The forecast of one job: its events (samples, intervals), and processor time in seconds."""
 
     events: int
     seconds: float
 
 
 def pilot(work, in_shards=False):
-    """Return the ``Pilot`` of a point, given what it runs (see ``jobs.point``)."""
+    """Return the ``Pilot`` of a point from its run ``work`` (see ``jobs.point``)."""
     from twodiscs.sampling.blocks.rounds import FIRST_ROUND, MARGIN
 
     events = seconds = 0.0
     for part in work.parts.values():
-        part.work(0, 1)  # compiled, or loaded
+        part.work(0, 1)  # compiles the kernel, or loads it
         affordable = part.budget / part.block_events
         blocks = int(max(1, min(FIRST_ROUND, EVENTS / part.block_events, affordable)))
         start = time.process_time()
@@ -91,12 +91,12 @@ def run_pilots(jobs, cores):
 
 
 def starts():
-    """Return {kind: seconds} that jobs take beside their work."""
+    """Return {kind: seconds} that jobs take in addition to their work."""
     seconds = {}
     with tempfile.TemporaryDirectory() as folder:
         for kind, words in NOTHING.items():
             command = [sys.executable, "-m", *words.format(folder).split()]
-            for _ in range(2):  # the first time something may be compiled
+            for _ in range(2):  # the first run may compile
                 start = time.perf_counter()
                 subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
                 seconds[kind] = time.perf_counter() - start
@@ -104,7 +104,7 @@ def starts():
 
 
 def thinned(radii):
-    """Return the radii whose pilots tell of all ``radii``, and for each of these which one does."""
+    """Return the radii of the pilots, and for each of all ``radii`` the radius of its pilot."""
     step = -(-len(radii) // MOST_PILOTS) or 1
     near = [radii[min(n - n % step + step // 2, len(radii) - 1)] for n in range(len(radii))]
     return list(dict.fromkeys(near)), near
@@ -159,7 +159,7 @@ def scene_rows(scene, cores, started):
 def rows(configuration, cores):
     """Return the rows of forecast.csv for a ``Configuration`` on ``cores`` ≥ 1 cores.
 
-    Raises ``InputError`` for another number of them.
+    Raises ``InputError`` for another number of cores.
     """
     cores, started = check_integer("cores", cores), starts()
     forecast, sums = [], []
@@ -175,23 +175,23 @@ def rows(configuration, cores):
 
 
 def duration(seconds):
-    """Return ``seconds`` as people say it."""
+    """Return ``seconds`` as text, in seconds, minutes or hours."""
     if seconds < 100:
         return f"{seconds:.1f} s"
     return f"{seconds / 60:.1f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
 def sentences(rows):
-    """Return the lines to print: every stage of every scene, without its single jobs."""
+    """Return the lines to print: every stage of every scene, without single jobs."""
     cores = rows[-1]["cores"]
     on = "1 core" if cores == 1 else f"{cores} cores"
     lines = [f"{'scene':<16}{'stage':<16}{'jobs':>6}{'events':>10}{'one core':>12}{on:>12}"]
     for row in rows:
         if row["radius"] is None:
             events = f"{row['events']:.2g}" if row["events"] is not None else ""
-            alone = duration(row["seconds"] + row["startup"])
+            one_core = duration(row["seconds"] + row["startup"])
             lines.append(
-                f"{row['scene']:<16}{row['stage']:<16}{row['jobs']:>6}{events:>10}{alone:>12}"
+                f"{row['scene']:<16}{row['stage']:<16}{row['jobs']:>6}{events:>10}{one_core:>12}"
                 f"{duration(row['wall_clock']):>12}"
             )
     return lines
@@ -201,7 +201,7 @@ def main():
     """Forecast, write the table and print its sums."""
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
     parser.add_argument("--configuration", required=True, help="the configuration, JSON")
-    parser.add_argument("--cores", required=True, type=int, help="how many jobs run at once")
+    parser.add_argument("--cores", required=True, type=int, help="how many jobs run in parallel")
     parser.add_argument("--output", required=True, type=Path, help="forecast.csv")
     options = parser.parse_args()
     forecast = rows(load(parameters(options.configuration)), options.cores)

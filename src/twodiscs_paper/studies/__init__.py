@@ -1,1 +1,1 @@
-"""One folder an analysis: what it measures, its table, its figure, its entry in the catalogue."""
+"""A folder for each study: its measurement, its tables, its figures, its declaration."""

@@ -23,7 +23,7 @@ def test_limits_of_plain_boxes():
 
 @pytest.mark.parametrize("box", BOXES.values(), ids=BOXES)
 def test_limits_follow_from_the_box_or_from_the_scene(box):
-    """An effect too small to matter leaves the radii where they are, but for rounding."""
+    """An effect too small to matter does not change the radii, except for rounding."""
     plain = limits(box)
     same = limits(Box(box.width, box.height, {"mass_ratio": 1 + 1e-15}))
     assert [radius for radius, _ in same] == pytest.approx([r for r, _ in plain], rel=1e-15)
@@ -34,7 +34,7 @@ def test_limits_follow_from_the_box_or_from_the_scene(box):
 
 
 def test_hops_end_at_the_limit_of_their_name():
-    """Where they stay possible to the end, that is the largest radius."""
+    """If they stay possible to the end, it is the largest radius."""
     assert hop_ends(Box(1.5, 1)) == {
         "vertical_hop": (0.375, "w/4"),
         "horizontal_hop": (0.25, "h/4"),

@@ -1,8 +1,12 @@
 """The animation: it shows the trajectory, stops at the hop, and is the same bytes every time."""
 
+import json
 import os
+import re
 import subprocess
 import sys
+from base64 import b64decode
+from io import BytesIO
 
 import numpy as np
 import pytest
@@ -10,9 +14,10 @@ from figure_cases import unclear
 from matplotlib.patches import Circle
 from PIL import Image
 
+import twodiscs as td
 from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import drawing, style
-from twodiscs.figures.motion import animation
+from twodiscs.figures.motion import animation, video
 from twodiscs.figures.motion.animation import AFTER, BEFORE, FRAME, HOP, LAST, MARKED
 from twodiscs.model.box import Box
 
@@ -102,15 +107,15 @@ def test_hops_that_are_never_alone_and_trajectories_that_are_too_short():
     assert times.tolist() == list(range(10))
     with pytest.raises(ValueError, match=r"trajectory must last two frames, a time of 1, not 0\.5"):
         animation.moments(at(end=0.5), 1.0)
-    with pytest.raises(ValueError, match="trajectory must have rows, not none"):
+    with pytest.raises(ValueError, match="trajectory must have rows, but is empty"):
         animation.animate(BOX, RADIUS, [], ["a.gif"])
-    with pytest.raises(ValueError, match=r"path must be a \.gif or \.png file, not 'a\.mp4'"):
-        animation.animate(BOX, RADIUS, [], ["a.gif", "a.mp4"])
+    with pytest.raises(ValueError, match=r"path must be a \.gif, .*\.mp4 file, not 'a\.avi'"):
+        animation.animate(BOX, RADIUS, [], ["a.gif", "a.avi"])
     with pytest.raises(ValueError, match="radius must be a positive"):
         animation.animate(BOX, -1, at(end=9.5), ["a.gif"])
 
 
-# What they show ----------------------------------------------------------------------------------
+# Content of the frames ---------------------------------------------------------------------------
 
 
 def test_discs_stay_in_the_box_and_apart(stage):
@@ -133,7 +138,7 @@ def test_the_hop_is_a_frame_and_the_only_one_that_stops(stage, rows, frames):
 
 
 def test_pixels_are_those_of_the_discs(stage, frames):
-    """Inside the rim of a disc is its colour, but for traces and numbers, and outside it is not."""
+    """The colour of a disc is inside its rim, except for traces and numbers, and not outside."""
     stage.box.figure.canvas.draw()
     up = frames[1][0][1].shape[0]
     angles = np.linspace(0, 2 * np.pi, 36, endpoint=False)
@@ -162,6 +167,9 @@ def test_other_boxes(box, tmp_path):
 
 ANIMATE = f"""
 import sys
+from base64 import b64decode
+from io import BytesIO
+import twodiscs as td
 from twodiscs.comparison.tables.trajectory import Trajectory
 from twodiscs.figures.kit import style
 from twodiscs.figures.motion.animation import animate
@@ -228,7 +236,7 @@ def test_paths_end_where_they_are_asked_to_whatever_the_width_of_the_box():
 
 
 def test_what_leaves_a_ring_comes_in_at_the_other_end():
-    """Of four discs: all in the box, an image of each a period away, no trace across the box."""
+    """Four discs: all in the box, an image of each a period away, no trace across the box."""
     box = Box(1.5, 1.0, {"periodic": "x"}, discs=4)
     rows = Trajectory.rows(box, 0.15, 1)
     with style.context():
@@ -273,3 +281,100 @@ def test_the_numbers_of_small_discs_keep_clear_of_the_heading(width):
             # Discs are where they are: beside each other their numbers may meet.
             met = [pair for pair in unclear(stage.figure) if {*pair} != {"1", "2"}]
             assert met == []
+
+
+# Effects and other files --------------------------------------------------------------------------
+
+
+def test_marks_of_rough_discs_turn_with_them():
+    """Angles against the times between rows; the sign by what walls do to spin and velocity."""
+    scene = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5)
+    path = td.trajectory(scene, 200, seed=1)
+    for wall in ("wall_y1", "wall_y2"):
+        disc = wall[-1]
+        u, s, y = (path[f"{name}{disc}"].to_numpy() for name in "usy")
+        (hits,) = np.nonzero((path["event"] == wall).to_numpy())
+        # A disc that turns counterclockwise has the velocity u + s at its lowest point.
+        surface = np.where(y[hits] < 0, s[hits], -s[hits])
+        before = np.where(y[hits] < 0, s[hits - 1], -s[hits - 1])
+        assert len(hits) > 20
+        assert np.allclose(u[hits] + surface, -(u[hits - 1] + before), atol=1e-9)
+    with style.context():
+        stage = animation.Stage(Box.of(scene), 0.2, path.to_dict("records"))
+    for time in stage.times[::20]:
+        stage.show(time)
+        for disc in (1, 2):
+            (x1, x2), (y1, y2) = stage.moving[f"spin {disc}"].get_data()
+            after = np.append(path["time"].to_numpy()[1:], np.inf)
+            elapsed = np.clip(np.minimum(after, time) - path["time"], 0, None)
+            angle = (path[f"s{disc}"] * elapsed).sum() / 0.2
+            turned = np.arctan2(y2 - y1, x2 - x1) - angle
+            assert np.cos(turned) == pytest.approx(1, abs=1e-9)
+
+
+def test_the_nearer_ball_is_in_front():
+    path = td.trajectory(td.Scene(1.5, 1.0, 0.2, depth=1.2), seed=2)
+    with style.context():
+        stage = animation.Stage(Box.of(path.scene), 0.2, path.to_dict("records"))
+    nearer = set()
+    for time in stage.times:
+        (state,) = path.states_at(time)
+        drawn = stage.artists(time)
+        first, second = (drawn.index(stage.moving[f"disc {disc}"]) for disc in (1, 2))
+        assert (first > second) == (state["z1"] > state["z2"])
+        assert len(drawn) == len(stage.moving)
+        nearer.add(first > second)
+    assert nearer == {True, False}
+
+
+def test_a_page_holds_the_frames_of_the_gif(rows, tmp_path):
+    gif, page = tmp_path / "a.gif", tmp_path / "a.html"
+    with style.context():
+        animation.animate(BOX, RADIUS, rows[:3], [gif, page])
+    text = page.read_text(encoding="utf-8")
+    assert "http" not in text
+    pictures, times = re.search(r"pictures = (\[.*\]), milliseconds = (\[.*\]);", text).groups()
+    shown = [Image.open(BytesIO(b64decode(one))).convert("RGB") for one in json.loads(pictures)]
+    frames = unpacked(gif)
+    assert len(frames) > 3
+    assert [milliseconds for milliseconds, _ in frames] == json.loads(times)
+    for image, (_, pixels) in zip(shown, frames, strict=True):
+        np.testing.assert_array_equal(np.asarray(image, int), pixels)
+
+
+#: A program in place of ffmpeg: it keeps its arguments and its input.
+RECORDER = """#!{python}
+import json, sys
+open(sys.argv[-1], "wb").write(sys.stdin.buffer.read())
+json.dump(sys.argv, open(sys.argv[-1] + ".json", "w"))
+if {status}:
+    print("no encoder", file=sys.stderr)
+sys.exit({status})
+"""
+
+
+def test_an_mp4_is_written_by_ffmpeg(rows, tmp_path, monkeypatch):
+    path, folder = tmp_path / "a.mp4", tmp_path / "bin"
+    monkeypatch.setenv("PATH", str(folder))
+    with pytest.raises(td.InputError, match="because the program ffmpeg is missing"):
+        animation.animate(BOX, RADIUS, rows, [path])
+    folder.mkdir()
+    program = folder / "ffmpeg"
+    program.write_text(RECORDER.format(python=sys.executable, status=0))
+    program.chmod(0o755)
+    with style.context():
+        animation.animate(BOX, RADIUS, rows[:3], [tmp_path / "a.gif", path])
+    frames = unpacked(tmp_path / "a.gif")
+    words = json.loads((tmp_path / "a.mp4.json").read_text())
+    assert words[words.index("-framerate") + 1] == "20"
+    width, height = map(int, words[words.index("-video_size") + 1].split("x"))
+    pixels = np.fromfile(path, np.uint8).reshape(-1, height, width, 3).astype(int)
+    assert len(pixels) * 50 == sum(milliseconds for milliseconds, _ in frames)
+    # The GIF has 32 colours; the frames are the same pictures.
+    assert np.abs(pixels[0] - frames[0][1]).mean() < 2
+    image = Image.new("RGB", (3, 2))
+    program.write_text(RECORDER.format(python=sys.executable, status=1))
+    with pytest.raises(td.InputError, match=r"that ffmpeg can write, .*: no encoder"):
+        video.write_mp4(path, [image], [50])
+    with pytest.raises(td.InputError, match="path must be a file to write"):
+        video.write_mp4(tmp_path / "absent" / "a.mp4", [image], [50])

@@ -1,13 +1,13 @@
-"""Jobs of one radius: what they write, that shards add up to the same bytes, what they refuse."""
+"""Jobs of one radius: their files, shards that add up to the same bytes, their errors."""
 
 import json
 from pathlib import Path
 
 import pytest
-from fabricated import command
+from commands import command
 
-from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.model.scene import Scene
+from twodiscs.points.digests import read_json, write_json
 from twodiscs_paper.pipeline.jobs import point
 
 SCENE = Scene(1.5, 1.0, 0.2)
@@ -18,7 +18,7 @@ WORK = {
     "intervals": ("--event", "vertical_hop", "--intervals", 3 << 16, "--budget", "1e9"),
 }  # fmt: skip
 
-#: What a shard is told: neither accuracy nor budget is of consequence to it.
+#: The arguments of a shard: it does not depend on accuracy or budget.
 SHARD = {
     "monte_carlo": ("--quantities", "volume", "top_wall_area", "--samples", 1, "--shell", 0.1),
     "dynamics": ("--target", "vertical_hop=0.5", "top_wall=0.5", "--budget", "1"),
@@ -28,7 +28,7 @@ SHARD = {
 
 @pytest.fixture
 def run(monkeypatch, tmp_path):
-    """Run a job in a folder of its own; return its exit status."""
+    """Run a job in a separate folder; return its exit status."""
     monkeypatch.chdir(tmp_path)
     return lambda stage, *words: command(monkeypatch, point, stage, *BOX, "--seed", 7, *words)
 

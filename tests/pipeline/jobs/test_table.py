@@ -1,17 +1,18 @@
-"""Jobs of tables, studies and figures: what they read and write, and what they refuse."""
+"""Jobs of tables, studies and figures: the files that they read and write, and their errors."""
 
 import csv
 import json
 
 import numpy as np
 import pytest
-from fabricated import BOX, RADII, Laws, command, scenes
+from commands import command
+from factory import BOX, RADII, Laws, scenes
 
 from twodiscs.arguments import box_arguments
-from twodiscs.comparison.digests import read_json, write_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.model.checks import InputError
+from twodiscs.points.digests import read_json, write_json
 from twodiscs_paper.catalogue import STUDY_TABLES
 from twodiscs_paper.pipeline.jobs import figure, study, table
 
@@ -34,7 +35,7 @@ def points(run, tmp_path):
         words.append(f"--{stage}")
         for scene in scenes():
             path = tmp_path / f"{stage}-{scene.radius}.json"
-            write_json(path, getattr(Laws(scene), stage)(rng, **samples))
+            getattr(Laws(scene), stage)(rng, **samples).write(path)
             words.append(path)
     return words
 
@@ -87,7 +88,7 @@ def test_a_point_of_another_stage_is_refused(run, points, capsys, stage):
     path = points[points.index("--monte_carlo") + 1]
     words = "--theory", "theory.csv", f"--{stage}", path, "--output", "a.csv"
     assert run(table, "check", *WORDS, *words) == 2
-    assert f"{path} is not a point of {stage}" in capsys.readouterr().err
+    assert f"{path} must be a point of {stage}, but was made" in capsys.readouterr().err
 
 
 def test_a_mistake_of_a_study_keeps_its_place(run, monkeypatch):

@@ -25,8 +25,8 @@ def cluster_integrals(side):
 def test_second_and_third_virial_coefficients():
     """B2 = πσ²/2 and B3/B2² = 4/3 − √3/π (Tonks, Phys. Rev. 50, 955 (1936)): 0.782004….
 
-    In a box longer than a cluster of discs a cluster integral is that of each point, less what the
-    sides and the corners take: a polynomial of the second degree in the side.
+    In a box longer than a cluster of discs a cluster integral is the sum over points minus terms
+    of the sides and the corners: a polynomial of the second degree in the side.
     """
     sides = np.array([2.5, 3.0, 3.5])
     found = np.array([cluster_integrals(side) for side in sides])
@@ -40,8 +40,8 @@ def test_second_and_third_virial_coefficients():
 def test_pressures_on_the_walls_have_the_third_virial_coefficient():
     """B3/B2² by Tonks (1936), as above, from the areas that pressures are made of.
 
-    Of σ = 1, centres in a square of side L, the cluster of three is 3! b3 L² but for terms of the
-    walls, linear in L; so its derivative by one of the sides is linear in L, of slope 3! b3.
+    For σ = 1 and centres in a square of side L, the cluster of three is 3! b3 L² plus terms of the
+    walls, linear in L. Its derivative by one of the sides is linear in L, of slope 3! b3.
     """
 
     def scene_of(discs, side):
@@ -69,9 +69,9 @@ def test_pressures_on_the_walls_have_the_third_virial_coefficient():
 def test_pressure_on_a_ring_has_the_fourth_virial_coefficient():
     """B4/B2³ = 2 − 9√3/(2π) + 10/π² (Rowlinson, Mol. Phys. 7, 593 (1964)): 0.532231….
 
-    Of σ = 1 no cluster of four reaches around a ring of circumference 4 or from wall to wall of
-    B = 3. So a cluster integral of k discs is K_k = L (b_k B + w_k), what walls take included, and
-    its derivative by B is L b_k. Those of two and three are exact, from squares; that of four has
+    For σ = 1 no cluster of four reaches around a ring of circumference 4 or from wall to wall of
+    B = 3. A cluster integral of k discs is therefore K_k = L (b_k B + w_k), with the walls, and its
+    derivative by B is L b_k. Those of two and three are exact, from squares; that of four has
     the sampled area of a disc at a wall beside three others, at 5 of its standard errors.
     """
     sides = np.array([2.5, 3.0, 3.5])
@@ -117,7 +117,7 @@ def test_residue_at_close_packing_in_a_channel(share):
     """The force times the length left is 2 kT for each disc in a zigzag at close packing.
 
     Montero and Santos, arXiv:2212.08932: the equation of state has a simple pole with residue 2
-    there, where hard rods on a line have 1. What is left of the expansion is linear in kT/force.
+    there, where hard rods on a line have 1. The rest of the expansion is linear in kT/force.
     """
     across = share * math.sqrt(0.75)
     least = math.sqrt((1 - across) * (1 + across))

@@ -1,4 +1,4 @@
-"""What holds for every number of discs: the virial theorem, bounds of the volume, small discs."""
+"""Relations for every number of discs: the virial theorem, bounds of the volume, small discs."""
 
 import math
 

@@ -1,22 +1,19 @@
 """Results of simulations and samples beside the exact values: objects that print themselves.
 
-Their numbers are those of the rows of the tables, made by the same functions.
+Their numbers come from rows of the tables, made by the same functions.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from numbers import Real
 from typing import TYPE_CHECKING
 
-from twodiscs.comparison.estimates import (
-    MIN_EVENTS,
-    density_of_chains_at_zero,
-    normal_quantile,
-)
+from twodiscs.comparison.measured.by_quantity import Quantities
 from twodiscs.comparison.measured.progress import progress_bar
-from twodiscs.comparison.measured.result import Result
+from twodiscs.comparison.measured.result import Result, note_of_number
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
@@ -29,19 +26,22 @@ from twodiscs.model.checks import (
     check_count,
     check_error,
     check_fraction,
+    check_length,
+    did_you_mean,
     quote,
 )
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, check_scene
+from twodiscs.points.estimates import MIN_EVENTS, normal_quantile
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Bins resolve how the density of intervals begins if a pair of discs has no more wall hits and
-#: collisions in one. At .23 to .39 of them, extrapolations deviate by less than 0.5 % from the
-#: exact density; at .43 to .77 by up to 3 %, at 1.6 by 3 %, at 4.2 by 35 %.
+#: Bins resolve how the density of intervals begins if a pair of discs has at most this mean number
+#: of wall hits and collisions in one bin. At .23 to .39 events, extrapolations deviate by less than
+#: 0.5 % from the exact density; at .43 to .77 by up to 3 %, at 1.6 by 3 %, at 4.2 by 35 %.
 RESOLVED_EVENTS = 0.4
 
 #: The columns that people read, and how wide they are.
@@ -55,20 +55,66 @@ COLUMNS = {
 class Measurement:
     """An estimate of one quantity, beside its exact value.
 
-    ``stderr`` is the standard error; it is None where there is too little for an honest one, and
-    ``value`` is None where nothing was seen. ``exact`` is None where no exact value is known,
-    and where the ``status`` is impossible. ``z`` is None without an exact value or an estimate;
-    otherwise it is the standard normal deviate of the estimate from what it is an estimate of: the
-    exact value or, for an area, the exact ``expectation`` of its shell. Where events are few, or
-    come in few clusters, there is no normal law: then z is that of an upper bound on the chance of
-    such a deviation, often 0, and the ``test`` in ``frame()`` of the result says so. ``count`` is
-    how many events, or hits, are behind it, and ``bound`` a lower bound on the mean time where none
-    was seen. ``status`` is as in the tables. It is "too-few" without an honest error. A mean time
-    needs 100 replicas and 100 effective events, of which a cluster counts once. Rough discs near a
-    threshold have events in crowds; there it also needs as many initial states as show them
-    (``theory.exact.replicas_needed``), which does not depend on the seed. Anything else needs 100
-    hits and 100 misses: if discs are so small that all of 1048576 draws are hits, the volume has no
-    error.
+    ``float(m)`` is the value. ``+``, ``-``, ``*`` and ``/`` combine two measurements with
+    independent random numbers, or one and a number. The result is a measurement whose error adds in
+    quadrature, relative errors for products. Measurements of one run, or of one scene, method and
+    seed, have the same random numbers: these are refused.
+
+    Parameters
+    ----------
+    quantity : str
+        Its name, as it is printed, as a key and as a column.
+    value : float or None
+        The estimate, None without an event or hit.
+    stderr : float or None
+        The standard error, None if there are too few events for one.
+    exact : float or None
+        The exact value, None if none is known or if the ``status`` is impossible.
+    z : float or None
+        The standard normal deviate of the estimate from the exact value or, for an area, from the
+        exact ``expectation`` of its shell. If events are few, or come in few clusters, there is no
+        normal law. z then comes from an upper bound on the probability of such a deviation and is
+        often 0; the column ``test`` of ``frame()`` marks these rows.
+    count : int
+        The number of events, or hits.
+    status : str
+        As in the tables; "derived" for a result of arithmetic, "too-few" if there is no error, see
+        Notes.
+    unit : str
+        The unit of value, stderr, exact, expectation and bound.
+    expectation : float, optional
+        The exact expectation of a shell, for an area.
+    bound : float, optional
+        A lower bound on a mean time at 95 %, if no event was counted.
+    streams : frozenset, optional
+        Its random streams, which tell whether two measurements are independent.
+
+    Attributes
+    ----------
+    relative_stderr : float or None
+        The standard error over the size of the value.
+
+    Raises
+    ------
+    InputError
+        For arithmetic with measurements that are not independent, have no value or another unit.
+
+    Notes
+    -----
+    A mean time has an error from 100 replicas and 100 effective events on, of which a cluster
+    counts once. Rough discs near a threshold have very many events after a few of the initial
+    states; there it also needs enough initial states (``theory.exact.replicas_needed``), a number
+    that does not depend on the seed. Anything else needs 100 hits and 100 misses: if discs are so
+    small that all of 1048576 draws are hits, the volume has no error.
+
+    Examples
+    --------
+    >>> v, w = (td.sample(scene, 1e6, seed=n)["volume"] for n in (1, 2))
+    >>> difference = v - w
+    >>> bool(abs(difference.z) < 5), difference.exact, difference.unit
+    (True, 0.0, 'length⁴')
+    >>> abs(float(v) - v.exact) < 5 * v.stderr
+    True
     """
 
     quantity: str
@@ -81,10 +127,13 @@ class Measurement:
     unit: str
     expectation: float | None = None
     bound: float | None = None
+    streams: frozenset = field(default=frozenset(), compare=False)
+
+    __array_ufunc__ = None  # so that numbers of NumPy call the methods below
 
     def __post_init__(self):
         if self.value is None or self.exact is None:
-            # In the tables it is then 0 where nothing was due, which is no comparison to read.
+            # The tables then have z = 0 if no event was expected, which compares nothing.
             object.__setattr__(self, "z", None)
 
     @property
@@ -93,14 +142,63 @@ class Measurement:
         return self.stderr / abs(self.value) if self.stderr and self.value else None
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float] | None:
-        """Return the normal confidence interval (low, high), or None without an honest error."""
+        """Return the normal confidence interval.
+
+        Parameters
+        ----------
+        confidence : float, default 0.95
+            The probability that it covers the true value, between 0 and 1.
+
+        Returns
+        -------
+        (float, float) or None
+            Its ends, None without an error.
+        """
         half = normal_quantile(confidence)
         if self.stderr is None or self.value is None:
             return None
         return self.value - half * self.stderr, self.value + half * self.stderr
 
+    def __float__(self) -> float:
+        if self.value is None:
+            raise InputError(f"{self.quantity} must have a value, but its status is {self.status}")
+        return float(self.value)
+
+    def __neg__(self) -> Measurement:
+        return derived("−{}", lambda a: -a, lambda a: (-1.0,), self.unit, self)
+
+    def __add__(self, other) -> Measurement:
+        return _combined("{} + {}", lambda a, b: a + b, lambda a, b: (1, 1), _same, self, other)
+
+    def __radd__(self, other) -> Measurement:
+        return _combined("{} + {}", lambda a, b: a + b, lambda a, b: (1, 1), _same, other, self)
+
+    def __sub__(self, other) -> Measurement:
+        return _combined("{} − {}", lambda a, b: a - b, lambda a, b: (1, -1), _same, self, other)
+
+    def __rsub__(self, other) -> Measurement:
+        return _combined("{} − {}", lambda a, b: a - b, lambda a, b: (1, -1), _same, other, self)
+
+    def __mul__(self, other) -> Measurement:
+        return _combined("{} × {}", lambda a, b: a * b, lambda a, b: (b, a), _product, self, other)
+
+    def __rmul__(self, other) -> Measurement:
+        return _combined("{} × {}", lambda a, b: a * b, lambda a, b: (b, a), _product, other, self)
+
+    def __truediv__(self, other) -> Measurement:
+        return _combined("{} / {}", lambda a, b: a / b, _over, _ratio, self, other)
+
+    def __rtruediv__(self, other) -> Measurement:
+        return _combined("{} / {}", lambda a, b: a / b, _over, _ratio, other, self)
+
     def cells(self) -> tuple[str, ...]:
-        """Return what people read of it, a text for each of ``COLUMNS``."""
+        """Return the texts of a printed line.
+
+        Returns
+        -------
+        tuple of str
+            Quantity, estimate, error, exact value, unit, z, count and status.
+        """
         value, error = _with_error(self.value, self.stderr)
         if self.value is None and self.bound is not None:
             value = f"> {self.bound:.4g}"
@@ -120,8 +218,84 @@ class Measurement:
     __repr__ = __str__
 
 
+def derived(name, function, slopes, unit, *parts, quantity=None):
+    """Return the ``Measurement`` of a ``function`` of independent ``parts``.
+
+    Errors are of first order; ``slopes`` returns the derivatives. ``name`` is a format for the
+    quantities of the parts, unless ``quantity`` is given.
+    """
+    means = [p.exact if p.expectation is None else p.expectation for p in parts]
+    values, exact = [p.value for p in parts], [p.exact for p in parts]
+    names = (f"({p.quantity})" if " " in p.quantity else p.quantity for p in parts)
+
+    def known(numbers):
+        return None if None in numbers else function(*numbers)
+
+    value, due, error = known(values), known(means), None
+    if value is not None and None not in [p.stderr for p in parts]:
+        terms = zip(slopes(*values), parts, strict=True)
+        error = math.hypot(*(slope * p.stderr for slope, p in terms))
+    z = (value - due) / error if error and due is not None else None
+    return Measurement(
+        quantity or name.format(*names), value, error, known(exact), z,
+        min(p.count for p in parts), "derived", unit,
+        due if means != exact else None,
+        streams=frozenset().union(*(p.streams for p in parts)),
+    )  # fmt: skip
+
+
+def _combined(name, function, slopes, unit, one, other):
+    """Return the result of ``derived`` for two parts, one of which may be a number.
+
+    For anything else it is NotImplemented.
+    """
+    numbers = [isinstance(part, Real) and not isinstance(part, bool) for part in (one, other)]
+    parts = [part for part in (one, other) if isinstance(part, Measurement)]
+    if len(parts) + sum(numbers) < 2:
+        return NotImplemented
+    if len(parts) == 2 and one.streams & other.streams:
+        raise InputError(
+            f"{one.quantity} and {other.quantity} must have different random numbers, so that "
+            "their errors are independent: measure one of them with another seed"
+        )
+    for part in parts:
+        float(part)
+    if name.startswith("{} /") and not float(other):
+        raise InputError("the divisor must not be 0")
+    if len(parts) == 2:
+        return derived(name, function, slopes, unit(one.unit, other.unit), one, other)
+    (part,), number = parts, float(other if numbers[1] else one)
+    if numbers[1]:
+        of = part.unit if unit is _same else unit(part.unit, "")
+        text = name.format("{}", f"{number:g}")
+        return derived(
+            text, lambda a: function(a, number), lambda a: slopes(a, number)[:1], of, part
+        )
+    of = part.unit if unit is _same else unit("", part.unit)
+    text = name.format(f"{number:g}", "{}")
+    return derived(text, lambda a: function(number, a), lambda a: slopes(number, a)[1:], of, part)
+
+
+def _over(a, b):
+    return 1 / b, -a / b**2
+
+
+def _same(one, other):
+    if one != other:
+        raise InputError(f"measurements that are added must have one unit, not {one} and {other}")
+    return one
+
+
+def _product(one, other):
+    return "·".join(unit for unit in (one, other) if unit)
+
+
+def _ratio(one, other):
+    return "" if one == other else f"{one or 1}/{other}" if other else one
+
+
 def _with_error(value, error):
-    """Return the texts of a value, as far as two digits of its error reach, and of the error."""
+    """Return the texts of a value and its error; both end at the second digit of the error."""
     if value is None:
         return "–", ""
     if not error:
@@ -133,7 +307,7 @@ def _with_error(value, error):
 
 
 def aligned(lines, widths):
-    """Return texts in columns of these widths, wider where a text needs it, the last one open."""
+    """Return lines of texts in columns of these widths, which are wider if a text needs it."""
     lines = [[*line] for line in lines]
     longest = [max(map(len, column)) for column in zip(*lines, strict=True)]
     widths = [max(width, needed + 1) for width, needed in zip(widths, longest, strict=True)]
@@ -144,22 +318,48 @@ def aligned(lines, widths):
 
 
 class Measurements(Result, Mapping[str, Measurement]):
-    """{quantity or event: ``Measurement``} of one ``scene``; prints as a table.
+    """{quantity: ``Measurement``} of one scene; prints as a table.
 
-    ``rows`` are those of the table of its kind, as the pipeline writes it. How it was made is in
-    ``kind``, ``settings`` (with the seed, and the error asked for) and ``version``.
+    ``simulate`` and ``sample`` return one. The name of an event is short for its quantity.
+
+    Parameters
+    ----------
+    kind : str
+        The function that made it.
+    scene : Scene
+        The scene.
+    rows : list of dict
+        The rows of the table of its kind, as the pipeline writes it.
+    settings : dict
+        {argument: value} beside the scene, with the seed and the error that was asked for.
+    kept : dict
+        {part: {blocks: sums}} of its work, from which it goes on.
+    stream : int, optional
+        The seed of its random streams.
+    note : str, optional
+        The difference between the work that was asked for and the work that was done.
+
+    Attributes
+    ----------
+    version : str
+        The version of the package.
+
+    Examples
+    --------
+    >>> md = td.simulate(scene, error=0.02, seed=1)
+    >>> md["vertical_hop_time"] == md["vertical_hop"]
+    True
+    >>> md.frame().index[0], md.settings["seed"]
+    ('vertical_hop_time', 1)
     """
 
-    def __init__(self, kind, scene, rows, settings, kept):
+    def __init__(self, kind, scene, rows, settings, kept, stream=None, note=None):
         self.kind, self.scene, self.rows = kind, scene, rows
-        self.settings, self.kept = settings, kept
-        self._measurements = {
-            row.get("event") or row["quantity"]: _measurement(scene, row) for row in rows
-        }
+        self.settings, self.kept, self.note = settings, kept, note
+        found = (_measurement(scene, row, stream) for row in rows)
+        self._measurements = Quantities((one.quantity, one) for one in found)
 
     def __getitem__(self, name: str) -> Measurement:
-        if name not in self._measurements:
-            raise KeyError(f"{quote(name)} is none of {', '.join(self)}")
         return self._measurements[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -178,36 +378,84 @@ class Measurements(Result, Mapping[str, Measurement]):
         samples: float | None = None,
         cores: int = 1,
         progress: bool | None = None,
+        duration: float | None = None,
     ) -> Measurements:
-        """Return a result with a smaller ``error``, a larger ``budget``, or more ``samples``.
+        """Return a result from more work, which goes on from this one.
 
-        It goes on from this one, and is the same, bit for bit, as one asked for in one call.
+        It is the same, bit for bit, as the result of one call with the new arguments.
+
+        Parameters
+        ----------
+        error : float, str or dict, optional
+            A smaller error, for a result of ``simulate`` that has one.
+        budget : float, optional
+            A larger budget, for a result of ``simulate``.
+        samples : float, optional
+            More samples, for a result of ``sample``.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar, as in ``simulate``.
+        duration : float, optional
+            A longer time, for a result of ``simulate`` that has one.
+
+        Returns
+        -------
+        Measurements
+            The result, which includes the work of this one.
+
+        Raises
+        ------
+        InputError
+            For an argument that is not among the ``settings`` of this result.
         """
-        changes = {"error": error, "budget": budget, "samples": samples}
+        changes = {"error": error, "budget": budget, "samples": samples, "duration": duration}
         return self._again(changes, cores, progress)
 
     def _repr_html_(self) -> str:
         return self._html(COLUMNS, [measurement.cells() for measurement in self.values()])
 
     def frame(self) -> pd.DataFrame:
-        """Return the rows as a pandas ``DataFrame`` by event or quantity."""
-        return _frame(self.rows, index="event" if "event" in self.rows[0] else "quantity")
+        """Return a table of all measurements.
+
+        Returns
+        -------
+        DataFrame
+            One row per quantity, which the index names, with the columns of the pipeline's table:
+            mean_times.csv, or volume.csv and areas.csv.
+        """
+        return _frame(rows_by_quantity(self.rows), index="quantity")
 
     def __str__(self) -> str:
         lines = [COLUMNS, *(measurement.cells() for measurement in self.values())]
-        return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
+        return self._with_scene(aligned(lines, COLUMNS.values()))
 
     __repr__ = __str__
 
 
-def _measurement(scene, row):
-    quantity = row.get("quantity") or f"{row['event']}_time"
+def _streams(kind, stream):
+    return frozenset() if stream is None else frozenset([(kind, stream)])
+
+
+def _measurement(scene, row, stream):
+    quantity = quantity_of(row)
     return Measurement(
         quantity,
         row["estimate"], row["stderr"], row["exact"], row["z"],
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
         row.get("expectation"), row.get("bound"),
+        _streams("dynamics" if "event" in row else "sampling", stream),
     )  # fmt: skip
+
+
+def quantity_of(row):
+    """Return the name of the quantity of a row of results."""
+    return row.get("quantity") or f"{row['event']}_time"
+
+
+def rows_by_quantity(rows):
+    """Return the ``rows`` with their quantity as a column."""
+    return [{"quantity": quantity_of(row)} | row for row in rows]
 
 
 def _frame(rows, index):
@@ -217,19 +465,55 @@ def _frame(rows, index):
 
 
 class Intervals(Result):
-    """How the intervals between hops of one kind are distributed.
+    """The distribution of the intervals between hops of one kind; ``intervals`` returns one.
 
-    ``mean`` and ``at_zero``, the density of short intervals, are ``Measurement``; ``edges`` (n + 1)
-    and ``counts`` (n) are those of equal bins from 0, ``overflow`` intervals lie beyond, and
-    ``intervals`` is how many there are. The exact density at 0 is known in plain scenes; its
-    estimate is a parabola through the first two bins, so it has no z. For more than two discs it is
-    a straight line, because another pair may hop next. Bins are a share of the mean interval. If
-    they are wider than ``RESOLVED_EVENTS`` events of the pair, as they are near a threshold,
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    point : IntervalsPoint
+        The counts, as the pipeline keeps them.
+    settings : dict
+        {argument: value} beside the scene.
+    kept : dict
+        {part: {blocks: sums}} of its work, from which it goes on.
+    stream : int, optional
+        The seed of its random streams.
+
+    Attributes
+    ----------
+    hop : str
+        "vertical_hop" or "horizontal_hop".
+    intervals : int
+        The number of intervals.
+    overflow : int
+        The number of intervals beyond the bins.
+    edges : list of float, length n + 1
+        The ends of equal bins from 0, in time.
+    counts : list of int, length n
+        The intervals in each bin.
+    mean : Measurement
+        The mean interval, in time.
+    at_zero : Measurement
+        The density of short intervals, in 1/time.
+
+    Notes
+    -----
+    The exact density at 0 is known in plain scenes. Its estimate is extrapolated by a parabola
+    through the first two bins, so it has no z. For more than two discs it is a straight line,
+    because another pair may hop next. The width of bins is a fixed fraction of the mean interval.
+    If they are wider than ``RESOLVED_EVENTS`` events of the pair, as they are near a threshold,
     ``at_zero`` has no value and the status "not-resolved". Intervals of one chain are correlated,
-    so that all errors are those of the spread between chains. If discs are tiny or hardly fit, few
-    long intervals make the errors skew. In four such scenes 65536 intervals gave scores with a mean
-    of -0.20 and -4.2 as the worst of 1200; 262144 gave -0.08, a mean square of 0.97, and -3.8 as
-    the worst of 800. Ask for that many there.
+    so all errors come from the spread between chains. If discs are tiny or hardly fit, a few long
+    intervals make the errors skew. In four such scenes 65536 intervals gave scores with a mean of
+    -0.20 and -4.2 as the worst of 1200; 262144 gave -0.08, a mean square of 0.97, and -3.8 as the
+    worst of 800. Ask for 262144 intervals there.
+
+    Examples
+    --------
+    >>> times = td.intervals(scene, "vertical_hop", 1e5, seed=1)
+    >>> sum(times.counts) + times.overflow == times.intervals
+    True
     """
 
     hop: str
@@ -242,35 +526,35 @@ class Intervals(Result):
 
     kind = "intervals"
 
-    def __init__(self, scene, point, settings, kept):
-        self.scene, self.hop = scene, point["event"]
+    def __init__(self, scene, point, settings, kept, stream=None):
+        self.scene, self.hop = scene, point.event
         self.settings, self.kept = settings, kept
-        self.intervals, self.overflow = point["intervals"], point["overflow"]
+        self.intervals, self.overflow = point.intervals, point.overflow
+        self.note = note_of_number("intervals", settings["number"], self.intervals)
         self.rows = HopHistogram.rows(_theory(scene), {"intervals": [point]})
-        self.counts = point["counts"]
-        # Wide bins, which hold the same intervals once more, come after the equal ones.
+        self.counts = point.counts
+        # Wide bins, which hold the same intervals again, come after the equal ones.
         self._bins = self.rows[: len(self.counts)]
         self.edges = [row["left"] for row in self._bins] + [self._bins[-1]["right"]]
         first, z = self.rows[0], self.rows[0]["z"]
         status = "sampled" if first["mean_stderr"] else "too-few"
         self.mean = Measurement(
-            f"{self.hop}_interval", point["mean"], first["mean_stderr"], first["exact_mean"], z,
-            point["intervals"], status, "time",
+            f"{self.hop}_interval", point.mean, first["mean_stderr"], first["exact_mean"], z,
+            point.intervals, status, "time", streams=_streams("intervals", stream),
         )  # fmt: skip
-        bins = self.rows[:2]
-        at_zero, spread = density_of_chains_at_zero(
-            [row["density"] for row in bins], [row["stderr"] or 0.0 for row in bins],
-            linear="products" in point,
-        )  # fmt: skip
+        density = point.estimate("density_at_zero")
         few = min(self.counts[:2]) < MIN_EVENTS
         exact = None if not scene.is_plain else tails.density_at_zero(scene, self.hop)
-        error, status = (None, "too-few") if few else (spread, "extrapolated")
-        if _events_of_pair(scene) * bins[0]["right"] > RESOLVED_EVENTS:
+        at_zero, error, status = density.value, density.stderr, "extrapolated"
+        if few:
+            error, status = None, "too-few"
+        if _events_of_pair(scene) * point.bin_width > RESOLVED_EVENTS:
             at_zero = error = None
             status = "not-resolved"
         self.at_zero = Measurement(
             "density_at_zero",
             at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
+            streams=_streams("intervals", stream),
         )  # fmt: skip
 
     def __hash__(self):
@@ -279,7 +563,22 @@ class Intervals(Result):
     def more(
         self, number: float | None = None, cores: int = 1, progress: bool | None = None
     ) -> Intervals:
-        """Return ``number`` intervals, these among them, as if asked for in one call."""
+        """Return the result for more intervals, which include these, as one call would.
+
+        Parameters
+        ----------
+        number : float, optional
+            The number of all intervals.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar, as in ``simulate``.
+
+        Returns
+        -------
+        Intervals
+            The result.
+        """
         return self._again({"number": number}, cores, progress)
 
     def _repr_html_(self) -> str:
@@ -287,23 +586,29 @@ class Intervals(Result):
 
     @property
     def density(self) -> list[float]:
-        """The density of each bin, in 1/time."""
+        """The density of each bin, a list, in 1/time."""
         return [row["density"] for row in self._bins]
 
     def frame(self) -> pd.DataFrame:
-        """Return the bins as a pandas ``DataFrame``: left, right, count, density and its error."""
+        """Return the bins as a table.
+
+        Returns
+        -------
+        DataFrame
+            One row per bin, by its left end, with the columns right, count, density and stderr.
+        """
         names = "left", "right", "count", "density", "stderr"
         return _frame([{n: row[n] for n in names} for row in self._bins], index="left")
 
     def __str__(self) -> str:
         lines = [COLUMNS, self.mean.cells(), self.at_zero.cells()]
-        return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
+        return self._with_scene(aligned(lines, COLUMNS.values()))
 
     __repr__ = __str__
 
 
 def _events_of_pair(scene):
-    """Return the wall hits and collisions per time, as many as two of the discs have."""
+    """Return the rate of wall hits and collisions that two of the discs have on average."""
     from twodiscs.dynamics.counting import expected_event_rate
 
     return expected_event_rate(scene) * 2 / scene.discs
@@ -320,29 +625,42 @@ def _theory(scene):
 def seed_of(scene, method, seed, name):
     """Return the seed of the random streams of one job, as the pipeline derives it.
 
-    ``name`` is that of the scene in a configuration; None stands for one that names the box.
+    ``name`` is the name of the scene in a configuration; None means the parameters of the box.
     """
     box = Box.of(check_scene(scene)).parameters()
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be that of a scene, not {name!r}")
+        raise InputError(f"name must be the name of a scene, not {name!r}")
     return stream_seed(seed, repr(box) if name is None else name, method, key(scene.radius))
 
 
 def _named(key, what, names, allowed):
-    """Return some of the texts ``allowed``, in their order, or all of them for None."""
+    """Return the ``names`` in the order of ``allowed``, or all that are allowed for None."""
     if names is None:
         return list(allowed)
-    single = isinstance(names, str | bytes | Mapping) or not isinstance(names, Iterable)
+    if isinstance(names, str):
+        names = [names]
+    single = isinstance(names, bytes | Mapping) or not isinstance(names, Iterable)
     if single or not (names := [*names]):
-        raise InputError(f"{key} must be a list of some of {', '.join(allowed)}, not {names!r}")
+        raise InputError(f"{key} must be some of {', '.join(allowed)}, not {quote(names)}")
     for name in names:
-        check_choice(what, name, allowed)
+        hint = did_you_mean(name, allowed) if isinstance(name, str) and name else ""
+        if not isinstance(name, str) or name not in allowed:
+            raise InputError(f"{what} must be one of {', '.join(allowed)}, not {quote(name)}{hint}")
     return [name for name in allowed if name in names]
 
 
-def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, kept=None):
-    """Return the ``Measurements`` of mean times by molecular dynamics (see the face)."""
+def simulate(
+    scene, error=None, duration=None, seed=1, budget=2e9, events=None, name=None, cores=1,
+    progress=None, kept=None, usual=1e-3,
+):  # fmt: skip
+    """Return the ``Measurements`` of mean times by molecular dynamics (see the face).
+
+    ``usual`` is the error if neither ``error`` nor ``duration`` is given.
+    """
     possible = check_scene(scene).events
+    if duration is not None:
+        return _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept)
+    error = usual if error is None else error
     if isinstance(error, Mapping) and not error:
         raise InputError(f"error must hold some of {', '.join(possible)}, not {{}}")
     if not isinstance(error, Mapping):
@@ -353,7 +671,7 @@ def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, k
         errors = error
     tracked = _named("events", "event", events, possible)
     if missing := [event for event in tracked if event not in errors]:
-        raise InputError(f"error must hold every event, but has none for {missing[0]}")
+        raise InputError(f"error must have a value for every event, but has none for {missing[0]}")
     target = {event: check_error("error", errors[event]) for event in tracked}
     budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
     settings = {
@@ -366,7 +684,54 @@ def simulate(scene, error, seed, budget, events, name, cores=1, progress=None, k
     with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
-    return Measurements("simulate", scene, rows, settings, kept)
+    note = _note_of_error(rows, target, budget, point.events)
+    return Measurements("simulate", scene, rows, settings, kept, stream, note)
+
+
+def _note_of_error(rows, target, budget, events):
+    """Return the note of a run whose minimum work is far more than was asked for, else None."""
+    minimum = f"{events:.2g} wall hits and collisions"
+    if events > 2 * budget:
+        return f"budget {budget:g} asked for: the minimum, one block, is {minimum}"
+    possible = [row for row in rows if row["status"] != "impossible"]
+    if possible and all(
+        row["relative_stderr"] and row["relative_stderr"] < target[row["event"]] / 2
+        for row in possible
+    ):
+        reached = max(row["relative_stderr"] for row in possible)
+        asked = min(target[row["event"]] for row in possible)
+        return f"error {asked:g} asked for, {reached:.2g} reached: the minimum is {minimum}"
+    return None
+
+
+def _timed(scene, error, duration, seed, budget, events, name, cores, progress, kept):
+    """Return the ``Measurements`` of mean times from trajectories of a ``duration`` in all."""
+    if error is not None:
+        raise InputError("error and duration must not both be given: leave out one of them")
+    tracked = _named("events", "event", events, scene.events)
+    budget, stream = check_count("budget", budget), seed_of(scene, "dynamics", seed, name)
+    duration = check_length("duration", duration)
+    settings = {
+        "error": None, "duration": duration, "seed": int(seed), "budget": budget,
+        "events": tracked, "name": name,
+    }  # fmt: skip
+    from twodiscs.dynamics.timed import TimedRun
+
+    # No error is asked for: 1 is the largest that a run takes.
+    run = TimedRun(scene, dict.fromkeys(tracked, 1.0), budget, stream, duration)
+    kept = {} if kept is None else kept
+    with progress_bar(progress, f"simulate r = {scene.radius:g}") as progress:
+        point = run.run(progress, cores, kept)
+    rows = [
+        row | {"target": None, "status": "counted" if row["status"] == "reached" else row["status"]}
+        for row in MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
+    ]
+    total = point.replicas * point.duration
+    note = (
+        f"duration {duration:g} asked for, {total:g} simulated: {point.replicas} trajectories "
+        f"of {point.duration:g} each"
+    )
+    return Measurements("simulate", scene, rows, settings, kept, stream, note)
 
 
 def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
@@ -390,7 +755,8 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
-    return Measurements("sample", scene, rows, settings, kept)
+    note = note_of_number("samples", samples, points["monte_carlo"][0].samples)
+    return Measurements("sample", scene, rows, settings, kept, stream, note)
 
 
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
@@ -398,7 +764,7 @@ def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None)
     check_choice("hop", hop, HOPS)
     if check_scene(scene).moment_of_inertia is not None:
         raise InputError(
-            "scene must have smooth discs, for rough discs in a box are not ergodic and their "
+            "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"
         )
     number, stream = check_count("number", number), seed_of(scene, "intervals", seed, name)
@@ -408,17 +774,18 @@ def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None)
     kept, run = {} if kept is None else kept, IntervalRun(scene, hop, number, stream)
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    return Intervals(scene, point, settings, kept)
+    return Intervals(scene, point, settings, kept, stream)
 
 
 def starts(scene, number, seed, name, progress=None):
     """Return states of the invariant measure, an array with named columns (see the face)."""
     number = check_count("number", number, most=10**8)
     seed = seed_of(scene, "trajectory", seed, name)
+    from twodiscs.comparison.measured.states import with_aliases
     from twodiscs.sampling.starts import records
 
     with progress_bar(progress, f"starts r = {scene.radius:g}") as progress:
-        return records(scene, number, seed, progress)
+        return with_aliases(records(scene, number, seed, progress))
 
 
 def exact_table(width, height, radii, effects):
@@ -461,12 +828,12 @@ def scenes_of(box, radii):
         raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
     scenes = [box.scene(radius) for radius in radii]
     if not scenes:
-        raise InputError("radii must hold one radius at least, not none")
+        raise InputError("radii must have at least one radius, but has none")
     return scenes
 
 
 def the_scene(result):
-    """Return the ``Scene`` of a result, or that of a trajectory; None for anything else."""
+    """Return the ``Scene`` of a result or a trajectory; None for anything else."""
     attributes = getattr(result, "attrs", None)
     scene = result if isinstance(result, Scene) else getattr(result, "scene", None)
     scene = attributes.get("scene") if isinstance(attributes, dict) else scene

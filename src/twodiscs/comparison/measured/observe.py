@@ -1,4 +1,4 @@
-"""Averages over the invariant measure of what a user's own function sees, with their errors."""
+"""Averages over the invariant measure of the values of a user's function, with their errors."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
+from twodiscs.comparison.measured.result import note_of_number
+from twodiscs.comparison.measured.states import with_aliases
 from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, new_wraps, unwrap
 from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
@@ -21,17 +23,39 @@ if TYPE_CHECKING:
 
     from twodiscs.model.scene import Scene
 
-#: Replicas that share a random stream.
+#: Replicas with one random stream.
 BLOCK = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """Averages over independent replicas of the invariant measure of one ``scene``.
+    """Averages over independent replicas of the invariant measure of one scene.
 
-    ``mean`` and ``stderr``, the standard error, are arrays with an entry for each of the ``times``:
-    numbers, or arrays of what the function returns for a replica. ``replicas`` is how many there
-    are, ``settings`` has the seed.
+    ``observe`` and ``diffusion`` return one.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    times : array, shape (times,)
+        The times, ascending, in time.
+    mean, stderr : array, shape (times, …)
+        Averages and their standard errors in the unit of the function. After the first axis they
+        have the shape of its value for one replica.
+    replicas : int
+        The number of independent trajectories.
+    settings : dict
+        {argument: value} with the replicas, the seed and the name.
+    note : str, optional
+        The number of replicas that was asked for, if more were simulated.
+    names : tuple of str, optional
+        The names of averages, for ``frame()``.
+
+    Examples
+    --------
+    >>> found = td.observe(scene, lambda start, now: now["x1"], [0, 1], 4096, seed=1)
+    >>> found.frame().shape
+    (2, 2)
     """
 
     scene: Scene
@@ -40,6 +64,8 @@ class Observed:
     stderr: np.ndarray
     replicas: int
     settings: dict[str, object]
+    note: str | None = None
+    names: tuple[str, ...] = ()
 
     def __eq__(self, other):
         if type(other) is not type(self):
@@ -52,18 +78,29 @@ class Observed:
     __hash__ = None
 
     def frame(self) -> pd.DataFrame:
-        """Return a pandas ``DataFrame`` by time: mean and stderr, numbered if there are several."""
+        """Return a table of the averages.
+
+        Returns
+        -------
+        DataFrame
+            One row per time. The columns are mean and stderr, numbered if there are several, or
+            <name> and <name>_stderr for each of ``names``.
+        """
         import pandas as pd
 
         columns = {}
         for name, values in (("mean", self.mean), ("stderr", self.stderr)):
             flat = values.reshape(len(values), -1)
-            several = flat.shape[1] > 1
-            columns |= {f"{name}_{k}" if several else name: c for k, c in enumerate(flat.T)}
+            numbered = [f"{name}_{k}" for k in range(flat.shape[1])]
+            heads = [f"{n}_stderr" if name == "stderr" else n for n in self.names] or (
+                numbered if len(numbered) > 1 else [name]
+            )
+            columns |= dict(zip(heads, flat.T, strict=True))
         return pd.DataFrame(columns, index=pd.Index(self.times, name="time"))
 
     def __str__(self) -> str:
-        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame()}"
+        note = f"\n\n{self.note}" if self.note else ""
+        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame()}{note}"
 
     __repr__ = __str__
 
@@ -83,53 +120,60 @@ def _times(times):
     raise InputError(f"times must be ascending numbers from 0 on, not {quote(times)}")
 
 
-def _seen(function, start, now):
-    """Return what the ``function`` sees of the replicas, an array with a row for each."""
-    # One start is for all times: what is written into it would spoil the later ones.
+def _values(function, start, now):
+    """Return the values of the ``function``, an array with a row for each replica."""
+    # The function gets the same start for all times: if it wrote into it, later times were wrong.
     start.flags.writeable = now.flags.writeable = False
     returned = function(start, now)
     try:
-        seen = np.asarray(returned)
+        values = np.asarray(returned)
     except (TypeError, ValueError):  # lists of several lengths
-        seen = None
-    if seen is None or seen.dtype.kind not in "biuf" or seen.shape[:1] != start.shape:
+        values = None
+    if values is None or values.dtype.kind not in "biuf" or values.shape[:1] != start.shape:
         allowed = (
-            f"function must return a real number, or as many of them, for each of the {start.size} "
-            "replicas"
+            "function must return a real number, or the same number of them, for each of the "
+            f"{start.size} replicas"
         )
         if returned is None:
             found = "None: is its return missing?"
-        elif seen is None or not seen.shape:
+        elif values is None or not values.shape:
             found = quote(returned)
-        elif seen.dtype.names:
-            found = f"an array with the fields {', '.join(seen.dtype.names)}: choose one of them"
-        elif seen.dtype.kind == "c":
+        elif values.dtype.names:
+            found = f"an array with the fields {', '.join(values.dtype.names)}: choose one of them"
+        elif values.dtype.kind == "c":
             found = (
-                f"complex ones of shape {seen.shape}: return real and imaginary part as two "
+                f"complex ones of shape {values.shape}: return real and imaginary part as two "
                 "columns, np.stack((z.real, z.imag), axis=1)"
             )
         else:
-            found = f"an array of shape {seen.shape} and kind {seen.dtype}"
+            found = f"an array of shape {values.shape} and kind {values.dtype}"
         raise InputError(f"{allowed}, not {found}")
-    return seen.astype(float)
+    return values.astype(float)
 
 
-def _check_finite(seen, times, done):
-    """Raise ``InputError`` for NaN and infinity in what was ``seen`` of block ``done``."""
-    if not np.isfinite(seen).all():
-        replica, time, *_ = np.argwhere(~np.isfinite(seen))[0]
-        value = seen[replica, time][~np.isfinite(seen[replica, time])].flat[0]
+def _check_finite(values, times, done):
+    """Raise ``InputError`` for NaN and infinity in the ``values`` of block ``done``."""
+    if not np.isfinite(values).all():
+        replica, time, *_ = np.argwhere(~np.isfinite(values))[0]
+        value = values[replica, time][~np.isfinite(values[replica, time])].flat[0]
         raise InputError(
             f"function must return finite numbers, not {value} at the time {times[time]:g} of the "
             f"replica {(done - 1) * BLOCK + replica}"
         )
 
 
-def observe(scene, function, times, replicas, seed, name, cores=1, progress=None):
-    """Return what a user's ``function`` sees on average, as ``Observed`` (see the face)."""
+def observe(
+    scene, function, times, replicas, seed, name, cores=1, progress=None, names=(),
+    over_times=lambda values: values,
+):  # fmt: skip
+    """Return the averages of a user's ``function`` as ``Observed`` (see the face).
+
+    ``over_times`` is applied to the values of the replicas of a block, (replicas, times, …), before
+    they are averaged; ``names`` are the names of the averages.
+    """
     stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
-        raise InputError(f"function must be one of two arrays of states, not {quote(function)}")
+        raise InputError(f"function must take two arrays of states, not be {quote(function)}")
     blocks = -(-check_count("replicas", replicas, most=10**9) // BLOCK)
     rate = expected_event_rate(scene)
     if times[-1] * rate > MOST_EVENTS:
@@ -139,23 +183,24 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
         )
 
     def snapshots(block):
-        """Return the states of a block at time 0, and at all times."""
+        """Yield the states of a block at time 0, then at all ``times``."""
         filled, wraps = states(scene, BLOCK, stream, block), new_wraps(scene, BLOCK)
-        yield as_records(scene, filled)
+        yield with_aliases(as_records(scene, filled))
         for step in np.diff(times, prepend=0.0):
             if step:
                 advance_all(scene, filled, wraps, step)
             now = as_records(scene, filled)
             unwrap(scene, now, wraps)
-            yield now
+            yield with_aliases(now)
 
     total = mean = square = None
     with progress_bar(progress, f"observe r = {scene.radius:g}") as progress:
         every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
         for done, (start, *later) in enumerate(every, 1):
-            seen = np.stack([_seen(function, start, now) for now in later], axis=1)
-            _check_finite(seen, times, done)
-            own, spread = seen.mean(axis=0), ((seen - seen.mean(axis=0)) ** 2).sum(axis=0)
+            values = np.stack([_values(function, start, now) for now in later], axis=1)
+            _check_finite(values, times, done)
+            values = over_times(values)
+            own, spread = values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
             if mean is None:
                 total, mean, square = BLOCK, own, spread
             else:
@@ -167,4 +212,30 @@ def observe(scene, function, times, replicas, seed, name, cores=1, progress=None
                 progress(done, blocks)
     stderr = np.sqrt(square / (total - 1) / total)
     settings = {"replicas": total, "seed": int(seed), "name": name}
-    return Observed(scene, times, mean, stderr, total, settings)
+    note = note_of_number("replicas", int(replicas), total)
+    return Observed(scene, times, mean, stderr, total, settings, note, names)
+
+
+def diffusion(scene, times, replicas, axis, seed, name, cores=1, progress=None):
+    """Return squared displacements and their slopes, as ``Observed`` (see the face)."""
+    periodic = check_scene(scene).periodic
+    if not periodic or (axis is not None and not (isinstance(axis, str) and axis in [*periodic])):
+        allowed = f"one of {', '.join(periodic)}" if periodic else "periodic in the scene"
+        raise InputError(
+            f"axis must be {allowed} for diffusion, not {quote(axis)}: displacements between walls "
+            "have a bound"
+        )
+    axis, times = axis or periodic[0], _times(times)
+    if times[0] == 0:
+        raise InputError("times must be above 0 for diffusion, not 0")
+    discs = range(1, scene.discs + 1 if scene.identical else 2)
+
+    def squared(start, now):
+        return sum((now[f"{axis}{n}"] - start[f"{axis}{n}"]) ** 2 for n in discs) / len(discs)
+
+    def with_slopes(values):
+        slopes = np.diff(values, axis=1, prepend=0.0) / (2 * np.diff(times, prepend=0.0))
+        return np.stack([values, slopes], axis=2)
+
+    names = "squared_displacement", "diffusion"
+    return observe(scene, squared, times, replicas, seed, name, cores, progress, names, with_slopes)

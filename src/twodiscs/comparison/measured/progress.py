@@ -1,11 +1,11 @@
-"""How far it is, for who waits: a bar with the time left, in a terminal or a notebook."""
+"""A progress bar with the time left, in a terminal or a notebook."""
 
 import sys
 from contextlib import contextmanager
 
 from twodiscs.model.checks import InputError, quote
 
-#: Seconds before a bar is shown: what is done sooner needs none.
+#: Seconds before a bar appears: shorter work needs none.
 PATIENCE = 1.0
 
 BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
@@ -13,10 +13,10 @@ BAR = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 
 @contextmanager
 def progress_bar(progress, what):
-    """Give a function that takes what is done (None: as before) and how much it will be, or None.
+    """Give a function of the work done (None: as before) and the work in all, or None.
 
-    ``progress`` says whether a bar with the name ``what`` shows it; None means in a terminal or a
-    notebook alone, so that logs stay clean.
+    ``progress`` says whether it shows a bar with the name ``what``; None means only in a terminal
+    or a notebook, so that logs stay clean. Without a bar there is no function, but None.
     """
     if progress is None:
         progress = sys.stderr.isatty() or "ipykernel" in sys.modules
@@ -29,7 +29,7 @@ def progress_bar(progress, what):
     from time import monotonic
 
     with warnings.catch_warnings():
-        # A notebook without widgets has a line of text instead, which is fine.
+        # A notebook without widgets shows a line of text instead, which is enough.
         warnings.simplefilter("ignore")
         from tqdm.auto import tqdm
 

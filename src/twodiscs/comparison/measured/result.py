@@ -1,4 +1,4 @@
-"""A result that knows how it was made: it is saved, read again, and goes on to a smaller error."""
+"""A result with its settings and sums: it can be saved, loaded, and taken to a smaller error."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from twodiscs.model.checks import InputError, quote, writing_to
 if TYPE_CHECKING:
     from twodiscs.model.scene import Scene
 
-#: Where the function is that makes a result of each kind, and is called by its name.
+#: The module of the function that makes a result of each kind; the function has the kind's name.
 MAKERS = {
     "simulate": "measurements",
     "sample": "measurements",
@@ -32,9 +32,9 @@ MAKERS = {
 class Result:
     """A result and how it was made: ``kind`` is the function of the face that made it.
 
-    ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error
-    asked for; ``version`` is that of the package. ``kept`` holds the sums of the blocks of work
-    behind it, {part: {blocks: sums}}, from which it goes on.
+    ``settings`` are its arguments beside the scene, {name: value}, with the seed and the error that
+    was asked for; ``version`` is the version of the package. ``kept`` has the sums of its blocks,
+    {part: {blocks: sums}}, from which it goes on.
     """
 
     kind: ClassVar[str]
@@ -42,9 +42,11 @@ class Result:
     settings: dict[str, object]
     kept: dict[str, dict[int, list]]
     version: str = twodiscs.__version__
+    #: The difference between the work that was asked for and the work that was done, None if none.
+    note: str | None = None
 
     def __eq__(self, other):
-        """Whether a result of the same kind, scene and settings has the same rows."""
+        """Return whether the other result has the same kind, scene, settings and rows."""
         if type(other) is not type(self):
             return NotImplemented
         ours, theirs = ((r.scene, r.settings, r.rows) for r in (self, other))
@@ -53,19 +55,25 @@ class Result:
     __hash__ = None
 
     def _again(self, changes, cores, progress) -> Self:
-        """Return the result of other settings, which takes over what it can of this one."""
+        """Return the result for changed settings, which uses the sums of this one."""
         changes = {name: value for name, value in changes.items() if value is not None}
         if unknown := [name for name in changes if name not in self.settings]:
             raise InputError(
-                f"{unknown[0]} must be left out for a result of {self.kind}: give "
-                f"{' or '.join(f'{n}=' for n in self.settings if n in MORE)} to go on"
+                f"{unknown[0]} must be left out for a result of {self.kind}: to go on, give "
+                f"{' or '.join(f'{n}=' for n in self.settings if n in MORE)}"
             )
         kept = {part: dict(sums) for part, sums in self.kept.items()}
         given = self.settings | changes
         return made(self.kind, self.scene, given, kept, cores=cores, progress=progress)
 
     def to_dict(self) -> dict[str, object]:
-        """Return what ``save`` writes: numbers, texts, lists and dicts."""
+        """Return the result as ``save`` writes it.
+
+        Returns
+        -------
+        dict
+            Numbers, texts, lists and dicts.
+        """
         return {
             "twodiscs": self.version,
             "kind": self.kind,
@@ -78,30 +86,50 @@ class Result:
         }
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the result to ``path``, a JSON file that ``load_result`` reads.
+        """Write the result to a JSON file that ``load_result`` reads.
 
-        Raises ``InputError`` for a path that cannot be written.
+        Parameters
+        ----------
+        path : path-like
+            The file.
+
+        Raises
+        ------
+        InputError
+            For a path that cannot be written.
         """
         text = json.dumps(self.to_dict(), allow_nan=False) + "\n"
         with writing_to(path):
             Path(path).write_text(text, encoding="utf-8")
 
+    def _with_scene(self, text):
+        """Return a ``text`` with the scene above it and the note, if there is one, below."""
+        return "\n\n".join(str(part) for part in (self.scene, text, self.note) if part)
+
     def _html(self, header, lines):
-        """Return an HTML table with the scene above it."""
+        """Return an HTML table with the scene above it and the note, if there is one, below."""
         rows = "".join(
             f"<tr>{''.join(f'<td>{escape(str(text))}</td>' for text in line)}</tr>"
             for line in lines
         )
         head = "".join(f"<th>{escape(name)}</th>" for name in header)
-        return f"<p>{escape(str(self.scene))}</p><table><tr>{head}</tr>{rows}</table>"
+        note = f"<p>{escape(self.note)}</p>" if self.note else ""
+        return f"<p>{escape(str(self.scene))}</p><table><tr>{head}</tr>{rows}</table>{note}"
 
 
-#: Settings by which a result goes on.
-MORE = ("error", "budget", "samples", "number", "hops")
+def note_of_number(what, asked, done):
+    """Return the note that a number was rounded up to whole blocks, None if it was not."""
+    if done == asked:
+        return None
+    return f"{asked} {what} asked for, {done} done: whole blocks"
+
+
+#: Settings that can grow when a result goes on.
+MORE = ("error", "duration", "budget", "samples", "number", "hops")
 
 
 def made(kind, scene, settings, kept, **options):
-    """Return the result of a ``kind`` with these ``settings``, given the sums in ``kept``."""
+    """Return the result of a ``kind`` with these ``settings``; it uses the sums in ``kept``."""
     module = import_module(f"{__package__}.{MAKERS[kind]}")
     return getattr(module, kind)(scene, **settings, **options, kept=kept)
 
@@ -118,8 +146,8 @@ def from_dict(content):
     version = content["twodiscs"]
     if version != twodiscs.__version__:
         raise InputError(
-            f"the result must be of version {twodiscs.__version__}, to have the same numbers, not "
-            f"{quote(version)}"
+            f"the result must be of version {twodiscs.__version__}, so that its numbers are the "
+            f"same, not of {quote(version)}"
         )
     if "results" in content:
         module = import_module(f"{__package__}.{MAKERS[content['kind']]}")
@@ -136,7 +164,7 @@ def from_dict(content):
 def load_result(path):
     """Return the result in a file that its ``save`` wrote (see the face)."""
     if not isinstance(path, str | PathLike) or "\0" in str(path):
-        raise InputError(f"path must be that of a file, not {quote(path)}")
+        raise InputError(f"path must be the path of a file, not {quote(path)}")
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         if not isinstance(content, Mapping):

@@ -1,11 +1,17 @@
-"""Mean times at several radii of one box: one object for all of them."""
+"""Mean times at several radii of one box, in one object."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, overload
 
-from twodiscs.comparison.measured.measurements import Measurements, box_with, scenes_of, simulate
+from twodiscs.comparison.measured.measurements import (
+    Measurements,
+    box_with,
+    rows_by_quantity,
+    scenes_of,
+    simulate,
+)
 from twodiscs.comparison.measured.result import Result
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, quote
@@ -15,9 +21,27 @@ if TYPE_CHECKING:
 
 
 class Scan(Result, Sequence[Measurements]):
-    """The ``Measurements`` of mean times at several radii of one ``box``, in the order of radii.
+    """A sequence of the mean times at several radii of one box, in the order of radii.
 
-    ``settings`` are those of each of them.
+    ``scan`` returns one.
+
+    Parameters
+    ----------
+    results : list of Measurements
+        One for each radius.
+
+    Attributes
+    ----------
+    box : Box
+        The box.
+    settings : dict
+        {argument: value}, the same for each of them.
+
+    Examples
+    --------
+    >>> found = td.scan(1.5, 1.0, [0.2, 0.1], error=0.05, events="any_wall")
+    >>> found.radii, len(found), found[0].scene.radius
+    ([0.1, 0.2], 2, 0.1)
     """
 
     kind = "scan"
@@ -56,15 +80,46 @@ class Scan(Result, Sequence[Measurements]):
         budget: float | None = None,
         cores: int = 1,
         progress: bool | None = None,
+        duration: float | None = None,
     ) -> Scan:
-        """Return the scan with a smaller ``error`` or a larger ``budget`` at each radius.
+        """Return the scan with more work at each radius, which goes on from this one.
 
-        It goes on from this one, and is the same, bit for bit, as one asked for in one call.
+        It is the same, bit for bit, as the result of one call with the new arguments.
+
+        Parameters
+        ----------
+        error : float, str or dict, optional
+            A smaller error.
+        budget : float, optional
+            A larger budget.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar, as in ``simulate``.
+        duration : float, optional
+            A longer time, for a scan that has one.
+
+        Returns
+        -------
+        Scan
+            The scan, which includes the work of this one.
+
+        Raises
+        ------
+        InputError
+            For an argument that is not among the ``settings`` of this scan.
         """
-        return Scan([result.more(error, budget, None, cores, progress) for result in self.results])
+        asked = {"cores": cores, "progress": progress, "duration": duration}
+        return Scan([result.more(error, budget, **asked) for result in self.results])
 
     def to_dict(self) -> dict[str, object]:
-        """Return what ``save`` writes."""
+        """Return the scan as ``save`` writes it.
+
+        Returns
+        -------
+        dict
+            Numbers, texts, lists and dicts.
+        """
         return {
             "twodiscs": self.version,
             "kind": self.kind,
@@ -72,11 +127,17 @@ class Scan(Result, Sequence[Measurements]):
         }
 
     def frame(self) -> pd.DataFrame:
-        """Return a pandas ``DataFrame`` by radius and event, with the columns of mean_times.csv."""
+        """Return a table of all measurements.
+
+        Returns
+        -------
+        DataFrame
+            One row per radius and quantity, the index, with the columns of mean_times.csv.
+        """
         import pandas as pd
 
-        rows = [row for result in self.results for row in result.rows]
-        return pd.DataFrame(rows).set_index(["radius", "event"])
+        rows = [row for result in self.results for row in rows_by_quantity(result.rows)]
+        return pd.DataFrame(rows).set_index(["radius", "quantity"])
 
     def __str__(self) -> str:
         return "\n\n".join(str(result) for result in self.results)
@@ -88,21 +149,21 @@ class Scan(Result, Sequence[Measurements]):
 
 
 def joined(results):
-    """Return the ``Scan`` of results that were saved."""
+    """Return the ``Scan`` of loaded results."""
     return Scan(results)
 
 
 def scan(
-    width, height, radii, error, seed, budget, events, name, cores=1, progress=None, effects=None
-):
+    width, height, radii, error, duration, seed, budget, events, name, cores=1, progress=None,
+    effects=None,
+):  # fmt: skip
     """Return the ``Scan`` of mean times over ``radii`` (see the face)."""
     box = box_with(width, height, {} if effects is None else effects)
     scenes = scenes_of(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(
-            "radii must differ, for the same one has the same random numbers, not "
-            f"{quote([scene.radius for scene in scenes])}; another seed repeats it"
+            "radii must differ, because one radius has the same random numbers each time, not "
+            f"{quote([scene.radius for scene in scenes])}; to repeat a radius, give another seed"
         )
-    return Scan(
-        [simulate(scene, error, seed, budget, events, name, cores, progress) for scene in scenes]
-    )
+    asked = error, duration, seed, budget, events, name, cores, progress
+    return Scan([simulate(scene, *asked, usual=1e-2) for scene in scenes])

@@ -1,4 +1,4 @@
-"""One trajectory as a table, which knows the states between its rows."""
+"""One trajectory as a table, which can compute the states between its rows."""
 
 from __future__ import annotations
 
@@ -10,24 +10,45 @@ import pandas as pd
 
 from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
+from twodiscs.comparison.measured.states import VELOCITIES, component, with_aliases
 from twodiscs.dynamics.trajectory import DISCS, columns, followed
-from twodiscs.model.checks import InputError, as_list, quote
+from twodiscs.model.checks import InputError, as_list, quote, writing_to
 from twodiscs.sampling.starts import components
 
 if TYPE_CHECKING:
-    from twodiscs.model.scene import Scene
+    from os import PathLike
 
-#: The velocity along each axis.
-VELOCITIES = {"x": "u", "y": "v", "z": "w"}
+    from twodiscs.model.scene import Scene
 
 
 class Trajectory(pd.DataFrame):
-    """A trajectory: a row an event, with its time, its name, and the state right after it.
+    """A trajectory: a table with one row per event, its time, its name and the state right after.
 
-    Columns are time, x1, y1, …, xN, yN (the centres, from that of the box), event, z1, z2 of balls,
-    first and second (the discs that the event is of), and u1, v1, …, uN, vN (velocities); w1, w2 of
-    balls and s1, s2, the speeds of the surfaces of rough discs. On periodic axes centres go on
-    beyond the cell.
+    It is a pandas ``DataFrame`` with these columns:
+
+    - time; x1, y1, …, xN, yN: the centres, from the centre of the box; z1, z2 for balls. On
+      periodic axes they go on beyond the cell.
+    - event; first and second, the discs of the event
+    - u1, v1, …, uN, vN: the velocities along x and y, which vx1, vy1 and so on give, too; w1, w2
+      (vz1, vz2) for balls; s1, s2: the speeds of the surfaces of rough discs
+
+    Parameters
+    ----------
+    data, index, columns, dtype, copy : optional
+        The arguments of ``DataFrame``. The function ``trajectory`` returns one.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene, which ``attrs`` holds.
+
+    Examples
+    --------
+    >>> path = td.trajectory(scene, 10, seed=1)
+    >>> bool((path["vx1"] == path["u1"]).all())
+    True
+    >>> path.positions([0.5, 1, 2]).shape  # time, disc, axis
+    (3, 2, 2)
     """
 
     @property
@@ -39,19 +60,42 @@ class Trajectory(pd.DataFrame):
         """The scene, which ``attrs`` holds."""
         return self.attrs["scene"]
 
-    def states_at(self, times: float | Iterable[float]) -> np.ndarray:
-        """Return the states at ``times``, exactly: an array with the named columns of ``starts``.
+    def __getitem__(self, key):
+        if isinstance(key, str) and key not in self.columns and component(key) in self.columns:
+            return super().__getitem__(component(key)).rename(key)
+        if isinstance(key, list) and any(
+            isinstance(name, str) and component(name) != name and name not in self.columns
+            for name in key
+        ):
+            names = [component(name) if isinstance(name, str) else name for name in key]
+            return super().__getitem__(names).set_axis(key, axis=1)
+        return super().__getitem__(key)
 
-        ``times`` are numbers in any order, from the first to the last one of the trajectory.
-        Raises ``InputError`` for others, and where columns of the trajectory are missing, or rows
-        in between, as in a selection of events.
+    def states_at(self, times: float | Iterable[float]) -> np.ndarray:
+        """Return the states at some times, exactly.
+
+        Parameters
+        ----------
+        times : float or iterable of float
+            In any order, from the first to the last one of the trajectory, in time.
+
+        Returns
+        -------
+        structured array, shape (times,)
+            States with the fields of ``starts``.
+
+        Raises
+        ------
+        InputError
+            For other times, and if columns of the trajectory are missing, or rows in between, as in
+            a selection of events.
         """
         names = components(self.scene)
         missing = [name for name in ("time", *names) if name not in self]
         if missing or self.empty:
             raise InputError(
-                "trajectory must have a row at least and all of its columns for the states at a "
-                f"time, not {len(self)} rows without {', '.join(missing) or 'none'}"
+                "trajectory must have all of its columns and at least one row for the states at a "
+                f"time, but has {len(self)} rows and lacks {', '.join(missing) or 'no column'}"
             )
         require_consecutive(self)
         known, times = self["time"].to_numpy(), as_list(times)
@@ -74,15 +118,123 @@ class Trajectory(pd.DataFrame):
                 falling = field if place[0] == "y" else 0.0
                 states[place] += (states[velocity] - falling * since / 2) * since
                 states[velocity] -= falling * since
-        return states
+        return with_aliases(states)
+
+    def positions(self, times: float | Iterable[float] | None = None) -> np.ndarray:
+        """Return the centres of all discs as a plain array.
+
+        Parameters
+        ----------
+        times : float or iterable of float, optional
+            As for ``states_at``; those of the rows if left out.
+
+        Returns
+        -------
+        array, shape (times, discs, axes)
+            In length, from the centre of the box; two axes, three for balls.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``.
+        """
+        return self._along_axes(times, "xyz")
+
+    def velocities(self, times: float | Iterable[float] | None = None) -> np.ndarray:
+        """Return the velocities of all discs as a plain array.
+
+        Parameters
+        ----------
+        times : float or iterable of float, optional
+            As for ``states_at``; those of the rows if left out, right after the event.
+
+        Returns
+        -------
+        array, shape (times, discs, axes)
+            In the speed unit, in which √(v₁² + v₂²) is one for two plain discs.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``.
+        """
+        return self._along_axes(times, "uvw")
+
+    def _along_axes(self, times, letters):
+        # Two events at one time are two rows with different states.
+        states = self if times is None else self.states_at(times)
+        scene = self.scene
+        names = [
+            [f"{letter}{disc}" for letter in letters[: len(scene.axes)]]
+            for disc in range(1, scene.discs + 1)
+        ]
+        missing = [name for disc in names for name in disc if times is None and name not in self]
+        if missing:
+            raise InputError(
+                f"trajectory must have all of its columns, but has no {', '.join(missing)}"
+            )
+        return np.stack(
+            [np.stack([np.asarray(states[n], float) for n in disc], axis=-1) for disc in names],
+            axis=1,
+        )
+
+    def to_xyz(
+        self, path: str | PathLike[str], times: float | Iterable[float] | None = None
+    ) -> None:
+        """Write the trajectory as an extended XYZ file, which ASE, MDAnalysis and OVITO read.
+
+        A frame has the time, the box as its lattice and, for each disc, the species X, its centre,
+        mass, momentum, radius and number. Coordinates begin at a corner of the box. Discs in the
+        plane are in the middle of a lattice whose thickness is the diameter of the larger disc. On
+        periodic axes centres go on beyond the cell.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, which usually ends in .xyz.
+        times : float or iterable of float, optional
+            The times of the frames, as for ``states_at``; without them the times of the rows, which
+            have no equal steps.
+
+        Raises
+        ------
+        InputError
+            As ``states_at``, and for a path that cannot be written.
+        """
+        scene = self.scene
+        at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))
+        centres, velocities = self.positions(times), self.velocities(times)
+        discs, flat = scene.discs, len(scene.axes) == 2
+        radii = scene.radii if discs == 2 else [scene.radius] * discs
+        masses = scene.masses if discs == 2 else [1.0] * discs
+        sides = [scene.side(axis) for axis in scene.axes]
+        if flat:
+            sides.append(2 * max(radii))
+            centres, velocities = (
+                np.pad(a, ((0, 0), (0, 0), (0, 1))) for a in (centres, velocities)
+            )
+        centres = centres + np.array(sides) / 2
+        lattice = " ".join(repr(float(side)) for side in np.diag(sides).flat)
+        periodic = " ".join("T" if axis in scene.periodic else "F" for axis in "xyz")
+        properties = "species:S:1:pos:R:3:masses:R:1:momenta:R:3:radius:R:1:id:I:1"
+        with writing_to(path), open(path, "w", encoding="utf-8", newline="\n") as file:
+            for time, places, speeds in zip(at, centres, velocities, strict=True):
+                file.write(
+                    f'{discs}\nLattice="{lattice}" Properties={properties} pbc="{periodic}" '
+                    f"Time={float(time)!r}\n"
+                )
+                for disc in range(discs):
+                    numbers = (*places[disc], masses[disc], *(masses[disc] * speeds[disc]))
+                    texts = (repr(float(number)) for number in (*numbers, radii[disc]))
+                    file.write(f"X {' '.join(texts)} {disc + 1}\n")
 
 
 def require_consecutive(trajectory):
-    """Raise ``InputError`` where rows of a trajectory, which keep their index, are missing."""
+    """Raise ``InputError`` if rows of a trajectory are missing; their index shows it."""
     index = trajectory.index
     if pd.api.types.is_integer_dtype(index) and (gaps := np.diff(index) != 1).any():
         raise InputError(
-            "trajectory must have all rows from its first to its last one, for the discs move "
+            "trajectory must have all rows from its first to its last, because the discs move "
             f"freely between them, but row {index[gaps.argmax()] + 1} is missing"
         )
 

@@ -1,4 +1,4 @@
-"""The transmission coefficient of a hop: how many of the hops are passages, with its error."""
+"""The transmission coefficient of a hop: the fraction of hops that are passages, with its error."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Estimate
 from twodiscs.comparison.measured.progress import progress_bar
-from twodiscs.comparison.measured.result import Result
+from twodiscs.comparison.measured.result import Result, note_of_number
 from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
 
@@ -24,22 +24,21 @@ if TYPE_CHECKING:
 
     from twodiscs.model.scene import Scene
 
-#: A cluster ends if no hop comes for this many times the time that a disc of speed 1 takes along
-#: the box.
-#: Hops that follow each other after a tenth of that are still correlated; what comes later makes κ
-#: too large by about 1e-3 where hops are most frequent, at a distance of 2⁻⁶, and less elsewhere.
+#: A cluster ends if no hop comes for this number of ``box_time``. Hops that follow each other after
+#: a tenth of that are still correlated. Hops that come later make κ too large, by about 1e-3 at a
+#: distance of 2⁻⁶ from the threshold, where hops are most frequent, and by less elsewhere.
 QUIET = 48
 
-#: Passages must be so rare that this share of them, at most, comes within the gap after another,
-#: and hops so rare that no more of them come at random. Then κ(t) has a plateau there.
+#: The most passages that may come, on average, within the time that ends a cluster, and the most
+#: hops, if they come at random. Below both, κ(t) has a plateau at that time.
 MOST_MERGED, MOST_IN_GAP = 0.1, 0.25
 
-#: Where κ(t) is recorded, in the same times.
+#: The times at which κ(t) is recorded, in units of ``box_time``.
 TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
 
 
 def box_time(scene, hop):
-    """Return how long a disc of speed 1 takes along the axis of a ``hop``, in which it has room."""
+    """Return the time that a disc of speed 1 takes across the box along the axis of a ``hop``."""
     axis = AXIS[hop]
     return scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
 
@@ -64,13 +63,13 @@ def by_clusters(sizes):
 def by_time(sums):
     """Return an ``Estimate`` of C = 1 + 2 ⟨Σ s_0 s_k⟩ at each time, from ``hop_sums``.
 
-    Between walls C is ±1 in every replica, and the error that of a binomial law.
+    Between walls C is ±1 in every replica, so the error is binomial.
     """
     return by_total(sums.sum(axis=0), sums.shape[0] * REPLICAS)
 
 
 def by_total(sums, replicas):
-    """Return what ``by_time`` does, given the ``sums`` over all blocks and the ``replicas``."""
+    """Return the estimates of ``by_time`` from the ``sums`` over all blocks and ``replicas``."""
     net, square = sums[:2] / replicas
     errors = 2 * np.sqrt((square - net**2) / replicas)
     return [
@@ -79,57 +78,82 @@ def by_total(sums, replicas):
 
 
 def are_rare(scene, hop):
-    """Say whether hops are so rare that the time which ends a cluster holds ``MOST_IN_GAP``."""
+    """Return whether the time that ends a cluster has at most ``MOST_IN_GAP`` hops on average."""
     return quiet_time(scene, hop) * exact.passing_rate(scene, hop) <= MOST_IN_GAP
 
 
 def of_order(x):
-    """Return (κ(t)/κ, its derivative) where x passages come in a time on the average: e^(−2x)."""
+    """Return (κ(t)/κ, its derivative), e^(−2x), for x passages in the time on average."""
     left = math.exp(-2 * x)
     return left, -2 * left
 
 
 def of_clusters(x):
-    """Return (fraction of odd clusters over κ, its derivative); x passages come in a gap.
+    """Return (odd clusters per passage, its derivative) for x passages in a gap on average.
 
     A cluster has n passages with probability (1 − e^(−x))^(n−1) e^(−x), and there are e^(−x)
-    clusters for each passage: the odd ones come to 1/(2e^x − 1).
+    clusters for each passage: the sum over odd n is 1/(2e^x − 1).
     """
     left = 1 / (2 * math.exp(x) - 1)
     return left, -2 * math.exp(x) * left**2
 
 
-def plateau(seen, time, mean, left):
-    """Return the coefficient κ that has fallen to the ``Estimate`` ``seen`` in a ``time``.
+def plateau(estimate, time, mean, law):
+    """Return κ, corrected for the passages in a ``time``, from an ``Estimate`` of κ(``time``).
 
-    Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops, and ``left``
-    says what they leave: ``of_order`` or ``of_clusters``. None where the time has more than
-    ``MOST_MERGED`` passages.
+    Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops. The ``law``
+    gives the factor by which they reduce the estimate: ``of_order`` or ``of_clusters``. The result
+    is None if the time has more than ``MOST_MERGED`` passages.
     """
-    value, x = seen.value, seen.value * time / mean
+    value, x = estimate.value, estimate.value * time / mean
     if value <= 0 or x > MOST_MERGED:
         return None
-    for _ in range(50):  # a contraction, for x is small
-        value = seen.value / left(value * time / mean)[0]
+    for _ in range(50):  # converges, because x is small
+        value = estimate.value / law(value * time / mean)[0]
     x = value * time / mean
-    factor, derivative = left(x)
-    return Estimate(value, seen.stderr / (factor + x * derivative), seen.n)
+    factor, derivative = law(x)
+    return Estimate(value, estimate.stderr / (factor + x * derivative), estimate.n)
 
 
 def seed_of(scene, hop, name, seed, what):
-    """Return the seed of the streams of a ``hop``; ``name`` is that of its scene."""
+    """Return the seed of the streams of a ``hop``; ``name`` is the name of its scene."""
     return stream_seed(seed, f"{name} {hop} {what}", "passages", key(scene.radius))
 
 
 @dataclass(frozen=True, repr=False)
 class Transmission(Result):
-    """Which hops of one kind are passages, in one ``scene``.
+    """The fraction of hops of one kind that are passages; ``transmission`` returns one.
 
-    ``coefficient`` is κ as an ``Estimate``, None where hops are so frequent that there is no
-    plateau, ``gap`` the time without a hop that ends a cluster, and ``clusters`` {n: how many of
-    the hops are in a cluster of n}, empty where hops are too frequent to look for them.
-    ``exact_mean`` is the mean time τ between hops. ``times`` and ``curve``, a list of ``Estimate``,
-    are κ(t).
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    hop : str
+        "vertical_hop" or "horizontal_hop".
+    coefficient : Estimate or None
+        The fraction κ with its error, None if hops are so frequent that κ(t) has no plateau.
+    gap : float
+        The time without a hop that ends a cluster.
+    clusters : dict
+        {n: number of hops in clusters of n}, empty if hops are too frequent for clusters.
+    exact_mean : float
+        The mean time τ between hops.
+    times : tuple of float
+        The times of the curve.
+    curve : list of Estimate
+        The fractions κ(t) at these times.
+    settings : dict, optional
+        {argument: value} beside the scene.
+    kept : dict, optional
+        {part: {blocks: sums}} of its work, from which it goes on.
+    note : str, optional
+        The difference between the work that was asked for and the work that was done.
+
+    Examples
+    --------
+    >>> found = td.transmission(td.Scene(1.5, 1.0, 0.246), "horizontal_hop", 2**12, seed=1)
+    >>> found.passage_time.value > found.exact_mean
+    True
     """
 
     scene: Scene
@@ -142,44 +166,68 @@ class Transmission(Result):
     curve: list[Estimate]
     settings: dict[str, object] = field(default_factory=dict)
     kept: dict[str, dict[int, list]] = field(default_factory=dict, compare=False)
+    note: str | None = None
 
     kind = "transmission"
 
     def more(
         self, hops: float | None = None, cores: int = 1, progress: bool | None = None
     ) -> Transmission:
-        """Return the result from more ``hops``, these among them, as if asked for in one call."""
+        """Return the result from more hops, which include these, as one call would.
+
+        Parameters
+        ----------
+        hops : float, optional
+            The number of all hops.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar, as in ``simulate``.
+
+        Returns
+        -------
+        Transmission
+            The result.
+        """
         return self._again({"hops": hops}, cores, progress)
 
     def _repr_html_(self) -> str:
-        lines = [line.rpartition("  ") for line in str(self).splitlines()[2:]]
+        lines = [line.rpartition("  ") for line in self._lines().splitlines()]
         return self._html(("quantity", "value"), [(name, value) for name, _, value in lines])
 
     @property
     def passage_time(self) -> Estimate | None:
-        """The mean time between passages τ/κ as an ``Estimate``, None without a coefficient."""
+        """The mean time between passages τ/κ, an ``Estimate``; None without a coefficient."""
         if self.coefficient is None:
             return None
         value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
         return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
 
     def frame(self) -> pd.DataFrame:
-        """Return κ(t) as a pandas ``DataFrame`` by time: value and standard error."""
+        """Return κ(t) as a table.
+
+        Returns
+        -------
+        DataFrame
+            One row per time, with the columns kappa and stderr.
+        """
         import pandas as pd
 
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
         return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
 
     def __str__(self) -> str:
+        return self._with_scene(self._lines())
+
+    def _lines(self):
         name = self.hop.replace("_", " ")
         if self.coefficient is None:
             return (
-                f"{self.scene}\n\n{name}s come too often, once in {self.exact_mean:.4g}, for a "
+                f"{name}s are too frequent, with a mean time of {self.exact_mean:.4g}, for a "
                 "transmission coefficient; .frame() has κ(t)"
             )
         kappa, passage = self.coefficient, self.passage_time
         return (
-            f"{self.scene}\n\n"
             f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}\n"
             f"mean time between hops, exact  {self.exact_mean:.6g}\n"
             f"mean time between passages  {passage.value:.6g} ± {passage.stderr:.2g}"
@@ -189,7 +237,7 @@ class Transmission(Result):
 
 
 def parts_of(scene, hop, gap, times, blocks, name, seed):
-    """Return the runs {"times": …} of some ``blocks``, and "clusters" where hops are rare."""
+    """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
 
     def clusters(first, stop):
@@ -213,12 +261,12 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     require_passing(scene, hop)
     if AXIS[hop] in scene.periodic:
         raise InputError(
-            f"hop {hop!r} must be between walls for a transmission coefficient, but that axis is "
+            f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
             "periodic"
         )
     blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
-        raise InputError(f"name must be that of a scene, not {quote(name)}")
+        raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
@@ -235,4 +283,5 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
         kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
     curve = by_total(sums, blocks * REPLICAS)
-    return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept)
+    note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
+    return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept, note)

@@ -6,10 +6,10 @@
         radius: LENGTH
         '''radius of the discs'''
 
-declares tails.csv; beside its columns a class has a function ``rows`` that makes its rows. Floats
-are written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
-empty cell is a value that does not exist. The texts are docstrings: to edit one makes no job run
-again.
+declares tails.csv. A class has columns and a function ``rows`` that makes its rows. Floats are
+written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
+empty cell is a value that does not exist. The texts are docstrings, so that no job runs again after
+an edit of one.
 """
 
 import csv
@@ -36,7 +36,7 @@ LENGTH, TIME, RATE, SECONDS = (Column(float, unit) for unit in ("length", "time"
 class Table:
     """A table; a row is a mapping from the names of its columns to values, None for an empty cell.
 
-    A column without a text of its own has that of the class that this one is derived from.
+    If a column has no text, the text of the base class applies.
     """
 
     # Columns that several tables have.
@@ -78,7 +78,7 @@ class Table:
 
     @classmethod
     def of(cls, names):
-        """Return the table of a file whose columns are ``names``: this one, for nearly all."""
+        """Return the table of a file whose columns are ``names``: this class, if not overridden."""
         return cls
 
     @classmethod
@@ -102,7 +102,8 @@ class Table:
     def read(cls, path):
         """Return the rows of the CSV file at ``path`` as dicts, with ``None`` for empty cells.
 
-        Raises ``InputError`` if its columns are not those of the table, or a cell not of its type.
+        The file may have columns that the table does not know, which are left out. Raises
+        ``InputError`` if it lacks a column, or a cell is not of its type.
         """
         columns = cls.columns()
         try:
@@ -110,15 +111,16 @@ class Table:
                 lines = list(csv.reader(file))
         except UnicodeDecodeError:
             raise InputError(f"{path} must be a table {cls.name()}, but is no text") from None
-        if not lines or lines[0] != list(columns):
+        header = lines[0] if lines else []
+        if [name for name in header if name in columns] != list(columns):
             raise InputError(
                 f"{path} must be a table {cls.name()} with the columns {list(columns)}"
             )
         rows = []
         for number, line in enumerate(lines[1:], start=2):
             try:
-                cells = zip(columns.items(), line, strict=True)
-                rows.append({name: _value(column, text) for (name, column), text in cells})
+                cells = dict(zip(header, line, strict=True))
+                rows.append({name: _value(column, cells[name]) for name, column in columns.items()})
             except (ValueError, KeyError):
                 raise InputError(f"{path} has a bad row in line {number}: {line}") from None
         return rows
@@ -130,12 +132,12 @@ class Table:
 
     @classmethod
     def meaning(cls):
-        """Return what a row of the table says."""
+        """Return the meaning of a row of the table."""
         return " ".join(cls.__doc__.split())
 
     @classmethod
     def meanings(cls):
-        """Return {name: what the column means}."""
+        """Return {name: meaning of the column}."""
         texts = {}
         for table in reversed(cls.__mro__[:-1]):
             texts |= _texts(table)
@@ -143,7 +145,7 @@ class Table:
 
 
 def _texts(table):
-    """Return {column: its text} that the statement of a class has, without those it inherits."""
+    """Return {column: its text} of a class, without the texts that it inherits."""
     import ast
     import inspect
     from textwrap import dedent

@@ -2,7 +2,7 @@
 
 from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TRUTH, Column, Table
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
-from twodiscs.comparison.tables.mean_times import MeanTimes, seen_anywhere
+from twodiscs.comparison.tables.mean_times import MeanTimes, rows_without_strips
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.events import EVENTS
 
@@ -15,11 +15,11 @@ class Check(Table):
 
     comparison: TEXT
     """
-    volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and z_spread; where
-    no exact mean time is known flux, that of dynamics over that of Monte Carlo
+    volume, area, mean_time, hop_interval, sum_rule, and over all radii z_mean and z_spread; if no
+    exact mean time is known flux, the time of dynamics over the time of Monte Carlo
     """
     quantity: TEXT
-    """what is compared"""
+    """the quantity that is compared"""
     radius: LENGTH
     """radius of the discs; empty for a statement on all radii"""
     method: TEXT
@@ -41,10 +41,10 @@ class Check(Table):
     """whether |z| ≤ bound; empty where nothing can be compared"""
     independent: TRUTH
     """
-    whether the row is a test, which could fail and follows from no other row: false for what is
-    certain, for counts that are sums of other counts (any_wall of right_wall and top_wall), for
-    what is put together from other rows (any_wall_area of two shells, the sum rule) and for z_mean
-    and z_spread
+    whether the row is a test, which could fail and follows from no other row: false for certain
+    results, for counts that are sums of other counts (any_wall of right_wall and top_wall), for
+    values computed from other rows (any_wall_area of two shells, the sum rule) and for z_mean and
+    z_spread
     """
     status: TEXT
     """status of the estimate in its own table"""
@@ -63,7 +63,7 @@ class Check(Table):
             box,
             Volume.rows(theory, points),
             Areas.rows(box, theory, points, areas),
-            MeanTimes.rows(box, theory, points) + seen_anywhere(box, theory, points),
+            MeanTimes.rows(box, theory, points) + rows_without_strips(box, theory, points),
             HopHistogram.rows(theory, points),
             points.get("dynamics", ()),
             points.get("monte_carlo", ()),

@@ -1,24 +1,24 @@
 """The seconds of jobs, measured and forecast: cost.csv and forecast.csv."""
 
-from twodiscs.comparison.points import by_radius
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Table
+from twodiscs.points.base import by_radius
 
 #: The number of events in the points of a stage.
 WORK = {"monte_carlo": "samples", "dynamics": "events", "intervals": "intervals"}
 
 
 class Cost(Table):
-    """One row per job: what it took. The only table of a scene that differs from run to run."""
+    """One row per job: its time and work. It is the only table of a scene that no run repeats."""
 
     stage: TEXT
-    """monte_carlo, dynamics or intervals; total of the jobs that were forecast"""
+    """monte_carlo, dynamics or intervals; total: all jobs with a forecast"""
     radius: LENGTH
     events: COUNT
     """events simulated, configurations or intervals drawn"""
     seconds: SECONDS
-    """processor time of the job and of its shards; empty where it is not known"""
+    """processor time of the job and of its shards; empty if it is not known"""
     forecast_seconds: SECONDS
-    """processor time that was forecast before the run; empty without a forecast"""
+    """forecast of the processor time, made before the run; empty without a forecast"""
     ratio: NUMBER
     """seconds/forecast_seconds"""
 
@@ -27,13 +27,13 @@ class Cost(Table):
         """Return the rows of the jobs by stage and radius.
 
         ``points`` is {stage: [point, …]}; ``seconds`` and ``forecast`` are {(stage, radius): time},
-        as far as they are known. The last row is the total of what was forecast, if anything was.
+        as far as they are known. The last row is the total of the jobs with a forecast, if any.
         """
         jobs = [(stage, p) for stage in sorted(points) for p in by_radius(points[stage])]
         rows = []
         for stage, point in jobs:
-            job = stage, point["radius"]
-            rows.append(_row(*job, point[WORK[stage]], seconds.get(job), forecast.get(job)))
+            job, events = (stage, point.radius), getattr(point, WORK[stage])
+            rows.append(_row(*job, events, seconds.get(job), forecast.get(job)))
         known = [row for row in rows if row["forecast_seconds"] and row["seconds"] is not None]
         if known:
             columns = "events", "seconds", "forecast_seconds"
@@ -53,14 +53,14 @@ def _row(stage, radius, events, seconds, forecast):
 
 
 class Forecast(Table):
-    """One row per scene and stage: what the configuration is going to take on this machine."""
+    """One row per scene and stage: the time that the configuration needs on this machine."""
 
     scene: TEXT
-    """the scene; all for what is made once, and for the total"""
+    """the scene; all: files of no single scene, and the total"""
     stage: TEXT
     """
-    of a scene: monte_carlo, dynamics, intervals, tables, figures, total; of all: compile and what
-    the key shared names, most of it as round figures, and the total
+    of a scene: monte_carlo, dynamics, intervals, tables, figures, total; of all: compile and the
+    names in the key shared, most of them as round figures, and the total
     """
     radius: LENGTH
     """radius of one job; empty for the sum over a stage"""
@@ -69,10 +69,10 @@ class Forecast(Table):
     events: COUNT
     """wall and disc events, samples, or intervals"""
     seconds: SECONDS
-    """processor time of the work itself, compiled code loaded"""
+    """processor time of the work itself, after compiled code is loaded"""
     startup: SECONDS
-    """time to start the jobs, and of those that only start"""
+    """processor time to start the jobs"""
     cores: COUNT
-    """cores to share the work"""
+    """cores that work"""
     wall_clock: SECONDS
     """(seconds + startup)/cores, or over the jobs if fewer"""

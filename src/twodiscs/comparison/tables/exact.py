@@ -6,15 +6,15 @@ from twodiscs.theory.exact import exact
 
 
 class Grid(Table):
-    """One row per radius: what the scene computes."""
+    """One row per radius that the scene computes."""
 
     radius: LENGTH
     regime: TEXT
     """all-hops, vertical-hops, horizontal-hops or no-hops"""
     ergodic_components: COUNT
-    """disjoint parts of configuration space; empty where it is not known of more than two discs"""
+    """disjoint parts of configuration space; empty if not known, for more than two discs"""
     largest_radius: LENGTH
-    """radius at which the discs have no room left, as far as an arrangement of them is known"""
+    """largest radius at which the discs fit, as far as an arrangement of them is known"""
 
     @staticmethod
     def rows(box, radii):
@@ -38,8 +38,8 @@ class Theory(Table):
     """volume, <event>_area or <event>_time"""
     exact: Column(float, "length⁴, length³ or time")
     """
-    exact value, empty where none is known; where the event is impossible the area is 0, and there
-    is no time
+    exact value, empty if none is known; if the event is impossible, the area is 0 and the time is
+    empty
     """
 
     @staticmethod

@@ -1,10 +1,8 @@
 """Intervals between hops, bin by bin: hop_histogram.csv."""
 
-from itertools import pairwise
-
-from twodiscs.comparison.points import by_radius
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, RATE, TEXT, TIME, Table
 from twodiscs.comparison.tables.exact import ExactValues
+from twodiscs.points.base import by_radius
 
 
 class HopHistogram(Table):
@@ -14,7 +12,7 @@ class HopHistogram(Table):
     event: TEXT
     """the hop"""
     bins: TEXT
-    """equal, as wide as τ/16 or so; wide: the same intervals, in bins that widen with time"""
+    """equal: bins about as wide as τ/16; wide: the same intervals in bins that widen with time"""
     left: TIME
     """lower edge of the bin"""
     right: TIME
@@ -25,13 +23,14 @@ class HopHistogram(Table):
     """count/(intervals × width of the bin)"""
     stderr: RATE
     """
-    its standard error from the spread between independent chains, each of 256 successive intervals
-    or, of more than two discs, of all that begin within a window of time; empty for an empty bin
+    its standard error from the spread between independent chains; a chain has 256 successive
+    intervals or, for more than two discs, all that begin within a window of time; empty for an
+    empty bin
     """
     intervals: COUNT
-    """intervals in all, those beyond the last bin included"""
+    """number of all intervals, including those beyond the last bin"""
     exact_mean: TIME
-    """exact mean interval, empty where none is known"""
+    """exact mean interval, empty if none is known"""
     mean: TIME
     """mean of all intervals"""
     mean_stderr: TIME
@@ -47,55 +46,29 @@ class HopHistogram(Table):
         """
         exact, rows = ExactValues(theory), []
         for point in by_radius(points.get("intervals", ())):
-            mean = _mean(point, exact[point["radius"], f"{point['event']}_time"])
-            start = {"radius": point["radius"], "event": point["event"]}
-            rows += [start | bin_row | mean for bin_row in _bin_rows(point)]
+            mean = _mean(point, exact[point.radius, f"{point.event}_time"])
+            start = {"radius": point.radius, "event": point.event}
+            for one in point.bins():
+                found = one._asdict()
+                density = found.pop("density")
+                found |= {"density": density.value, "stderr": density.stderr or None}
+                rows.append(start | found | mean)
         return rows
 
 
 def _mean(point, exact):
-    """Return what the rows of a point have of the mean, beside the ``exact`` one or None."""
-    from twodiscs.comparison import estimates, scores  # which need numpy and scipy
+    """Return the columns about the mean of a point; the ``exact`` mean may be None."""
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.points.estimates import MIN_EVENTS
 
-    z, stderr, intervals = None, point["stderr"] or None, point["intervals"]
-    if point["chains"] < estimates.MIN_EVENTS:
-        stderr = None
-    if stderr and intervals >= scores.NORMAL and exact is not None:
-        z = scores.student_deviate((point["mean"] - exact) / stderr, point["chains"] - 1)
+    z, mean = None, point.estimate("mean")
+    stderr = mean.stderr or None if mean.n >= MIN_EVENTS else None
+    if stderr and point.intervals >= scores.NORMAL and exact is not None:
+        z = scores.student_deviate((mean.value - exact) / stderr, mean.n - 1)
     return {
-        "intervals": intervals,
+        "intervals": point.intervals,
         "exact_mean": exact,
-        "mean": point["mean"],
+        "mean": mean.value,
         "mean_stderr": stderr,
         "z": z,
     }
-
-
-def _bin_rows(point):
-    """Yield the rows of the bins of a point, equal ones and wide ones."""
-    from twodiscs.comparison import estimates
-
-    width, chains, intervals = point["bin_width"], point["chains"], point["intervals"]
-    equal = {"edges": range(len(point["counts"]) + 1), **point}
-    for bins, histogram in (("equal", equal), ("wide", point["wide"])):
-        names = [name for name in ("counts", "squares", "products") if name in histogram]
-        columns = pairwise(histogram["edges"]), *(histogram[name] for name in names)
-        for (left, right), count, squares, *product in zip(*columns, strict=True):
-            per_chain = chains / (intervals * (right - left) * width)
-            weights, totals, products = {"n": per_chain}, {"n": count}, {"n*n": squares}
-            density = estimates.combination(weights, totals, products, chains)
-            if product:
-                # The counts are over all intervals of a chain, whose number varies.
-                weights |= {"all": -per_chain * count / intervals}
-                products |= {"n*all": product[0], "all*all": point["intervals_squared"]}
-                totals |= {"all": intervals}
-                error = estimates.combination(weights, totals, products, chains).stderr
-                density = estimates.Estimate(density.value, error, chains)
-            yield {
-                "bins": bins,
-                "left": left * width,
-                "right": right * width,
-                "count": count,
-                "density": density.value,
-                "stderr": density.stderr or None,
-            }

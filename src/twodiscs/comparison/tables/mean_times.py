@@ -1,9 +1,8 @@
 """Mean times by molecular dynamics, beside the exact values: mean_times.csv."""
 
-from twodiscs.comparison.points import by_radius
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Table
 from twodiscs.comparison.tables.exact import ExactValues
-from twodiscs.model.events import EVENTS
+from twodiscs.points.base import by_radius
 
 
 class MeanTimes(Table):
@@ -16,24 +15,24 @@ class MeanTimes(Table):
     event: TEXT
     """the event"""
     exact: TIME
-    """exact mean time; empty where the event is impossible, and where no exact value is known"""
+    """exact mean time; empty if the event is impossible or no exact value is known"""
     estimate: TIME
     """
-    copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip with its mean over strata of the
-    starts; empty where none was seen
+    copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip the mean over strata of the
+    initial states; empty without a count
     """
     stderr: TIME
     """
-    standard error from the spread between replicas, in a strip from that within strata; empty when
-    too few to be honest
+    standard error from the spread between replicas, in a strip from the spread within strata; empty
+    if there are too few events for one
     """
     z: NUMBER
     """
-    standard normal deviate, positive when the time is too long; of the mean count, which is
-    unbiased for every T
+    standard normal deviate of the mean count, which is unbiased for every T; positive if the time
+    is too long
     """
     count: COUNT
-    """events counted in all replicas; for walls with all that symmetry makes equal"""
+    """events counted in all replicas; for walls with all events that are equal by symmetry"""
     ergodic_components: COUNT
     replicas: COUNT
     """independent trajectories"""
@@ -42,30 +41,32 @@ class MeanTimes(Table):
     relative_stderr: NUMBER
     """stderr/estimate"""
     target: NUMBER
-    """relative standard error asked for"""
+    """relative standard error that was asked for"""
     status: TEXT
     """
-    reached: the target; budget: stopped by the event budget; too-few: under 100 replicas or 100
-    effective events (clusters count once), or too few initial states to show the crowds of events
-    of rough discs, no honest error; none-seen; impossible: blocked by geometry
+    reached: the target; budget: stopped by the event budget; too-few: no error bar, because of
+    under 100 replicas or 100 effective events (clusters count once), or too few initial states to
+    find the rare ones of rough discs with very many events; none-seen: no event; impossible:
+    blocked by geometry
     """
     bound: TIME
     """
-    where none was seen: lower bound on the mean time at 95 %, allowing for clusters of four events
+    without a count: lower bound on the mean time at 95 %, with an allowance for clusters of four
+    events
     """
     test: TEXT
     starts: TEXT
     """
-    invariant: anywhere, so that dynamics alone gives the time; strip: next to the surface of a rare
-    hop, in an exactly known share of configuration space, so that the share is theory's and the
-    flux through the surface is tested
+    initial states. invariant: in all of configuration space, so that dynamics alone gives the time;
+    strip: next to the surface of a rare hop, in an exactly known share of configuration space, so
+    that the share comes from theory and the test is about the flux through the surface
     """
     share: NUMBER
-    """share of configuration space that starts come from"""
+    """share of configuration space from which the initial states are drawn"""
     copies: COUNT
     """
-    events that count as one, on average: of a wall, the pairs of a disc and a wall that are equal
-    by symmetry and within reach
+    events that count as one, on average: for a wall, the pairs of a disc and a wall that are equal
+    by symmetry and that a trajectory can reach
     """
 
     @staticmethod
@@ -73,87 +74,72 @@ class MeanTimes(Table):
         """Return the rows of dynamics points, for the events that they counted.
 
         ``theory`` are the rows of theory.csv, ``points`` is {"dynamics": [point, …]}. A rare hop
-        has the row of its strip; what starts anywhere saw of it is in ``seen_anywhere``.
+        has the row of its strip; ``rows_without_strips`` has its counts from all initial states.
         """
         return [
-            _row(scene, event, point, exact, point["strips"].get(event))
+            _row(scene, event, point, exact, point.count(event))
             for scene, event, point, exact in _counted(box, theory, points)
         ]
 
 
-def seen_anywhere(box, theory, points):
+def rows_without_strips(box, theory, points):
     """Return the rows that hops with a strip would have without it, as ``MeanTimes.rows`` does."""
     return [
-        _row(scene, event, point, exact)
+        _row(scene, event, point, exact, point.everywhere(event))
         for scene, event, point, exact in _counted(box, theory, points)
-        if event in point["strips"]
+        if point.strip(event)
     ]
 
 
 def _counted(box, theory, points):
-    """Yield (scene, event, point, exact mean time) of what dynamics points counted."""
+    """Yield (scene, event, point, exact mean time) for the events that dynamics points counted."""
     exact = ExactValues(theory)
     for point in by_radius(points.get("dynamics", ())):
-        scene = box.scene(point["radius"])
-        for event in EVENTS:
-            if event in point["counts"]:
-                yield scene, event, point, exact[point["radius"], f"{event}_time"]
+        scene = box.scene(point.radius)
+        for event in point.counted:
+            yield scene, event, point, exact[point.radius, f"{event}_time"]
 
 
-def _row(scene, event, point, exact, strip=None):
-    """Return the row of an event from the counts of a ``point``, or of a ``strip`` of it."""
-    from twodiscs.comparison import estimates, scores  # which need numpy and scipy
-    from twodiscs.sampling.blocks.strata import mean_of
+def _row(scene, event, point, exact, count):
+    """Return the row of an event of a ``point`` from a ``Count`` of it."""
+    from twodiscs.comparison import scores  # which needs numpy and scipy
+    from twodiscs.points.estimates import has_error_bar
     from twodiscs.theory.exact import replicas_needed
 
-    mean, octaves, target = None, None, point["target"][event]
-    if strip is None:
-        octaves = point.get("octaves", {}).get(event)
-        count, squares = point["counts"][event], point["products"][f"{event}*{event}"]
-        status = point["status"][event] if event not in point["strips"] else "counted"
-        strip = point | {"share": 1.0}
-    else:
-        count, squares, status = strip["count"], strip["squares"], strip["status"]
-        mean = mean_of(**strip["strata"])
-    replicas, duration, copies = strip["replicas"], strip["duration"], scene.multiplicity(event)
-    # So long a time would see as many, were starts anywhere, and each wall its own event.
-    whole = duration * copies / strip["share"]
-    estimate = bound = None
-    z, test = scores.mean_time_z(count, squares, replicas, whole, exact, mean)
+    target, copies, status = point.target[event], scene.multiplicity(event), count.status
+    estimate, bound = count.estimate(copies), None
+    z, test = scores.mean_time_z(*count.sums, count.time(copies), exact, count.mean)
     if not scene.is_possible(event):
-        z, test = scores.impossible_z(count)
-        status = "impossible"
-    elif not count:
-        status, bound = "none-seen", estimates.mean_time_bound(replicas, whole / copies)
-    else:
-        estimate = estimates.mean_time(count, squares, replicas, whole, mean)
-        if not estimates.has_error_bar(count, squares, replicas, octaves):
-            status = "too-few"
-            if estimates.has_error_bar(count, squares, replicas):
-                z = test = None  # no law is known for bursts of which the largest are yet to come
-    if strip["share"] == 1 and scene.is_possible(event):
+        z, test = scores.impossible_z(count.count)
+        estimate, status = None, "impossible"
+    elif estimate is None:
+        status, bound = "none-seen", count.bound()
+    elif not has_error_bar(*count.sums):
+        status = "too-few"
+    if count.share == 1 and scene.is_possible(event):
         error = min(target, estimate.relative_stderr) if estimate else target
-        if replicas < replicas_needed(scene, event, error):
-            # The run may have missed the crowds, and its sample would not show that.
-            status, z, test, bound = "too-few" if count else status, None, None, None
-    shown = estimate if status != "too-few" else None
+        if count.replicas < replicas_needed(scene, event, error):
+            # The run may have missed the rare initial states with very many events, and its sample
+            # would not show that.
+            status, z, test, bound = "too-few" if estimate else status, None, None, None
+    with_error = estimate if status != "too-few" else None
     return {
-        "radius": point["radius"],
+        "radius": point.radius,
         "event": event,
         "exact": exact,
         "estimate": estimate and estimate.value,
-        "stderr": shown and shown.stderr,
+        "stderr": with_error and with_error.stderr,
         "z": z,
-        "count": count,
+        "count": count.count,
         "ergodic_components": scene.ergodic_components,
-        "replicas": replicas,
-        "duration": duration,
-        "relative_stderr": shown and shown.relative_stderr,
+        "replicas": count.replicas,
+        "duration": count.duration,
+        "relative_stderr": with_error and with_error.relative_stderr,
         "target": target,
         "status": status,
         "bound": bound,
         "test": test,
-        "starts": "invariant" if strip["share"] == 1 else "strip",
-        "share": strip["share"],
+        "starts": "invariant" if count.share == 1 else "strip",
+        "share": count.share,
         "copies": copies,
     }

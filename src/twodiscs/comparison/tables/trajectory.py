@@ -5,8 +5,8 @@ from twodiscs.comparison.tables.base import COUNT, LENGTH, TEXT, TIME, Table
 
 class Trajectory(Table):
     """
-    One row an event of one trajectory, in order: the state at the event. More than two discs have
-    centres of each. Along periodic axes centres go on beyond the cell.
+    One row per event of one trajectory, in order: the centres of all discs at the event. Along
+    periodic axes centres go on beyond the cell.
     """
 
     time: TIME
@@ -20,15 +20,15 @@ class Trajectory(Table):
     y2: LENGTH
     """disc 2, from the centre of the box"""
     event: TEXT
-    """what happens; a wall is named by its axis and the disc"""
+    """name of the event; a wall hit has the axis of the wall and the disc"""
     z1: LENGTH
     """ball 1; empty in the plane"""
     z2: LENGTH
     """ball 2; empty in the plane"""
     first: COUNT
-    """the disc that the event is of, or the first of two; empty where there is none"""
+    """the disc of the event, or the first of two; empty if the event has no disc"""
     second: COUNT
-    """the second of the two discs that the event is of; empty where there is none"""
+    """the second of the two discs of the event; empty if there is none"""
 
     @classmethod
     def of(cls, names):

@@ -31,18 +31,18 @@ INTERVAL_SUMS = 3
 #: 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
 PAIR = 0.8
 
-#: The same of ``LARGE`` numbers of discs: the time of an event, and what each disc adds to it.
+#: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
 TOUCHED, COMPARED = 50.0, 0.25
 
 trajectory_rate = expected_event_rate
 
 
 def expected_rate(scene, event):
-    """Return how often per time all events happen that count as ``event``; 0 if it is not known."""
+    """Return the rate of all events that count as ``event``; 0 if it is not known."""
     return lockstep.expected_rates(scene).get(event, 0.0)
 
 
-def run_blocks(scene, events, seed, first, stop, duration, *, octaves=None, **shape):
+def run_blocks(scene, events, seed, first, stop, duration, **shape):
     """Count all events in some blocks, see ``counting.run_blocks``; few discs detect all."""
     hops = any(event in HOPS for event in events)
     counts = kernels.run_blocks(scene, seed, first, stop, duration, hops=hops, **shape)
@@ -55,12 +55,12 @@ def block_replicas(scene):
 
 
 def planned(scene, blocks, affordable):
-    """Return the blocks that are planned: as many as are needed, where the rate is known at all."""
+    """Return the number of planned blocks: the number needed, if the rate is known."""
     return min(blocks, affordable)
 
 
 def rare_hops(scene):
-    """Return no hop: strips are those of a pair alone."""
+    """Return no hop: strips exist for two discs only."""
     return ()
 
 
@@ -85,8 +85,8 @@ def mean_interval(scene, hop):
     """Return the mean time between two hops of any pair, maybe within a few per cent only."""
     if not (rate := lockstep.expected_rates(scene).get(hop)):
         raise InputError(
-            f"radius {scene.radius!r} leaves {scene.discs} discs so little room that nothing is "
-            f"known of the time between two events {hop}"
+            f"radius {scene.radius!r} is so large for {scene.discs} discs that the time between "
+            f"two events {hop} is not known"
         )
     return 1 / rate
 

@@ -1,1 +1,1 @@
-"""The kernels of more than two discs, and what they need."""
+"""The kernels of more than two discs, and their constants."""

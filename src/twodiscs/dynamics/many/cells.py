@@ -1,18 +1,18 @@
-"""Counts of events of many equal discs: one trajectory at a time, an event costs what it touches.
+"""Counts of events of many equal discs: one trajectory at a time, with local updates at events.
 
-The law of one event is that of ``lockstep``. Discs have times of their own: a disc flies straight
-from its last event on, and nothing is done for it before its next one. The box is divided into
+The law of one event is that of ``lockstep``. Each disc has its own time: it moves straight from its
+last event on, and is not updated before its next one. The box is divided into
 cells whose sides are longer than σ. Only discs in the same cell or in neighbouring ones can meet,
 so a disc keeps the soonest contact with those, and the time at which it comes to a border of its
 cell. The outermost borders are the walls. A tree of minima has the first of all these times.
 
 A contact is kept by the disc that looked for it last. If the other disc has an event before, the
-contact is out of date; then the first disc looks again at the time of the old contact, before which
-it cannot meet anybody else.
+contact is out of date. The first disc then looks again at the time of the old contact, because it
+cannot meet another disc before.
 
-A hop of two discs is a change of sign of their separation. Both fly straight from the later one of
-their last events on, so all hops of a disc are found at its own events: one comparison for each of
-the other discs. Where no hop is asked for, nothing is compared.
+A hop of two discs is a change of sign of their separation. Both move straight from the later of
+their last events on, so all hops of a disc are found at its events: one comparison for each of the
+other discs. If no hop is counted, there are no comparisons.
 """
 
 from typing import NamedTuple
@@ -42,17 +42,18 @@ from twodiscs.sampling.many.cells import (
 from twodiscs.sampling.many.initial import draw_states
 from twodiscs.sampling.streams import open_stream
 
-#: Times begin at 0 again after that many events of each disc, about: so they lose no digits.
+#: After about this number of events per disc times begin at 0 again, so that they lose no digits.
 EPOCH = 64
 
 
 class Motion(NamedTuple):
-    """The discs on their way, arrays (N,) except the last two.
+    """The state of the discs between events, arrays (N,) except the last two.
 
-    ``time`` is when a disc was at (x, y). ``contact`` is when it meets its ``partner``, unless the
-    number of ``events`` of that is no longer what it was when it was ``seen``. ``border`` is when a
+    A disc was at (x, y) at its ``time``. At ``contact`` it meets its ``partner``, unless the
+    partner's number of ``events`` differs from ``seen``, the number at the search. At ``border`` a
     disc leaves its cell, along y if ``upwards``. ``tree`` has the first of all times in its node 1,
-    that of disc i in the i-th node of its last half, and in any other the earlier of the two below.
+    the time of disc i in the i-th node of its last half, and the earlier of the two nodes below in
+    any other.
     """
 
     x: np.ndarray
@@ -72,7 +73,7 @@ class Motion(NamedTuple):
 
 @compiled
 def new_motion(discs, grid):
-    """Return a ``Motion`` for so many discs, without any content."""
+    """Return an empty ``Motion`` for a number of ``discs``."""
     leaves = 1
     while leaves < discs:
         leaves *= 2

@@ -7,8 +7,8 @@ and pairs of discs are the outer loops, lanes the inner ones, which become vecto
 event costs N(N − 1)/2 contacts.
 
 On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
-ends after half the circumference over the largest relative speed, √2, and then looks again: so no
-third one is reached.
+ends after half the circumference over the largest relative speed, √2, and the search begins again.
+A third image is therefore never reached.
 """
 
 import math
@@ -34,7 +34,7 @@ from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import bulk_measures, rates
 
-#: Events of a replica, and where its initial state takes as long as some ten thousand events.
+#: Events of a replica, and of one whose initial state takes as long as some ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
 #: Events of each disc in a replica of ``LARGE`` numbers of discs.
@@ -60,7 +60,7 @@ PARTS = by_kind(
 
 
 class ManyLaw(NamedTuple):
-    """What the motion depends on: half-ranges of the centres, σ, and the ring or None.
+    """The constants of the motion: half-ranges of the centres, σ, and the ring or None.
 
     ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then.
     """
@@ -343,7 +343,7 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
             old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
             endless, times = np.full(lanes, np.inf), np.zeros(lanes)
             codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-            # Of the last hop, negative before the first one: when it was, and how long ago.
+            # The time of the last hop, negative before the first one, and the time since then.
             elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
             counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
             vertical = VERTICAL, old_y, y
@@ -411,10 +411,10 @@ def of_events(sums, products):
 def expected_rates(scene):
     """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
 
-    Exact where that is known, and else from some insertions (``measures.expected``), within a few
-    per cent. Where these have no room, or see no wall hits or collisions, those are a guess
-    (``replica_duration``). Rates of ``LARGE`` numbers of discs follow from an equation of state,
-    within some ten per cent.
+    Rates are exact if that is known, and otherwise from some insertions (``measures.expected``),
+    within a few per cent. If insertions find no room, the rates of wall hits and collisions are
+    guessed (``replica_duration``), and so is one of them for which insertions give 0. For
+    ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent.
     """
     known = exact.measures(scene)
     if known is None:
@@ -439,11 +439,11 @@ def simulated_events(sums):
 
 
 def replica_duration(scene, events=None):
-    """Return a power of two in which about so many ``events`` happen, within a factor of two.
+    """Return a power of two in which about ``events`` happen, within a factor of two.
 
-    Those are the wall hits of an ideal gas, and what discs do in the room that is left to them
-    below the largest radius. Unless told, ``events`` are 256, or ``EVENTS_OF_CHAIN`` where an
-    initial state takes a chain of moves; ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each.
+    The rate is guessed from the wall hits of an ideal gas and from the distance to the largest
+    radius. By default ``events`` is 256, or ``EVENTS_OF_CHAIN`` if an initial state takes a chain
+    of moves; ``LARGE`` numbers of discs have ``EVENTS_OF_DISC`` each.
     """
     if events is None and scene.discs >= LARGE:
         events = EVENTS_OF_DISC * scene.discs

@@ -1,1 +1,1 @@
-"""The kernels of two discs, with and without effects, and what they need."""
+"""The kernels of two discs, with and without effects, and their constants."""

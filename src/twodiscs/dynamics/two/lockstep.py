@@ -35,19 +35,18 @@ from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
 
-#: Looks at which lanes have ended between two unpackings of the counts: a packed count must stay
-#: below 256.
+#: Searches for ended lanes between two unpackings of the counts: a packed count must be below 256.
 LOOKS = 31
 
-#: Wall and disc events that a replica is meant to last; fewer where an open hop happens less than
-#: so many times in it.
+#: The mean number of wall and disc events in a replica, which is smaller if an open hop happens
+#: less often in it than ``HOPS_PER_REPLICA``.
 EVENTS_PER_REPLICA = 256
 HOPS_PER_REPLICA = 4
 EVENTS_BETWEEN_RARE_HOPS = 64
 
 # How events are counted --------------------------------------------------------------------------
 
-# How a flight shows an event, as a function of the code of its end, of the states before and after,
+# Whether a flight has an event: functions of the code of its end, of the states before and after,
 # of whether the discs are identical, and of gravity (None for both: they are not, there is none).
 
 
@@ -108,7 +107,7 @@ if N > 2 * FIELDS:
 
 
 def _and(add, event, unit):
-    """Return ``add`` extended by an ``event``: it adds a ``unit`` to the count if that is seen."""
+    """Return ``add`` extended by an ``event``: a flight with it adds a ``unit`` to the count."""
     seen, k = inlined(SEEN[event]), TRACKED[DECLARED[event].kind]
 
     @optional(lambda count, code, before, after, identical, gravity, tracked: count)
@@ -124,7 +123,7 @@ def _and(add, event, unit):
 
 
 def _word(events):
-    """Return a function that adds to a packed ``count`` what a flight shows of ``events``."""
+    """Return a function that adds the ``events`` of a flight to a packed ``count``."""
     add = inlined(lambda count, code, before, after, identical, gravity, tracked: count)
     for field, event in enumerate(events):
         add = _and(add, event, 256.0**field)
@@ -149,30 +148,18 @@ def unpack(packed, more, counts, lane):
         counts[e, lane] += (words[e // FIELDS] >> (8 * (e % FIELDS))) & 255
 
 
-@optional(lambda counts, octaves: None)
-def sort_into_octaves(counts, octaves):
-    """Add one replica to ``octaves`` (3, n, ``OCTAVES``): how many there are, Σ N and Σ N²."""
-    for e in range(N):
-        octave, rest = 0, counts[e]
-        while rest > 0:
-            octave, rest = octave + 1, rest >> 1
-        octaves[0, e, octave] += 1
-        octaves[1, e, octave] += counts[e]
-        octaves[2, e, octave] += counts[e] * counts[e]
-
-
 @compiled
 def count_blocks(
     seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, identical, hops, walls,
-    rest, octaves,
+    rest,
 ):  # fmt: skip
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
     the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
-    from ``prism`` unless it is None. ``identical``, whether the discs are that, ``hops``, ``walls``
-    and ``rest``, whether the hits of all walls need a counter, are True or None: what is None is
-    not compiled. Nor are ``octaves``, if they are not an array for ``sort_into_octaves``.
+    from ``prism`` unless it is None. ``identical`` (whether the discs are), ``hops``, ``walls`` and
+    ``rest`` (whether the hits of all walls need a counter) are True or None; nothing is compiled
+    for None.
     """
     rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -193,7 +180,6 @@ def count_blocks(
                     replica_counts[e] = counts[e, i]
                     counts[e, i] = 0
                 replica_counts[ANY_WALLS] = all_walls(replica_counts, rest)
-                sort_into_octaves(replica_counts, octaves)
                 for e in range(N):
                     sums[e] += replica_counts[e]
                     for f in range(e, N):
@@ -236,16 +222,16 @@ def count_blocks(
 
 
 def expected_rate(scene, event):
-    """Return how often per time all events happen that count as ``event``, exactly."""
+    """Return the exact rate of all events that count as ``event``."""
     return exact.rate(scene, event) * scene.multiplicity(event)
 
 
 def replica_duration(scene):
     """Return the time T of one replica, a power of two: some ``EVENTS_PER_REPLICA`` events.
 
-    That is long enough for drawing a start to cost little. Where an open hop happens less than
-    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts remember them:
-    then more and shorter replicas know the mean better for the same work.
+    T is so long that the draw of a start costs little. If an open hop happens less than
+    ``HOPS_PER_REPLICA`` times in it, the discs keep their sides for long, and counts are
+    correlated. More and shorter replicas then give a smaller error for the same work.
     """
     rate = exact.event_rate(scene) * exact.work_per_event(scene)
     duration = nearest_power_of_two(EVENTS_PER_REPLICA / rate)
@@ -262,15 +248,14 @@ def block_replicas(scene):
 
 def run_blocks(
     scene, events, seed, first, stop, duration, *,
-    replicas=REPLICAS, lanes=LANES, sides=(0, 0), octaves=None,
+    replicas=REPLICAS, lanes=LANES, sides=(0, 0),
 ):  # fmt: skip
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
-    ``sides`` chooses the component (see ``draw_configuration``). Only what ``events`` asks for is
-    detected: without a hop among them no crossing is looked for. Returns (sums, products)
-    as ``count_blocks`` does. They are integers: two shards add up to the whole. ``octaves``, an
-    array, is filled as ``sort_into_octaves`` does.
+    ``sides`` chooses the component (see ``draw_configuration``). Only these ``events`` are
+    detected: without a hop among them no crossing is searched. Returns (sums, products) as
+    ``count_blocks`` does, integers that shards can add.
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
@@ -279,7 +264,7 @@ def run_blocks(
     rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        sides, scene.identical or None, hops, walls, rest, octaves,
+        sides, scene.identical or None, hops, walls, rest,
     )  # fmt: skip
 
 
@@ -294,10 +279,10 @@ def proposals_per_event(scene):
 
 
 def work_per_event(scene):
-    """Return how many times as much an event costs as usual, at most, with the draws of starts.
+    """Return an upper bound on the cost of an event over the usual cost, with the draws of starts.
 
-    A start is drawn by proposals, of which ``strip.PROPOSALS_PER_EVENT`` are in what an event costs
-    anyhow.
+    A start is drawn by proposals. The usual cost of an event includes ``strip.PROPOSALS_PER_EVENT``
+    of them.
     """
     proposals = proposals_per_event(scene) / strip.PROPOSALS_PER_EVENT
     return max(exact.work_per_event(scene), proposals)

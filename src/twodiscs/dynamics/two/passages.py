@@ -14,14 +14,14 @@ walls hops alternate in direction, and C(t) is the transmission coefficient
 
 with the density p of the intervals between hops. On a ring (one periodic axis) discs may pass each
 other in the same direction again and again. The net number n(t) of hops, from initial states of the
-invariant measure, has d⟨n²⟩/dt = Γ C(t) with the rate Γ of hops in both directions. So n is in the
-long run a random walk, and with the displacement ℓ by a hop and ν = Γ/2 hops per time in each
-direction D/(ν ℓ²) is the limit of C. It is 1 for hops that know nothing of each other (Machta and
-Zwanzig, Phys. Rev. Lett. 50, 1959 (1983)).
+invariant measure, has d⟨n²⟩/dt = Γ C(t) with the rate Γ of hops in both directions. At long times n
+is a random walk. With the displacement ℓ by a hop and ν = Γ/2 hops per time in each direction,
+D/(ν ℓ²) is the limit of C. It is 1 for independent hops (Machta and Zwanzig, Phys. Rev. Lett. 50,
+1959 (1983)).
 
-Where hops are rare they come in clusters: n hops with less than a ``gap`` of time between one and
-the next. A cluster of odd n is a passage, and since a hop chosen at random is in a cluster of n
-with a weight ∝ n, passages per hop are
+Rare hops come in clusters: n hops with less than a ``gap`` of time between one and the next. A
+cluster of odd n is a passage, and since a random hop is in a cluster of n with a weight ∝ n,
+passages per hop are
 
     κ = ⟨1[n odd]/n⟩
 
@@ -145,7 +145,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
             replica[i], due[i], remaining[i] = started, 0, gap if gap > 0.0 else times[0]
             direction[i], net[i], hops[i] = 1.0, 0.0, 0.0
             if hopping and across(state_at(rows, i, law), horizontal)[1] < 0.0:
-                # Zero counts as positive, so that this one will be seen to hop at time 0.
+                # Zero counts as positive, so a hop will be counted for this one at time 0.
                 direction[i], net[i], hops[i] = -1.0, -1.0, -1.0
             hops[i] += 1.0 if gap > 0.0 else 0.0  # a cluster has the hop at time 0 as well
             started += 1
@@ -171,7 +171,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
                 events[i] += 1.0 if code > END_OF_TIME else 0.0
 
 
-# From a scene to what the kernel needs ----------------------------------------------------------
+# From a scene to the arguments of the kernel ----------------------------------------------------
 
 
 def require_passing(scene, hop):
@@ -180,7 +180,8 @@ def require_passing(scene, hop):
     The axis of the ``hop`` may be periodic, where hops are no events of the scene.
     """
     check_choice("hop", hop, HOPS)
-    of_family(check_scene(scene), "dynamics", "rare_run", "passages")
+    # Replicas start on the surface of the hop: the family must have initial states next to one.
+    of_family(check_scene(scene), "sampling", "origins", "passages")
     require_room(scene)
     periodic = AXIS[hop] in scene.periodic
     if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):

@@ -42,9 +42,9 @@ def record_returns(
 
     The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
     start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. With c intervals
-    of a chain in a bin, Σ c and Σ c² over the chains are added to ``sums`` (2, bins; int64). Bins
-    are of ``width`` from 0, one for what is longer, and the wide ones, of which ``wide`` has one
-    for each of the others. Returns the total time of each chain, (stop − first) × ``chains``
+    of a chain in a bin, Σ c and Σ c² over the chains are added to ``sums`` (2, bins; int64). There
+    are bins of ``width`` from 0 on, one for longer intervals, and wide bins; ``wide`` has the wide
+    bin of each of the others. Returns the total time of each chain, (stop − first) × ``chains``
     doubles in order.
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
@@ -81,8 +81,7 @@ def record_returns(
             start_on_surface(state, draw, surface, start, prism)
             put_state(rows, i, start[:, 0], law)
             chain[i], elapsed[i], age[i] = started, 0.0, 0.0
-            # A start that falls through the surface is seen to cross it at time 0; that is not a
-            # return.
+            # A start with Δ̇ < 0 crosses the surface at time 0 by its sign; that is not a return.
             _, rising = across(state_at(rows, i, law), horizontal)
             left[i] = wanted + (1.0 if rising < 0.0 else 0.0)
             started += 1

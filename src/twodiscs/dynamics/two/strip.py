@@ -1,18 +1,19 @@
 """Rare hops, counted from starts next to their surface.
 
-Relative velocities are bounded, |Δ̇| ≤ β = √(1/m1 + 1/m2), in a field by less: some of the energy
-is in the height of the upper disc. So of all starts only those in the strip |Δ| < βT around the
-surface Δ = 0 of a hop can cross it within T, before or after, and its rate is
+Relative velocities are bounded, |Δ̇| ≤ β = √(1/m1 + 1/m2), in a field by less, because some of the
+energy is in the height of the upper disc. Only starts in the strip |Δ| < βT around the surface
+Δ = 0 of a hop can cross it within T, before or after. The rate of the hop is therefore
 
     P ⟨N⟩ / 2T
 
 with the exact share P of configuration space that is in the strip, and the mean number ⟨N⟩ of
-crossings in [−T, T] over starts of the invariant measure there. No start is left out that counts,
-so that holds for every T. The past of a start is the future of the one with reversed velocities.
-For the same reason a path ends as soon as |Δ| exceeds β times the time that is left.
+crossings in [−T, T] over starts of the invariant measure there. This holds for every T, because
+only starts without a crossing are left out. The past of a start is the future of the start with
+reversed velocities. For the same reason a path ends as soon as |Δ| exceeds β times the time that is
+left.
 
-How far a start is from the surface and how fast it comes says most of whether it will cross, and
-their laws are exact: ⟨N⟩ is a mean over strata of both (``sampling.blocks.strata``).
+Whether a start crosses depends mostly on its distance from the surface and its velocity towards it.
+Their laws are exact, and ⟨N⟩ is a mean over strata of both (``points.strata``).
 """
 
 import math
@@ -32,8 +33,9 @@ from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, nex
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.points.dynamics import Strata, StripCount
+from twodiscs.points.strata import PARTS, fractions_of_speeds, mean_of
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
-from twodiscs.sampling.blocks.strata import PARTS, fractions_of_speeds, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, kinetic_fraction_at, origins
@@ -44,30 +46,30 @@ from twodiscs.theory import exact
 #: states.
 RARE = 40
 
-#: Passes between two looks at which lanes have ended: paths are short.
+#: Passes between two searches for lanes that have ended: paths are short.
 PASSES = 2
 
 #: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
-#: Where that holds for the widest strip, too, there is no neck.
+#: If that holds for the widest strip, too, there is no neck.
 FILL = 0.75
 NO_NECK = 0.97
 
 #: The largest number of wall and disc events in the time 2T, about.
 MOST_EVENTS = 32
 
-#: The share of the time 2T that paths last, about: the more events the less, 1 to 0.55.
+#: The duration of paths over 2T, about: 1 for few events, 0.55 for many.
 LASTING = 0.75
 
-#: The square of a relative error times the count, at most: 0.07 to 0.18 at all radii of the
-#: repository's configuration, and 0.51 for rough discs. It says how many starts are needed.
+#: An upper bound of the squared relative error times the count, from which the number of starts
+#: follows: it is 0.07 to 0.18 at all radii of the repository's configuration, 0.51 for rough discs.
 MARGIN_OF_COUNTS, MARGIN_OF_ROUGH = 0.2, 0.6
 
-#: How many times the time of an event of the ensemble one of these paths takes, roughly: they are
+#: The time of an event of these paths over the time of an event of the ensemble, roughly: paths are
 #: short, and every start is drawn.
 COST_RATIO = 6
 
-#: How many times the time of an event a proposal of a start takes, roughly; and how many proposals
-#: an event of the budget may have. Where it takes more, fewer events are what the budget allows.
+#: The time of a proposal over the time of an event, roughly; and the most proposals that an event
+#: of the budget includes. With more proposals the budget allows fewer events.
 PROPOSAL, PROPOSALS_PER_EVENT = 2, 64
 
 #: Counts of hops and of events share a double: a hop counts as this many events.
@@ -91,7 +93,7 @@ def strip_around(scene, hop, time):
     """Return the ``Strip`` of a ``time`` T of at most ``widest``."""
     within = scene.fastest * time
     if scene.field:
-        # That high up there is less energy left, in the strip that is wide enough in any case.
+        # At this height less kinetic energy is left; the first, wider strip bounds it.
         within *= math.sqrt(neck_of(scene, hop, within).most)
     return Strip(time, within, exact.fraction_near(scene, hop, within))
 
@@ -103,19 +105,19 @@ def _fill(scene, hop, strip):
 
 
 def widest(scene, hop):
-    """Return the largest power of two T whose strip has a share to speak of.
+    """Return the largest power of two T whose strip has an exact share.
 
-    Its |Δ| stays below √2 times the smaller radius, and below the largest one there is.
+    Its |Δ| is below √2 times the smaller radius, and below the largest possible |Δ|.
     """
     limit = min(math.sqrt(2) * min(scene.radii), float(scene.reach(AXIS[hop])))
     return math.ldexp(1.0, math.frexp(0.999 * limit / scene.fastest)[1] - 1)
 
 
 def expected_events(scene, hop, strip):
-    """Return about how many events come in a time 2T: 2βT over the mean room in the neck.
+    """Return an estimate of the number of events in a time 2T: 2βT over the mean room in the neck.
 
-    In a narrow neck equal discs have them at the rate 1.45 over its room, and β is 1.41. Anywhere
-    else a large disc may have more of them, if it fits between two walls with hardly any room.
+    In a narrow neck equal discs have events at the rate 1.45 over its room, and β is 1.41. Outside
+    of it a large disc may have more events, if it hardly fits between two walls.
     """
     arch = strip.within**2 / (6 * scene.contact_distance)
     rate = scene.fastest / (scene.room(hop) + arch)
@@ -125,7 +127,7 @@ def expected_events(scene, hop, strip):
 def strip_of(scene, hop):
     """Return the ``Strip`` for an open ``hop``: as wide as its neck, and not for too many events.
 
-    T is a power of two, and so the same on every machine.
+    T is a power of two, which makes it the same on every machine.
     """
     time = widest(scene, hop)
     while True:
@@ -145,10 +147,10 @@ def fractions_of(scene, hop, strip):
 
 
 def acceptance(scene, hop, strip):
-    """Return the share of proposals that become starts in a ``Strip``, at least; about 1/4 to 1.
+    """Return a lower bound of the acceptance of proposals in a ``Strip``, about 1/4 to 1.
 
-    With effects it may be anything: in a field there is hardly any energy left where the discs can
-    pass, or hardly any of the neck is free.
+    With effects it may be small: in a field hardly any energy may be left at the heights at which
+    the discs can pass, or hardly any of the neck may be free.
     """
     if scene.is_plain:
         return 0.25
@@ -159,8 +161,8 @@ def acceptance(scene, hop, strip):
 def rare_hops(scene):
     """Return the hops that are counted from strips: those that are rare because of a neck.
 
-    But for those whose starts there are too rare themselves to be drawn, as it is with scenes as a
-    whole (``exact.MIN_FRACTION``). They are waited for like everything else, mostly in vain.
+    Hops are left out if the acceptance of starts in their strip is too small, as for whole scenes
+    (``exact.MIN_FRACTION``). They are counted like all other events, mostly without a count.
     """
     return tuple(
         hop
@@ -178,9 +180,9 @@ def count_hops(
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
 
-    A path ends where its discs would have to be faster than ``fastest`` to hop once more. ``sizes``
-    are those of a stratum in |Δ| and in |Δ̇|, were all energy kinetic, and how many of the latter
-    there are, m. Returns starts, Σ N and Σ N² by strata (3, ``PARTS``, m), and the wall and disc
+    A path ends if its discs would have to be faster than ``fastest`` to hop again. ``sizes`` are
+    the size of a stratum in |Δ|, the size of one in |Δ̇| if all energy is kinetic, and the number m
+    of the latter. Returns starts, Σ N and Σ N² by strata (3, ``PARTS``, m), and the wall and disc
     events, all int64. The hops are vertical ones, or horizontal ones if ``horizontal`` is True
     instead of None.
     """
@@ -245,14 +247,14 @@ def count_hops(
 
 @compiled
 def law_reverses(k, law):
-    """Say whether component ``k`` of a start is a velocity or a spin."""
+    """Return whether component ``k`` of a start is a velocity or a spin."""
     return 4 <= k < 8 or k >= (10 if law.depth is not None else 8)
 
 
 def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes=LANES):
     """Count a ``hop`` from starts in a ``Strip``, the blocks ``first`` … ``stop`` − 1.
 
-    Returns (sums, events) as ``count_hops`` does. They are integers: two shards add up.
+    Returns (sums, events) as ``count_hops`` does, integers that shards can add.
     """
     speeds = len(fractions_of_speeds(scene.velocity_components))
     sizes = strip.within / PARTS, scene.fastest / PARTS, speeds
@@ -265,14 +267,14 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
 
 
 def planned(scene, blocks, affordable):
-    """Return the blocks that are planned: as many as are needed; strips share the budget."""
+    """Return the number of planned blocks, the number needed; strips have parts of the budget."""
     return blocks
 
 
 def run_of(scene, hop, target, budget, seed):
     """Return the ``SequentialRun`` that counts a ``hop`` in its strip to an error ``target``.
 
-    Its streams are its own.
+    It has separate streams.
     """
     strip = strip_of(scene, hop)
     seed, fractions = (
@@ -300,36 +302,31 @@ def run_of(scene, hop, target, budget, seed):
 
 
 def relative_error(fractions, sums):
-    """Return the relative standard error of ⟨N⟩, inf where nothing was counted.
+    """Return the relative standard error of ⟨N⟩, inf without a count.
 
-    ``fractions`` are those of ``fractions_of``, ``sums`` is what ``run_blocks`` found by strata.
+    ``fractions`` come from ``fractions_of``, and the ``sums`` by strata from ``run_blocks``.
     """
     mean, error = mean_of(fractions, *sums)
     return error / mean if mean else math.inf
 
 
 def summary(scene, hop, outcome):
-    """Return what was found of a rare ``hop``, for a JSON file.
-
-    That is the duration 2T and the share P of configuration space, numbers of replicas, rounds,
-    wall and disc events, ΣN, ΣN², the status, and of the strata their shares, numbers of starts,
-    ΣN and ΣN².
-    """
+    """Return the ``StripCount`` of a rare ``hop``, in the time 2T, given its ``Outcome``."""
     strip, (sums, events) = strip_of(scene, hop), outcome.sums
     initial_states, counts, squares = sums
-    return {
-        "duration": 2 * strip.time,
-        "share": strip.fraction,
-        "replicas": outcome.blocks * REPLICAS,
-        "rounds": outcome.rounds,
-        "events": int(events),
-        "count": int(counts.sum()),
-        "squares": int(squares.sum()),
-        "status": "reached" if outcome.excess[0] <= 1 else "budget",
-        "strata": {
-            "shares": fractions_of(scene, hop, strip).tolist(),
-            "starts": initial_states.tolist(),
-            "counts": counts.tolist(),
-            "squares": squares.tolist(),
-        },
-    }
+    return StripCount(
+        duration=2 * strip.time,
+        share=strip.fraction,
+        replicas=outcome.blocks * REPLICAS,
+        rounds=outcome.rounds,
+        events=int(events),
+        count=int(counts.sum()),
+        squares=int(squares.sum()),
+        status="reached" if outcome.excess[0] <= 1 else "budget",
+        strata=Strata(
+            shares=fractions_of(scene, hop, strip).tolist(),
+            starts=initial_states.tolist(),
+            counts=counts.tolist(),
+            squares=squares.tolist(),
+        ),
+    )

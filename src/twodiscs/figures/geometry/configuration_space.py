@@ -1,21 +1,32 @@
-"""Configuration space as a product: a square of x1, x2 and a square of y1, y2."""
+"""Configuration space: a section in three dimensions, and the whole as a product of two squares."""
 
-from math import sqrt
+from itertools import combinations, pairwise, product
+from math import cos, pi, radians, sin, sqrt
 
+import numpy as np
 from matplotlib.patches import Polygon
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 
-#: Radius of the discs, over the shorter side, and x and y of the point shown, over √2 r: each lies
-#: where the other one's excluded band does not vanish.
+#: Radius of the discs, over the shorter side, and x and y of the point, over √2 r: neither excluded
+#: band vanishes there.
 RADIUS = 0.16
 POINT = (0.88, 0.72)
 
-#: The place of the point along the diagonal, X or Y, over its largest value at that x or y.
+#: X and Y of the point, its positions along the diagonals, over their largest values.
 ALONG = (0.28, 0.45)
 
 LEFT, RIGHT, GAP, BOTTOM, TOP = 0.27, 0.1, 0.42, 0.3, 0.28
+
+#: Inches between the squares and the prism above them, and the largest height of that.
+BETWEEN, PRISM = 0.42, 1.7
+
+#: From where the prism is seen, in degrees around the vertical and above the horizon.
+AZIMUTH, ELEVATION = -112.0, 24.0
+
+#: Strips of the cylinder, and its colours: outside, where light falls on it or not, and cut.
+STRIPS, SHADES, CUT = 60, ((0.72, 0.60, 0.32), (0.99, 0.95, 0.82)), "#E2CF95"
 
 
 def draw(box, tables):
@@ -23,8 +34,22 @@ def draw(box, tables):
     width, height = drawing.outline(box)
     radius = RADIUS * min(width, height)
     side = (COLUMN - LEFT - RIGHT - GAP) / 2
-    figure = new_figure(BOTTOM + side + TOP)
     halves = (width / 2 - radius, height / 2 - radius)
+    corners = [_seen(corner) for corner in product(*((-n, n) for n in _sizes(halves)))]
+    x, y = zip(*corners, strict=True)
+    extent = (min(x), max(x), min(y), max(y))
+    room = COLUMN - 2 * LEFT
+    inches = drawing.scale(extent[1] - extent[0], extent[3] - extent[2], room, PRISM)
+    squares = BOTTOM + side + TOP
+    figure = new_figure(squares + BETWEEN + inches * (extent[3] - extent[2]))
+    middle = (COLUMN - inches * (extent[1] - extent[0])) / 2
+    axes = drawing.add_axes(figure, middle, squares + BETWEEN - TOP / 2, inches, extent)
+    _prism(axes, halves, sqrt(2) * radius)
+    for text, at in (
+        ("(a)", squares + BETWEEN + inches * (extent[3] - extent[2]) - 0.08),
+        ("(b)", squares),
+    ):
+        figure.text(0.01, (at - 0.02) / figure.get_figheight(), text, va="top")
     for i, (half, colour) in enumerate(zip(halves, (BLUE, VERMILLION), strict=True)):
         left = LEFT + i * (side + GAP)
         axes = drawing.add_axes(figure, left, BOTTOM, side / (2 * half), (-half, half, -half, half))
@@ -42,22 +67,110 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    Configuration space is a product of two squares, one for x1 and x2 and one for y1 and y2,
-    without the overlaps of the discs. With x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and
-    Y, discs overlap if x² + y² < 2r². The dotted band of each square is excluded by the point
+    Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the discs
+    overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far above the
+    middle as below it: a prism, out of which a cylinder is cut whose axis is the diagonal of x1 and
+    x2. (b) The whole is a product of two squares, one for x1 and x2 and one for y1 and y2, without
+    the overlaps. The dotted band of each square is excluded by the point
     shown in the other one; dashed lines are its widest bounds, at ±√2 r. The hatched quarters, in
     which all four coordinates are positive, hold a sixteenth of the volume. Each square is drawn
     to its own scale.
     """
 
 
+def _sizes(halves):
+    """Return half of the sides of the prism, along x1, x2 and y."""
+    return halves[0], halves[0], sqrt(2) * halves[1]
+
+
+def _seen(point):
+    """Return where a point (x1, x2, y) is on the page."""
+    a, e = radians(AZIMUTH), radians(ELEVATION)
+    forward = cos(a) * point[0] + sin(a) * point[1]
+    return cos(a) * point[1] - sin(a) * point[0], cos(e) * point[2] - sin(e) * forward
+
+
+def _towards(direction):
+    """Return how far a ``direction`` points to who looks at the prism."""
+    a, e = radians(AZIMUTH), radians(ELEVATION)
+    return cos(e) * (cos(a) * direction[0] + sin(a) * direction[1]) + sin(e) * direction[2]
+
+
+def _prism(axes, halves, radius):
+    """Draw the prism, with edges that it hides dashed, and the cylinder of a ``radius`` in it."""
+    sizes = _sizes(halves)
+    corners = [*product((-1, 1), repeat=3)]
+    edges = [
+        (one, two)
+        for one, two in combinations(corners, 2)
+        if sum(i != j for i, j in zip(one, two, strict=True)) == 1
+    ]
+    # An edge is hidden if both faces that meet in it look away.
+    shared = [[i if i == j else 0 for i, j in zip(*edge, strict=True)] for edge in edges]
+    hidden = [
+        all(_towards([n * (k == axis) for k in range(3)]) < 0 for axis, n in enumerate(faces) if n)
+        for faces in shared
+    ]
+
+    def draw(edge, **options):
+        ends = [_seen([n * size for n, size in zip(c, sizes, strict=True)]) for c in edge]
+        drawing.line(axes, ends, **options)
+
+    for edge, is_hidden in zip(edges, hidden, strict=True):
+        if is_hidden:
+            draw(edge, colour=GREY, width=0.5, style=(0, (3, 2)), zorder=0)
+    _cylinder(axes, sqrt(2) * halves[0], radius)
+    for edge, is_hidden in zip(edges, hidden, strict=True):
+        if not is_hidden:
+            draw(edge, colour=BLACK, width=0.8)
+    # Along the lower edges that are nearest, and the upright one on the left.
+    drawing.label(axes, "$x_1$", _seen((0, -sizes[1], -sizes[2])), (0, -8))
+    side = 1 if _towards((1, 0, 0)) > 0 else -1
+    drawing.label(axes, "$x_2$", _seen((side * sizes[0], 0, -sizes[2])), (-9, -5))
+    drawing.label(axes, "$y$", _seen((-side * sizes[0], -sizes[1], 0)), (8, 0))
+
+
+def _cylinder(axes, reach, radius):
+    """Draw the cylinder around the diagonal, as far as the prism ``reach``es along that."""
+    angles = np.linspace(0, 2 * pi, STRIPS + 1)
+
+    def at(angle, end):
+        across = radius * cos(angle)
+        along = end * (reach - abs(across))
+        return _seen((*_turned(across, along), radius * sin(angle)))
+
+    dark, light = map(np.array, SHADES)
+    for angle, later in pairwise(angles):
+        middle = (angle + later) / 2
+        facing = _towards((*_turned(cos(middle), 0), sin(middle)))
+        if facing > 0:
+            corners = [at(angle, -1), at(later, -1), at(later, 1), at(angle, 1)]
+            colour = tuple(dark + (light - dark) * facing)
+            axes.add_patch(
+                Polygon(corners, facecolor=colour, edgecolor=colour, lw=0.3, clip_on=False)
+            )
+    for end in (-1, 1):
+        # The two halves of an end lie in two faces of the prism.
+        for first, normal in ((-pi / 2, _end_normal(end, True)), (pi / 2, _end_normal(end, False))):
+            half = [at(angle, end) for angle in np.linspace(first, first + pi, STRIPS)]
+            if _towards(normal) > 0:
+                axes.add_patch(Polygon(half, facecolor=CUT, edgecolor=BLACK, lw=0.6, clip_on=False))
+            else:
+                drawing.line(axes, half, colour=GREY, width=0.4, style=(0, (3, 2)))
+
+
+def _end_normal(end, is_right):
+    """Return the normal of the face in which half of an end lies; ``is_right`` where x1 > x2."""
+    return (end, 0, 0) if is_right == (end > 0) else (0, end, 0)
+
+
 def _turned(across, along):
-    """Return (x1, x2) where (x1 − x2)/√2 = ``across`` and (x1 + x2)/√2 = ``along``."""
+    """Return (x1, x2) with (x1 − x2)/√2 = ``across`` and (x1 + x2)/√2 = ``along``."""
     return (along + across) / sqrt(2), (along - across) / sqrt(2)
 
 
 def _strip(axes, half, depth, **options):
-    """Fill the part of the square where |x1 − x2|/√2 < ``depth``."""
+    """Fill the part of the square with |x1 − x2|/√2 < ``depth``."""
     d = sqrt(2) * depth
     corners = [(-half, -half), (d - half, -half), (half, half - d)]
     corners += [(-x, -y) for x, y in corners]

@@ -1,4 +1,4 @@
-"""The regimes of the integration: where the circle of contact leaves the rectangle of distances."""
+"""The regimes of the integration: the sides at which the contact circle leaves the rectangle."""
 
 from itertools import pairwise
 from math import acos, asin, cos, degrees, pi, sin
@@ -10,7 +10,7 @@ from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, new_figure
 from twodiscs.model.box import Box
 
-#: The radius drawn for a regime: how far it lies between the regime's limits.
+#: The radius drawn for a regime, as a fraction of the way between the regime's limits.
 FRACTION = {"all-hops": 0.55, "vertical-hops": 0.5, "horizontal-hops": 0.5, "no-hops": 0.3}
 
 HEADINGS = {
@@ -79,7 +79,7 @@ def caption(shown):
 
 
 def _panel(axes, scene, points):
-    """Draw the rectangle of one scene; ``points`` is how many points one unit takes."""
+    """Draw the rectangle of one scene; ``points`` is the length of one unit in points."""
     wide, high, sigma = scene.range_x, scene.range_y, scene.contact_distance
     alpha = asin(high / sigma) if high < sigma else pi / 2
     beta = acos(wide / sigma) if wide < sigma else 0
@@ -123,7 +123,7 @@ def _angle(axes, name, angle, radius, shown):
 
 
 def _ends(axes, name, end, sigma, points, at, offset):
-    """Name the end of an axis and, if the circle of contact meets it, that place."""
+    """Name the end of an axis and, if the contact circle crosses the axis, the crossing."""
     meets = sigma < end
     apart = max(0, 10 - (end - sigma) * points) / 2 if meets else 0
     drawing.label(axes, name, at(end), offset(apart))

@@ -1,4 +1,4 @@
-"""The largest radius: the jammed discs, and what is open to discs of any radius in any box."""
+"""The largest radius: the jammed discs, and the possible hops at any radius in any box."""
 
 from itertools import pairwise
 from math import hypot
@@ -9,7 +9,7 @@ from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, COLUMN, GREY, new_figure
 from twodiscs.model.box import Box
 
-#: Inches: the tallest drawing of the box, the room around it, the map beneath and its margins.
+#: Inches: the tallest drawing of the box, the space around it, the map beneath and its margins.
 TALLEST, LEFT, RIGHT, ABOVE, BENEATH = 1.75, 0.34, 0.58, 0.08, 0.42
 MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.42, 0.1, 0.36, 1.5
 
@@ -61,7 +61,7 @@ def _jammed(axes, width, height):
 def _side(axes, name, end, centre, at, offset, **align):
     """Draw the dimension lines of a side from −``end`` to ``end``, with centres at ±``centre``.
 
-    ``at`` returns the point that is so far along the side and so far away from it.
+    ``at(along, away)`` returns the point at this distance along the side and away from it.
     """
     point = drawing.points(axes)
     near, far = 4 * point, 11 * point
@@ -82,7 +82,7 @@ def _map(axes, box):
     shape = max(width, height) / min(width, height)
     last = 3.4
 
-    # Up to twice as long as short the discs jam along a diagonal, beyond they span the short side.
+    # Up to the aspect ratio 2 the discs jam along a diagonal, beyond it they span the short side.
     bent = [1 + i / 100 for i in range(101)]
     passing = [x / 4 for x in bent]
     largest = [Box(x, 1).largest_radius for x in bent]

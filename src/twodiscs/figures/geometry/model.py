@@ -77,7 +77,7 @@ def _disc(axes, number, centre, radius, velocity):
     drawing.arrow(axes, centre, head, colour=colour, width=1)
     beyond = (velocity[0] / size, velocity[1] / size)
     drawing.label(axes, rf"$\mathbf{{v}}_{number}$", head, beyond, color=colour)
-    # On the side towards the middle of the box, where there is room.
+    # On the side towards the middle of the box, which is empty.
     rim = (x - 0.6 * radius, y + copysign(0.8 * radius, velocity[1]))
     offset = (-4, copysign(5, velocity[1]))
     drawing.label(axes, rf"$\mathbf{{x}}_{number}$", rim, offset, color=colour)

@@ -1,4 +1,4 @@
-"""The shell of thickness ε around a surface in configuration space: of a hop and of a collision."""
+"""The shells of thickness ε around two surfaces in configuration space: a hop and a collision."""
 
 from math import sqrt
 

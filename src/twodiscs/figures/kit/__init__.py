@@ -1,1 +1,1 @@
-"""What the figures share: style, panels, curves, and how events and limits are called."""
+"""The kit of all figures: style, panels, curves, and the names of events and limits."""

@@ -1,4 +1,4 @@
-"""What a figure shows, as captions ask for it, and the sentences that several captions share.
+"""``Shown``, the questions of captions about a figure, and the sentences of several captions.
 
 The module of a figure has a function ``caption(shown)`` beside ``draw``. It takes a ``Shown`` and
 returns plain text; line breaks and indentation in it do not matter.
@@ -20,10 +20,10 @@ from twodiscs.model.box import Box
 
 @dataclass(frozen=True)
 class Shown:
-    """What a figure shows: ``quantities`` of a ``box``, from tables with these ``rows``.
+    """The content of a figure: ``quantities`` of a ``box``, from tables with these ``rows``.
 
     ``quantities`` is a set of names as in theory.csv. Each of the three is None if it is not known:
-    every question about it is then answered by yes, and the box is plain.
+    every method then returns True, and the box is plain.
     """
 
     box: Box | None = None
@@ -46,22 +46,22 @@ class Shown:
         return "discs" in self.effects
 
     def has(self, effect):
-        """Say whether the scene has two discs and this ``effect``."""
+        """Return whether the scene has two discs and this ``effect``."""
         return effect in self.effects and not self.many
 
     @property
     def square(self):
-        """Whether the box is square, and neither a field nor a periodic axis tells x from y."""
+        """Whether the box is square, and neither a field nor a periodic axis distinguishes x, y."""
         same = self.effects.keys().isdisjoint({"field", "periodic"})
         return same and (self.box is None or not self.is_longer_than(1))
 
     def is_longer_than(self, ratio):
-        """Say whether the longer side of the box is more than ``ratio`` times the shorter one."""
+        """Return whether the longer side of the box is more than ``ratio`` times the shorter."""
         box = self.box
         return box is None or max(box.width, box.height) > ratio * min(box.width, box.height)
 
     def is_marked(self, *names):
-        """Say whether vertical lines mark the radii with all of these ``names``."""
+        """Return whether vertical lines mark the radii with all of these ``names``."""
         return self.box is None or self.lines.issuperset(names)
 
     @property
@@ -71,17 +71,17 @@ class Shown:
         return {piece for some in pieces for piece in some} - {LARGEST}
 
     def shows(self, *quantities):
-        """Say whether the figure shows all of these ``quantities``."""
+        """Return whether the figure shows all of these ``quantities``."""
         return self.quantities is None or self.quantities.issuperset(quantities)
 
     def any_row(self, condition):
-        """Say whether ``condition`` is true of any row."""
+        """Return whether ``condition`` is true for any row."""
         return self.rows is None or any(map(condition, self.rows))
 
     def if_any(self, condition, text):
-        """Return the ``text`` that explains a symbol if ``condition`` is true of any row.
+        """Return the ``text`` that explains a symbol if ``condition`` is true for any row.
 
-        If the rows are not known the text has a condition of its own.
+        If the rows are not known, the text begins with "If there are any".
         """
         if self.rows is None:
             text = " ".join(text.split())
@@ -90,12 +90,12 @@ class Shown:
 
 
 def is_judged(row):
-    """Say whether a ``row`` has a residual to be drawn: one that is not certain to be zero."""
+    """Return whether the residual of a ``row`` is drawn: there is one, and it may differ from 0."""
     return row.get("z") is not None and row.get("test") != "certain"
 
 
 def is_unknown(rows):
-    """Say whether the ``rows`` have estimates, but no exact value is known of any of them."""
+    """Return whether the ``rows`` have estimates, but no exact value is known for any of them."""
     measured = [row for row in rows if row.get("estimate") is not None]
     return bool(measured) and all(row.get("exact") is None for row in measured)
 
@@ -112,13 +112,13 @@ measured and not the waiting time.
 
 
 def _in_bursts(row):
-    """Say whether no law is known for the counts of a row of mean_times.csv."""
+    """Return whether no law is known for the counts of a row of mean_times.csv."""
     few = row.get("status") == "too-few"
     return few and "replicas" in row and row["exact"] is not None and row["z"] is None
 
 
 def symbols(shown, note):
-    """Return what explains crosses and arrows in figures of a ``note``, one of ``NOTES``."""
+    """Return the text about crosses and arrows in figures of a ``note``, one of ``NOTES``."""
     text = shown.if_any(
         lambda row: row.get("status") == "too-few" and not _in_bursts(row),
         "Crosses are estimates from too few events for an error bar.",
@@ -138,11 +138,11 @@ def symbols(shown, note):
     return text
 
 
-# Notes that several figures share -----------------------------------------------------------------
+# Notes of several figures -------------------------------------------------------------------------
 
 
 def _lines(shown):
-    """Return what vertical lines mark."""
+    """Return the text about vertical lines."""
     text = _lines_of_plain(shown) if shown.plain else _other_lines(shown)
     if shown.has("radius_ratio"):
         text += " The radius r is that of disc 1."
@@ -171,7 +171,7 @@ def _lines_of_plain(shown):
 
 
 def _other_lines(shown):
-    """Return what vertical lines mark in scenes with effects or with more than two discs."""
+    """Return the text about vertical lines in scenes with effects or with more than two discs."""
     if not shown.lines:
         return " The vertical line marks the largest radius, r_max."
     text = " Vertical lines mark the largest radius, r_max, and the radii where something changes."
@@ -194,7 +194,7 @@ _RESIDUALS = " Residuals z beneath are in standard errors, with guide lines at Â
 
 
 def sampled(shown):
-    """Return what figures of volumes explain in the same words."""
+    """Return the text of figures of volumes."""
     text = ERROR_BARS + _lines(shown)
     if shown.has("field"):
         text += " In a field volumes and areas are weighted with the invariant density."
@@ -202,7 +202,7 @@ def sampled(shown):
 
 
 def shells(shown):
-    """Return what figures of areas explain in the same words."""
+    """Return the common text of figures of areas."""
     text = sampled(shown)
     if shown.any_row(is_judged):
         text += """
@@ -213,10 +213,10 @@ def shells(shown):
 
 
 def simulated(shown):
-    """Return what figures of dynamics explain in the same words."""
+    """Return the common text of figures of dynamics."""
     text = ERROR_BARS + _lines(shown)
     return text + (_RESIDUALS if shown.any_row(is_judged) else "")
 
 
-#: What captions of several figures share, {name: function of a ``Shown``}.
+#: The common texts of captions, {name: function of a ``Shown``}.
 NOTES = {"sampled": sampled, "shells": shells, "simulated": simulated}

@@ -8,20 +8,20 @@ from twodiscs.comparison.tables.exact import Theory
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
 
-#: Closest approach to the limits of a regime, over its length; the latter for scenes with effects.
+#: The closest approach to the limits of a regime, over its length; ``FARTHER`` is for effects.
 CLOSEST, FARTHER = 1e-9, 1e-5
 
-#: Radii in each regime: like Chebyshev nodes, which crowd quadratically towards both ends, where
-#: curves bend, and in geometric progression from the last of them on. With effects the theory takes
-#: longer, and has fewer; of four discs and more it takes up to a minute near the end of a regime.
+#: The number of radii in each regime. They are Chebyshev nodes, which are dense at both ends, where
+#: curves bend, and go on in geometric progression to the limits. Effects have fewer, because their
+#: theory takes longer, and four or more discs have the fewest: one radius takes up to a minute.
 NODES, FEWER, FEWEST, GEOMETRIC = 96, 56, 24, 8
 
 
 def branches(box, others=()):
     """Return one ascending array of radii for each regime of a ``Box``, none on its limits.
 
-    The first one starts at 1e-4 of its length, where the law for small radii has long set in.
-    ``others`` are more limits, such as those of a box that this one is compared with.
+    The first one starts at 1e-4 of its length, where the law for small radii holds. ``others`` are
+    more limits, such as the limits of another box in the same figure.
     """
     own = [radius for radius, _ in limits(box)]
     ends = sorted({0, *own, *(radius for radius in others if radius < own[-1])})
@@ -41,9 +41,9 @@ def branches(box, others=()):
 def exact(box, others=()):
     """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
 
-    Quantities are named as in theory.csv. Between two regimes stands a NaN, so that a line drawn
-    through the values is never joined across a limit, where some of them jump; NaN also means that
-    an event is impossible, or no exact value known. ``others`` are more limits, as in ``branches``.
+    Quantities are named as in theory.csv. A NaN between two regimes breaks a line through the
+    values at a limit, where some of them jump. NaN also means that an event is impossible, or that
+    no exact value is known. ``others`` are more limits, as in ``branches``.
     """
     radii, rows = [], []
     for branch in branches(box, others):

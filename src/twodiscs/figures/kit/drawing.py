@@ -1,7 +1,7 @@
 """Drawings to scale: panels, dimension lines, discs.
 
-A panel's coordinates are lengths of the box; where something is placed on the page is in inches,
-and how far a label stands from what it names is in points.
+A panel's coordinates are lengths of the box. Positions on the page are in inches. The distance of a
+label from its object is in points.
 """
 
 from matplotlib.patches import Circle, Rectangle
@@ -11,7 +11,7 @@ from twodiscs.figures.kit.style import BLACK, BLUE, COLUMN, GREY, VERMILLION, ne
 #: Tallest drawing, in inches.
 TALLEST = 3.6
 
-#: The longest box drawn to scale, over its short side; it has all that longer ones have.
+#: The longest box drawn to scale, over its short side; it shows everything that longer boxes show.
 LONGEST = 4
 
 #: Fill and outline of disc 1 and disc 2.
@@ -19,12 +19,12 @@ DISCS = (("#CFE3F1", BLUE), ("#F8DDC8", VERMILLION))
 
 
 def outline(box, longest=LONGEST):
-    """Return (width, height) of a ``Box`` as drawn: longer than ``longest`` to one is shortened."""
+    """Return the sides of a drawn ``Box``, the longer cut to ``longest`` times the shorter."""
     return min(box.width, longest * box.height), min(box.height, longest * box.width)
 
 
 def scale(width, height, room_x, room_y):
-    """Return the inches per unit at which ``width`` × ``height`` fits into the room, in inches."""
+    """Return the inches per unit at which ``width`` × ``height`` fits into the given inches."""
     return min(room_x / width, room_y / height)
 
 
@@ -32,7 +32,7 @@ def add_axes(figure, left, bottom, inches, extent):
     """Add a panel without frame and ticks and return its axes.
 
     Its lower left corner is ``left``, ``bottom`` inches from the figure's, one unit is ``inches``
-    long, and ``extent`` is (x0, x1, y0, y1). What is drawn may reach beyond.
+    long, and ``extent`` is (x0, x1, y0, y1). Lines may cross its edges.
     """
     x0, x1, y0, y1 = extent
     across, up = figure.get_size_inches()
@@ -75,7 +75,7 @@ def dimension(axes, start, end, text, offset, **options):
 
 
 def line(axes, points, colour=GREY, width=0.5, style="-", **options):
-    """Draw a line through ``points``, clipped by nothing."""
+    """Draw a line through ``points``, without clipping."""
     settings = {"color": colour, "linewidth": width, "linestyle": style, "clip_on": False} | options
     axes.plot(*zip(*points, strict=True), **settings)
 
@@ -95,7 +95,7 @@ def disc(axes, number, centre, radius):
 
 
 def points(axes):
-    """Return the length of the box that one point on the page stands for."""
+    """Return the length in the box that corresponds to one point on the page."""
     x0, x1 = axes.get_xlim()
     inches = axes.get_position().width * axes.figure.get_figwidth()
     return (x1 - x0) / (72 * inches)

@@ -1,15 +1,15 @@
-"""The radii at which something ends, and their names, for drawings and for axes."""
+"""The radii at which hops become blocked or discs jam, and their names, for drawings and axes."""
 
 from functools import cache
 
 from twodiscs.model.events import AXIS, HOPS
 
-#: What the largest radius is called, and the sides at a quarter of which hops become blocked.
+#: The name of the largest radius, and the names of the radii at which hops become blocked.
 LARGEST, QUARTERS = r"r_{\mathrm{max}}", {"x": "h/4", "y": "w/4"}
 
-#: The radii of a box with effects at which something changes: hops become blocked, in a field the
-#: top wall comes within reach, disc 1 can no longer change sides; where an axis is periodic, discs
-#: can no longer pass each other. Where two are the same, hops give the name, or what comes first.
+#: The names of radii of a box with effects: hops become blocked, disc 1 can no longer change sides,
+#: in a field it can reach the top wall, on a periodic axis discs can no longer pass each other. If
+#: two radii are the same, the name is that of a hop, or else the first.
 VERTICAL, HORIZONTAL = r"r_{\mathrm{v}}", r"r_{\mathrm{h}}"
 TOP, ACROSS_X, ACROSS_Y = r"r_{\mathrm{t}}", r"r_{\mathrm{x}}", r"r_{\mathrm{y}}"
 CHANGES = {
@@ -27,13 +27,12 @@ CHANGES = {
 def limits(box):
     """Return ((radius, name in mathtext), …) of a ``Box``, ascending.
 
-    Of more than two discs they are as with effects.
-
-    They are h/4 and w/4, where they fit, and the largest radius. With effects they are r_v and r_h,
-    where vertical and horizontal hops become blocked; r_t, from which on discs rise to the top wall
-    in a field; r_x and r_y, where disc 1 loses its way to the other side of disc 2, if that is not
-    where the hop becomes blocked; with a periodic axis, the radii at which σ = r1 + r2 is half of a
-    side; and the largest radius, which a field may lower.
+    For two plain discs they are h/4 and w/4, if discs of these radii fit, and the largest radius.
+    With effects, and for more discs, they are r_v and r_h, at which vertical and horizontal hops
+    become blocked. In a field r_t is the radius from which on disc 1 can rise to the top wall. At
+    r_x and r_y disc 1 loses its way to the other side of disc 2, if the hop is not blocked there.
+    A periodic axis adds the radii at which σ = r1 + r2 is half of a side. The last one is the
+    largest radius, which a field may lower.
     """
     names = {}
     if box.is_plain:

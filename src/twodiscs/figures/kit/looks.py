@@ -1,9 +1,9 @@
-"""How events look in every figure: their name, colour and marker."""
+"""The name, colour and marker of each event, the same in every figure."""
 
 from twodiscs.figures.kit.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 from twodiscs.model.events import EVENTS
 
-#: (colour, marker) of the events in their order; either of the two tells them apart.
+#: (colour, marker) of the events in their order; all colours differ, and all markers.
 _LOOKS = (
     (BLUE, "o"),
     (VERMILLION, "s"),
@@ -24,6 +24,6 @@ LOOKS = dict(zip(EVENTS, _LOOKS, strict=False))
 
 
 def name_of(event):
-    """Return what an event is called: "vertical hops", "disc collisions", "right wall"."""
+    """Return the name of an event for people: "vertical hops", "disc collisions", "right wall"."""
     words = event.replace("_", " ")
     return words if words.endswith("wall") else f"{words}s"

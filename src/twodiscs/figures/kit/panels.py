@@ -1,9 +1,9 @@
 """Estimates against exact curves over the radius, with residuals beneath.
 
 A series is drawn from rows of a table: the exact curve on top of open symbols with error bars, one
-standard error each. Rows without an honest error are crosses, and where nothing was seen an arrow
-stands on the lower bound of the mean time. Radii at which a regime ends are marked across both
-panels and named above.
+standard error each. Rows without an error are crosses. If no event was counted, an arrow begins at
+the lower bound of the mean time. Vertical lines through both panels mark the radii at which a
+regime ends, with names above.
 """
 
 import math
@@ -29,19 +29,19 @@ MAIN, GAP, LOWER = 1.9, 0.07, 0.82
 #: Inches and points: a second line above, for the box and its effects.
 LINE, ABOVE = 0.13, 14
 
-#: Points by which the name of a box gives way to the power of ten of the ordinate beside it.
+#: Points by which the name of a box moves aside for the power of ten of the ordinate.
 FACTOR = 9
 
-#: The digits of a box, and of a radius, that leave room for something beside them.
+#: The most digits of a box and a radius that leave space for something beside them.
 BESIDE = 11
 
-#: How many of the box, its effects and what else is said of it stand in one line.
+#: The most pieces of a heading (the box, its effects and additions) in one line.
 PIECES = 3
 
 #: Residuals beyond this many standard errors are drawn as triangles at the edge.
 LARGEST_RESIDUAL = 6.5
 
-#: Guide lines: within the inner ones lie 95 % of all residuals; no test lets pass what is beyond 5.
+#: Guide lines: 95 % of all residuals are within the inner ones; no test passes beyond 5.
 GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
 
 
@@ -49,7 +49,7 @@ GUIDES = {2: (0, (4, 2)), 5: (0, (1, 1.5))}
 class Series:
     """One quantity: its name in the legend, rows of a table, exact values along the curve.
 
-    ``look`` is (colour, marker), if they are not those of the place among other series.
+    ``look`` is (colour, marker); without it the order of the series decides.
     """
 
     name: str
@@ -57,8 +57,8 @@ class Series:
     exact: np.ndarray
     look: tuple | None = None
 
-    def is_seen(self):
-        """Say whether there is a positive value to be drawn."""
+    def is_visible(self):
+        """Return whether there is a positive value to be drawn."""
         drawn = (row["estimate"] or row.get("bound") for row in self.rows)
         return bool(np.any(self.exact > 0)) or any(drawn)
 
@@ -66,8 +66,8 @@ class Series:
 def panels(box, label, beneath=0, judged=True):
     """Return (figure, main axes, axes of the residuals) for curves over the radius.
 
-    ``label`` is that of the main axes' ordinate; ``beneath`` is room for another panel, in inches.
-    Unless the estimates are ``judged`` there is no panel of residuals, and None instead.
+    ``label`` is the label of the main ordinate; ``beneath`` is the space for another panel, in
+    inches. Unless the estimates are ``judged``, there is no panel of residuals, but None.
     """
     line = 0 if is_short(box) else LINE
     under = LOWER + GAP if judged else 0
@@ -86,7 +86,7 @@ def panels(box, label, beneath=0, judged=True):
 
 
 def scale_residuals(lower):
-    """Mark sizes of residuals in their panel, and let it end beyond them."""
+    """Draw the guide lines of residuals, and set the ends of their panel beyond them."""
     lower.set_ylim(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)
     lower.set_yticks([-5, -2, 0, 2, 5])
     lower.axhline(0, color=GREY, lw=0.5, zorder=0)
@@ -96,7 +96,7 @@ def scale_residuals(lower):
 
 
 def mark(panels, ends):
-    """Mark the limits ``ends`` in all ``panels``, axes whose abscissa ends there, from the top."""
+    """Mark the limits ``ends`` in all ``panels``, axes from the top; the last ends the abscissa."""
     for axes in panels:
         axes.set_xlim(0, 1.02 * ends[-1][0])
         for radius, _ in ends:
@@ -107,22 +107,22 @@ def mark(panels, ends):
 def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, name=""):
     """Return new axes at ``left`` and ``bottom``, ``width`` × ``height``, all in inches.
 
-    ``name`` is their label, by which they are found among the axes of the figure.
+    ``name`` is their label, which identifies them among the axes of the figure.
     """
     across, up = figure.get_size_inches()
     axes = figure.add_axes((left / across, bottom / up, width / across, height / up), label=name)
-    # The power of ten of an ordinate stands beside what is written above.
+    # The power of ten of an ordinate is beside the heading.
     axes.yaxis.get_offset_text().set(ha="right", x=-0.01)
     return axes
 
 
 def number(value):
-    """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ where it is very small or large."""
+    """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ if it is very small or large."""
     return powers(f"{value:g}")
 
 
 def numbers(values):
-    """Return ``values`` in mathtext, all with powers of ten if any is so small or large."""
+    """Return ``values`` in mathtext, all with powers of ten if any is very small or large."""
     texts = [f"{value:g}" for value in values]
     if any("e" in text for text in texts):
         parts = (f"{value:.5e}".split("e") for value in values)
@@ -147,7 +147,7 @@ def sides(box):
 
 
 def of_radius(radius):
-    """Return what is written of a ``radius``, if it is given, behind the sides of a box."""
+    """Return the text of a ``radius`` that follows the sides of a box, empty if it is None."""
     return f",  $r={number(radius)}$" if radius else ""
 
 
@@ -160,11 +160,11 @@ def letter(axes, name):
 def name_box(axes, box, more="", up=0):
     """Write the sides of the box, ``more`` and the effects above the left end of ``axes``.
 
-    ``up`` are points by which that is higher than usual. Lines beyond the first take ``room``.
+    ``up`` is the distance, in points, from the usual height. Lines beyond the first take ``room``.
     """
 
     def frame(renderer):
-        """Return the frame of the axes, moved where a power of ten would read as a factor."""
+        """Return the frame of the axes, moved if a power of ten would look like a factor."""
         beside = not up and axes.yaxis.get_offset_text().get_text()
         return axes.bbox.translated(renderer.points_to_pixels(FACTOR) if beside else 0, 0)
 
@@ -174,7 +174,7 @@ def name_box(axes, box, more="", up=0):
 
 
 def is_short(box, radius=0):
-    """Say whether the ``heading``, maybe with a ``radius``, leaves room for something beside it."""
+    """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
     digits = sum(len(number(value)) for value in (box.width, box.height, radius or 0))
     return box.is_plain and digits <= BESIDE
 
@@ -191,14 +191,14 @@ def room(box, more=""):
 
 
 def effects(box):
-    """Return how many discs a ``Box`` has, if not two, and its effects in symbols, texts."""
+    """Return the number of discs of a ``Box``, if not two, and its effects, as texts in symbols."""
     texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
     discs = [f"${box.discs}$ discs"] if "discs" in box.calls_for else []
     return [*discs, *(powers(EFFECTS[name].symbol.format(value)) for name, value in texts)]
 
 
 def name_limits(axes, ends):
-    """Write the names of the limits above ``axes``, moved apart where they would overlap."""
+    """Write the names of the limits above ``axes``, moved apart if they would overlap."""
     x0, x1 = axes.get_xlim()
     points = 72 * axes.get_position().width * axes.figure.get_figwidth() / (x1 - x0)
     renderer = axes.figure.canvas.get_renderer()
@@ -223,8 +223,8 @@ def name_limits(axes, ends):
 def spread(wanted, widths, gap, most):
     """Return middles for intervals of ``widths``, in order, ``gap`` apart, near those ``wanted``.
 
-    Those that would overlap become a block around the mean of what they want; none ends beyond
-    ``most``.
+    Intervals that would overlap become a block around the mean of their wanted middles; none ends
+    beyond ``most``.
     """
     blocks = []
     for middle, width in zip(wanted, widths, strict=True):
@@ -253,7 +253,7 @@ def with_looks(series):
 def draw_series(main, lower, radii, series, single=False):
     """Draw the ``series`` in both panels; a ``single`` one has its curve in black.
 
-    ``lower`` is None where there are no residuals.
+    ``lower`` is None if there are no residuals.
     """
     for (colour, marker), part in with_looks(series):
         main.plot(radii, part.exact, color=BLACK if single else colour, zorder=5)
@@ -262,7 +262,7 @@ def draw_series(main, lower, radii, series, single=False):
             residuals(lower, part.rows, colour, marker)
 
 
-#: How a limiting law is drawn, and what it is called.
+#: The style of a limiting law, and its name in a legend.
 LAW = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2)), "zorder": 6}
 LAW_NAME = "limiting law"
 
@@ -277,7 +277,7 @@ def _column(rows, *names):
 
 
 def estimates(axes, rows, colour, marker):
-    """Draw the estimates of ``rows`` over their radii; those from a strip have full symbols."""
+    """Draw the estimates of ``rows`` over their radii; estimates from a strip have full symbols."""
     known = [row for row in rows if row["estimate"] is not None and row["stderr"] is not None]
     rough = [row for row in rows if row["estimate"] is not None and row["stderr"] is None]
     bound = [row for row in rows if row["estimate"] is None and row.get("bound") is not None]
@@ -290,7 +290,7 @@ def estimates(axes, rows, colour, marker):
 
 
 def by_start(rows, style):
-    """Yield (rows, style of symbols): those from a strip, if there are any, have full ones."""
+    """Yield (rows, style of symbols); rows from a strip, if there are any, have full symbols."""
     strips = [row for row in rows if row.get("starts") == "strip"]
     yield [row for row in rows if row not in strips], style
     if strips:
@@ -304,7 +304,7 @@ def open_symbol(colour, marker, scale=1):
 
 
 def residuals(axes, rows, colour, marker):
-    """Draw the residuals of ``rows`` over their radii, but for those that are certain."""
+    """Draw the residuals of ``rows`` over their radii, except the certain ones."""
     rows = [row for row in rows if is_judged(row)]
     for shown, symbol, clip in (
         ([r for r in rows if abs(r["z"]) <= LARGEST_RESIDUAL], marker, 1),
@@ -317,16 +317,16 @@ def residuals(axes, rows, colour, marker):
         axes.plot(r, z, ls="", **style | {"markersize": 0.75 * SIZES[symbol] if clip == 1 else 2.6})
 
 
-#: A legend that keeps the height of a letter between itself and symbols that it may avoid.
+#: A legend with the distance of a letter's height from the symbols that it can avoid.
 CLEAR = {"borderpad": 1.2, "borderaxespad": -0.6}
 
 
 def legend(axes, box, series, loc, single=None, more=()):
     """Explain the symbols at a ``loc``; ``single`` names the method of the only series.
 
-    ``more`` are (name, style) of lines besides. Series of which nothing is seen, of events that are
-    impossible, are left out. ``loc`` is a corner in matplotlib's words, or "best", wherever the
-    curves leave room: that is the place in a ``box`` with effects.
+    ``more`` are (name, style) of other lines. Series without a visible value, of impossible events,
+    are left out. ``loc`` is a corner in matplotlib's words, or "best": a ``box`` with effects
+    always has "best", the emptiest place.
     """
     loc = loc if box.is_plain else "best"
     handles, names = [], []
@@ -338,7 +338,7 @@ def legend(axes, box, series, loc, single=None, more=()):
         elif single:
             handles += axes.plot([], [], color=BLACK) + axes.plot([], [], ls="", **style)
             names += ["exact", single]
-        elif part.is_seen():
+        elif part.is_visible():
             handles += axes.plot([], [], ls="-" if np.any(part.exact > 0) else "", **style)
             names.append(part.name)
     for name, style in more:
@@ -352,7 +352,7 @@ LEAST = 3
 
 
 def logarithmic(axes, radii, series):
-    """Make the ordinate logarithmic and as long as estimates and most of the curves need."""
+    """Make the ordinate logarithmic, with a range for all estimates and most of the curves."""
     seen = [row["estimate"] or row.get("bound") for part in series for row in part.rows]
     ends = radii[np.flatnonzero(np.isnan(radii)) - 1]
     largest = ends[-1]
@@ -367,10 +367,10 @@ def logarithmic(axes, radii, series):
 
 
 def label_decades(axis, ratio):
-    """Label a logarithmic ``axis`` whose ends have a ``ratio`` below 100 between decades as well.
+    """Label a logarithmic ``axis``, between decades too if its ends have a ``ratio`` below 100.
 
-    That is at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or large
-    numbers stands at the end of the axis, as on others.
+    These labels are at 2 and 5 or, below a ratio of 3, at every tick. A power of ten of small or
+    large numbers is at the end of the axis, as on linear axes.
     """
     if ratio < 100:
         digits = "25" if ratio >= 3 else "123456789"

@@ -1,7 +1,7 @@
-"""What all figures share: size, fonts, colours, and files whose bytes depend on the content alone.
+"""The style of all figures: size, fonts, colours, and files whose bytes depend only on content.
 
-Everything is drawn and saved inside ``context()``, which overrides whatever matplotlib settings the
-machine has. pyplot is not used: nothing here needs windows, and importing it takes time.
+Everything is drawn and saved inside ``context()``, which overrides the matplotlib settings of the
+machine. pyplot is not used: nothing here needs windows, and its import takes time.
 """
 
 import logging
@@ -21,23 +21,23 @@ COLUMN = 3.4
 #: Dots per inch of the PNG files.
 DPI = 300
 
-# The palette of Okabe and Ito, which readers of any colour vision can tell apart.
+# The palette of Okabe and Ito, distinguishable with any colour vision.
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 GREY = "#6E6E6E"
 
-#: (colour, marker) of the first, second, … series of a figure: either of the two tells it apart.
+#: (colour, marker) of the first, second, … series of a figure: all differ in both.
 SERIES = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"), (PURPLE, "D"))
 
-#: Sizes of the markers, in points: where two series coincide, both show.
+#: Sizes of the markers, in points: if two series coincide, both are visible.
 SIZES = {"o": 3.7, "s": 2.5, "^": 3.0, "D": 2.3, "v": 3.0, "P": 3.2}
 
 SETTINGS = {
-    # Computer Modern, as the manuscript is set in; it has no minus sign but in formulas.
+    # Computer Modern, the font of the manuscript; it has a minus sign only in formulas.
     "font.family": ["cmr10", "STIXGeneral"],
     "mathtext.fontset": "cm",
     "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": [-3, 4],  # longer numbers meet their neighbours on an abscissa
+    "axes.formatter.limits": [-3, 4],  # longer numbers would overlap on an abscissa
     "font.size": 7.8,
     "axes.labelsize": 7.8,
     "axes.labelpad": 2,
@@ -75,14 +75,14 @@ SETTINGS = {
     "svg.hashsalt": "twodiscs",
 }
 
-# The files of Computer Modern bear dates that fontTools finds odd, and says so for each.
+# The files of Computer Modern have dates that fontTools warns about, once for each file.
 logging.getLogger("fontTools").setLevel(logging.ERROR)
 
 
 def _have_fonts():
-    """Add the fonts that come with matplotlib where its list, kept at home, does not have them.
+    """Add the fonts that come with matplotlib if its list of fonts in the user's home lacks them.
 
-    Another installation that was half removed leaves such a list, and texts would have other sizes.
+    A partly removed installation leaves such a list, and texts would have different sizes.
     """
     try:
         for family in SETTINGS["font.family"]:
@@ -112,9 +112,9 @@ def new_figure(height, width=COLUMN):
 def save(figure, path, origin=None):
     """Write ``figure`` to ``path`` (.pdf, .png or .svg) without dates or names of programs in it.
 
-    ``origin``, a line on what made it, goes into its metadata.
+    ``origin``, a line about its origin, goes into its metadata.
 
-    Raises ``InputError`` for a file name with another ending, and where it cannot be written.
+    Raises ``InputError`` for a file name with another ending, and if it cannot be written.
     """
     kind = str(path).rpartition(".")[2]
     metadata = {

@@ -1,1 +1,1 @@
-"""Figures of the motion: where the discs went, how often they met a wall, when they hopped."""
+"""Figures of the motion: paths of the discs, pressures on the walls, times between hops."""

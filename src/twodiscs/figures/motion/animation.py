@@ -1,10 +1,10 @@
-"""The discs as they move: two of them long on their sides, until they squeeze past each other.
+"""Animations of the discs: two discs stay on their sides for a long time, then pass each other.
 
-For the screen: a GIF, which every program shows, or an animated PNG, which is an image to a report.
-The discs move freely between events, or fall alike, so straight lines or parabolas through the rows
-of trajectory.csv are the trajectory itself. On a periodic axis what leaves the box at one end comes
-in at the other. Frames follow each other in equal steps of time, and one of them shows the moment
-of the hop.
+An animation is a GIF, which every program shows, an animated PNG, which a report takes as an image,
+a page with a slider, or an MP4. Between events the discs move freely, or fall with the same
+acceleration, so straight lines or parabolas through the rows of trajectory.csv are the trajectory
+itself. On a periodic axis a disc that leaves the box at one end enters at the other. Frames have
+equal steps of time, and one of them shows the moment of the hop.
 """
 
 from collections import Counter
@@ -17,7 +17,7 @@ from PIL import Image
 
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure
-from twodiscs.figures.motion import many
+from twodiscs.figures.motion import many, video
 from twodiscs.model.checks import InputError, check_length, writing_to
 from twodiscs.model.events import HOPS
 
@@ -26,45 +26,48 @@ DPI = 100
 ACROSS, TALLEST, STRIP = 3.8, 2.6, 0.62
 LEFT, RIGHT, TOP, GAP, BOTTOM = 0.5, 0.12, 0.28, 0.1, 0.36
 
-#: Letters of the heading, over those of other figures; points that the sign of a hop takes.
+#: The size of letters in the heading over that in other figures; the width of a hop's sign, points.
 LARGER, SIGN = 1.2, 17
 
-#: Points: the number of a disc stands so far to the left of its centre and above it, or lower where
-#: half of a digit would reach beyond the box, into the heading.
+#: Points: the distance of a disc's number to the left of its centre and above it, and half of its
+#: height. It is lower if it would leave the box at the top, into the heading.
 BESIDE, HALF = 9, 4
 
-#: Frames before and after the hop, and those in which a disc at speed one goes as far as the box is
-#: wide and high.
+#: Frames before and after the hop, and frames in which a disc of speed 1 moves by the mean side of
+#: the box.
 BEFORE, AFTER, CROSSING = 110, 60, 50
 
-#: Frames that a trace goes back and that the hop stays marked.
+#: The mark that turns with a rough disc begins at this fraction of its radius.
+MARK = 0.65
+
+#: Frames of a trace, and frames in which the hop stays marked.
 TRACE, MARKED = 20, 20
 
-#: Milliseconds that a frame, the hop and the last frame are shown.
+#: Milliseconds of a frame, of the hop and of the last frame.
 FRAME, HOP, LAST = 50, 1500, 1000
 
-#: Colours of all frames, and how much they differ at least, summed over red, green and blue.
+#: The number of colours, and their least difference, summed over red, green and blue.
 COLOURS, APART = 32, 60
 
 
 def moments(rows, step):
     """Return (times of the frames, name of the hop or None, its time) for rows of trajectory.csv.
 
-    The hop is the rarest kind that occurs, and of these the first with no other one within the
-    stretch of time that is shown, or else the first of all. Frames are ``step`` apart, the hop is
-    one of them, and all lie within the trajectory; without any hop they show how it starts. Raises
-    ``InputError`` if it does not last two frames.
+    The hop is of the rarest kind that occurs. It is the first one with no other of its kind in the
+    time that is shown, or else the first of all. Frames are ``step`` apart, the hop is one of them,
+    and all are within the trajectory; without any hop they show its start. Raises ``InputError`` if
+    it does not last two frames.
     """
     start, end = rows[0]["time"], rows[-1]["time"]
     counts = Counter(row["event"] for row in rows if row["event"] in HOPS)
     hop = min(sorted(counts), key=counts.get, default=None)
     times = [start, *(row["time"] for row in rows if row["event"] == hop), end]
-    alone = [
+    isolated = [
         time
         for before, time, after in zip(times, times[1:], times[2:], strict=False)
         if time - before > BEFORE * step and after - time > AFTER * step
     ]
-    centre = (alone or times[1:])[0] if hop else start
+    centre = (isolated or times[1:])[0] if hop else start
     frames = centre + step * np.arange(-BEFORE if hop else 0, AFTER + 1)
     frames = frames[(frames >= start) & (frames <= end)]
     if len(frames) < 2:
@@ -75,7 +78,7 @@ def moments(rows, step):
 
 
 class Stage:
-    """The panels and what moves in them, for one stretch of a trajectory."""
+    """The panels and their moving parts, for one stretch of a trajectory."""
 
     def __init__(self, box, radius, rows):
         self.scene = scene = box.scene(check_length("radius", radius))
@@ -85,6 +88,7 @@ class Stage:
         places = [f"{axis}{disc}" for disc in range(1, box.discs + 1) for axis in "xy"]
         names = ("time", *places, "event")
         self.rows = {name: np.array([row[name] for row in rows]) for name in names}
+        self.rows |= self._more(rows)
         self.sides = {"x": width, "y": height}
         self.times, self.hop, self.centre = self.moments(rows, step)
         self.trace, self.marked = TRACE * step, MARKED * step
@@ -110,8 +114,36 @@ class Stage:
         self._draw_strip()
         self.moving = self._moving((-x, x, -y, y))
 
+    def _more(self, rows):
+        """Return the angles of rough discs and the heights of balls, if the rows have them.
+
+        A table of the workflow has no spins. Between two events spins are constant.
+        """
+        more, times = {}, self.rows["time"]
+        for disc in range(1, self.of.discs + 1):
+            if self.scene.moment_of_inertia is not None and rows[0].get(f"s{disc}") is not None:
+                spins = np.array([row[f"s{disc}"] for row in rows]) / self.scene.radii[disc - 1]
+                turned = np.cumsum(spins[:-1] * np.diff(times))
+                more[f"angle{disc}"] = np.concatenate([[0.0], turned])
+            if self.scene.depth is not None and rows[0].get(f"z{disc}") is not None:
+                more[f"z{disc}"] = np.array([row[f"z{disc}"] for row in rows])
+        return more
+
+    def artists(self, time):
+        """Return the artists at a ``time``, in the order of drawing: nearer balls come later."""
+        if "z2" not in self.rows:
+            return [*self.moving.values()]
+        heights = [np.interp(time, self.rows["time"], self.rows[f"z{disc}"]) for disc in (1, 2)]
+        if "z" in self.scene.periodic:
+            heights = [z - self.scene.depth * np.round(z / self.scene.depth) for z in heights]
+        nearer = "disc 1" if heights[0] > heights[1] else "disc 2"
+        circles = [name for name in self.moving if name.startswith("disc ")]
+        circles.sort(key=lambda name: name.startswith(nearer))
+        others = [name for name in self.moving if name not in circles]
+        return [self.moving[name] for name in (*circles, *others)]
+
     def _draw_walls(self, x, y):
-        """Draw the walls that there are; the ends of a periodic axis are dotted."""
+        """Draw the walls; the ends of a periodic axis are dotted."""
         for axis, ends in (
             ("x", [([s * x, s * x], [-y, y]) for s in (-1, 1)]),
             ("y", [([-x, x], [s * y, s * y]) for s in (-1, 1)]),
@@ -121,7 +153,7 @@ class Stage:
                 self.box.plot(*end, color=BLACK, clip_on=False, **style)
 
     def moments(self, rows, step):
-        """Return what ``moments`` does."""
+        """Return (times of the frames, hop, its time) by the function ``moments``."""
         return moments(rows, step)
 
     def places(self, disc, times):
@@ -146,13 +178,13 @@ class Stage:
     def path(self, start, end):
         """Return the times of all rows between two moments, and these two.
 
-        Where paths are curved or folded there are as many between them as make them smooth.
+        If paths are curved or folded, there are more times between them, for a smooth line.
         """
         times = self.rows["time"]
         path = np.array([start, *times[(times > start) & (times < end)], end])
         if self.scene.field or self.scene.periodic:
             between = np.arange(start, end, self.trace / 100)
-            path = np.union1d(path, between[between < end])  # the last may be beyond, by rounding
+            path = np.union1d(path, between[between < end])  # by rounding the last may be > end
         return path
 
     def apart(self, times):
@@ -161,7 +193,7 @@ class Stage:
         return self.folded(self.places(2, times) - self.places(1, times))[:, axis]
 
     def _draw_strip(self):
-        """Draw how the separation is going to change, below the box."""
+        """Draw the separation over the whole time, below the box."""
         self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
         times = self.path(self.times[0], self.times[-1])
         apart = self.apart(times)
@@ -172,13 +204,15 @@ class Stage:
         self.strip.plot(times, apart, color="#C8C8C8", lw=0.8)
 
     def _moving(self, extent):
-        """Return {name: artist} of what changes from frame to frame, in the order of drawing."""
+        """Return {name: artist} of all that changes between frames, in the order of drawing."""
         x0, x1, y0, y1 = extent
         artists = {}
         for disc, (face, edge) in enumerate(drawing.DISCS, 1):
             artists |= self._circles(disc, self.scene.radii[disc - 1], face, edge)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
+            if f"angle{disc}" in self.rows:
+                (artists[f"spin {disc}"],) = self.box.plot([], [], color=BLACK, lw=1.5)
             (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
             artists[f"number {disc}"] = drawing.label(
                 self.box, f"{disc}", (0, 0), (-BESIDE, BESIDE), color=edge, fontsize=11
@@ -197,7 +231,7 @@ class Stage:
         return artists
 
     def _circles(self, disc, radius, face, edge):
-        """Return the artists of a disc: on a periodic axis it shows at both ends of the box."""
+        """Return the artists of a disc: on a periodic axis there is one at both ends of the box."""
         images = [""] + [f" {axis}" for axis in self.scene.periodic if axis in self.sides]
         return {
             f"disc {disc}{image}": self.box.add_patch(
@@ -212,7 +246,7 @@ class Stage:
         places = self.folded(self.places(disc, past))
         segments = np.stack([places[:-1], places[1:]], axis=1)
         fading = np.array([to_rgba(edge, 1 - (time - t) / self.trace) for t in past[1:]])
-        if self.scene.periodic:  # what goes out at one end and comes in at the other is no path
+        if self.scene.periodic:  # the jump from one end to the other is no part of the path
             near = np.abs(places[1:] - places[:-1]).max(axis=1) < min(self.sides.values()) / 2
             segments, fading = segments[near], fading[near]
         moving[f"trace {disc}"].set(segments=segments, colors=fading)
@@ -226,12 +260,17 @@ class Stage:
         return places[-1]
 
     def show(self, time):
-        """Move everything to where it is at ``time``."""
+        """Move everything to its position at ``time``."""
         moving = self.moving
         past = self.path(max(time - self.trace, self.times[0]), time)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             place = self._show_disc(disc, edge, past, time)
             moving[f"centre {disc}"].set_data(*place[:, None])
+            if f"angle{disc}" in self.rows:
+                angle = np.interp(time, self.rows["time"], self.rows[f"angle{disc}"])
+                ends = self.scene.radii[disc - 1] * np.array([MARK, 1.0])
+                x, y = place
+                moving[f"spin {disc}"].set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
             above = (self.of.height / 2 - place[1]) / drawing.points(self.box)
             moving[f"number {disc}"].xyann = (-BESIDE, min(BESIDE, above - HALF))
         since = time - self.centre if self.hop else -1
@@ -246,10 +285,10 @@ class Stage:
 
 
 class StageOfMany(Stage):
-    """The panels and what moves in them: all discs, and beneath where they are."""
+    """The panels of more than two discs: all discs, and beneath their positions over time."""
 
     def moments(self, rows, step):
-        """Return (times of the frames, None, the first of them): as many as around a hop."""
+        """Return (times of the frames, None, the first of them), the same number as for a hop."""
         start, end = rows[0]["time"], rows[-1]["time"]
         frames = start + step * np.arange(BEFORE + AFTER + 1)
         frames = frames[frames <= end]
@@ -265,7 +304,7 @@ class StageOfMany(Stage):
         self.strip = panels.add_panel(self.figure, BOTTOM, STRIP, LEFT, ACROSS - LEFT - RIGHT)
         times = self.path(self.times[0], self.times[-1])
         self.strip.set(xlim=(times[0], times[-1]), ylabel=f"${axis}$", xlabel="time $t$")
-        if axis not in self.scene.periodic:  # where places go on beyond the box
+        if axis not in self.scene.periodic:  # on it positions go on beyond the box
             self.strip.set_ylim(-side / 2, side / 2)
         for disc, colour in enumerate(self.colours, 1):
             places = self.places(disc, times)[:, "xy".index(axis)]
@@ -295,16 +334,17 @@ class StageOfMany(Stage):
 def animate(box, radius, rows, paths):
     """Write an animation of one hop, or of more than two discs, to every one of ``paths``.
 
-    These are .gif or .png files.
-
-    ``box`` is the ``Box`` and ``radius`` that of the discs; ``rows`` are those of trajectory.csv,
-    at least two frames of them. Raises ``InputError`` for anything else.
+    The paths are .gif, .png, .html or .mp4 files. ``box`` is the ``Box``, ``radius`` the radius of
+    the discs, and ``rows`` are the rows of trajectory.csv, long enough for two frames. Raises
+    ``InputError`` for anything else.
     """
     for path in paths:
-        if not str(path).endswith((".gif", ".png")):
-            raise InputError(f"path must be a .gif or .png file, not {str(path)!r}")
+        if not str(path).endswith((".gif", ".png", ".html", ".mp4")):
+            raise InputError(f"path must be a .gif, .png, .html or .mp4 file, not {str(path)!r}")
+        if str(path).endswith(".mp4"):
+            video.ffmpeg()
     if not rows:
-        raise InputError("trajectory must have rows, not none")
+        raise InputError("trajectory must have rows, but is empty")
     stage = (StageOfMany if box.family == "many" else Stage)(box, radius, rows)
     canvas = stage.figure.canvas
     for artist in stage.moving.values():
@@ -315,7 +355,7 @@ def animate(box, radius, rows, paths):
     def image(time):
         canvas.restore_region(still)
         stage.show(time)
-        for artist in stage.moving.values():
+        for artist in stage.artists(time):
             stage.figure.draw_artist(artist)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
 
@@ -324,14 +364,20 @@ def animate(box, radius, rows, paths):
         for artist in stage.moving.values()
         if isinstance(artist, Circle)
     }
-    # In the frame of the hop everything is to be seen.
+    # The frame of the hop shows everything.
     palette = _palette(image(stage.centre), sorted(fills))
-    first, *others = [image(t).quantize(palette=palette, dither=0) for t in stage.times]
+    true = [image(t) for t in stage.times]
+    first, *others = images = [one.quantize(palette=palette, dither=0) for one in true]
     shown = [HOP if stage.hop and t == stage.centre else FRAME for t in stage.times]
     shown[-1] = LAST
     for path in paths:
-        with writing_to(path):
-            first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
+        if str(path).endswith(".html"):
+            video.write_page(path, images, shown, str(stage.scene))
+        elif str(path).endswith(".mp4"):
+            video.write_mp4(path, true, shown)
+        else:
+            with writing_to(path):
+                first.save(path, save_all=True, append_images=others, duration=shown, loop=0)
 
 
 def caption(shown):
@@ -357,16 +403,16 @@ def caption(shown):
     if shown.many and periodic and many.along(shown.box) in periodic:
         text += "Beneath, positions go on beyond the box. "
     if shown.has("depth"):
-        text += "Balls are seen along z, so that they may cover each other. "
+        text += "Balls are drawn as viewed along z, the nearer one in front. "
     if shown.has("moment_of_inertia"):
         text += "The spin of rough discs is not shown."
     return text
 
 
 def _palette(image, kept):
-    """Return an image whose palette are the colours ``kept`` and the most frequent other ones.
+    """Return an image whose palette has the colours ``kept`` and the most frequent of ``image``.
 
-    Those are colours of ``image`` that differ.
+    Two colours differ at least by ``APART``.
     """
     chosen = [*kept]
     for _, colour in sorted(image.getcolors(1 << 24), reverse=True):

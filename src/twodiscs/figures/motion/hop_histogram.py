@@ -1,4 +1,4 @@
-"""How the times between hops are distributed."""
+"""The distribution of the times between hops."""
 
 from itertools import groupby, takewhile
 
@@ -10,22 +10,22 @@ from twodiscs.figures.kit.style import BLACK, SERIES, new_figure
 from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
 
-#: Inches: the panel of all intervals, that of the short ones, the gap between them, the room above.
+#: Inches: the panel of all intervals, the panel of short ones, the gap between, the space above.
 ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
 
 #: The longest of the short intervals, in mean times.
 LONGEST_SHORT = 2.5
 
-#: The curve ends before a bin that holds fewer than so many.
+#: The curve ends before a bin with fewer intervals than this.
 FEWEST = 10
 
-#: How many bins it takes to show a density that changes with the room at a hop.
+#: The number of bins that can show a density that changes with the room at a hop.
 FINE = 4
 
 #: Length of the dashes that mark exact densities at 0, in mean times, to either side of the axis.
 DASH = 0.035
 
-#: How far symbols stand apart in either panel, in mean times.
+#: The distance between symbols in either panel, in mean times.
 APART, APART_SHORT = 1.2, 0.4
 
 
@@ -93,7 +93,7 @@ def caption(shown):
 
 
 def _mark_zero(axes, box, row, colour):
-    """Mark the exact density at 0 where bins are fine enough to show it."""
+    """Mark the exact density at 0 if bins are fine enough to show it."""
     scene, hop = box.scene(row["radius"]), row["event"]
     free, across = (scene.width, scene.height)[:: 1 if AXIS[hop] == "y" else -1]
     sigma = scene.contact_distance
@@ -103,15 +103,15 @@ def _mark_zero(axes, box, row, colour):
 
 
 def unit_of(row):
-    """Return the exact mean interval of a row or, where that is not known, the measured one."""
+    """Return the exact mean interval of a row or, if that is not known, the measured one."""
     return row["exact_mean"] or row["mean"]
 
 
 def curve(rows, fewest):
     """Return (edges, density, standard error) in units of the mean interval (``unit_of``).
 
-    ``rows`` are successive bins of one radius. The first one with fewer than ``fewest`` intervals
-    is left out, and all that come after it.
+    ``rows`` are successive bins of one radius. The first bin with fewer than ``fewest`` intervals
+    and all later ones are left out.
     """
     shown = list(takewhile(lambda row: row["count"] >= fewest, rows))
     mean = unit_of(rows[0])

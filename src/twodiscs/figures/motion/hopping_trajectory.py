@@ -1,4 +1,4 @@
-"""One trajectory: how the discs lie to each other, and when they hop."""
+"""One trajectory: the separation of the discs over time, and their hops."""
 
 import numpy as np
 
@@ -7,20 +7,20 @@ from twodiscs.figures.kit.style import BLUE, GREY, ORANGE, VERMILLION, new_figur
 from twodiscs.figures.motion import many
 from twodiscs.model.events import AXIS
 
-#: Inches: each of the two panels, the gap between them and the room above.
+#: Inches: each of the two panels, the gap between them and the space above.
 PANEL, GAP, TOP = 1.15, 0.3, 0.22
 
-#: Rows in the lower panel, on average, or fewer to tell hops this share of it apart; the most that
-#: it shows of the upper one.
+#: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
+#: of its width; and its longest time, over that of the upper panel.
 CLOSE, APART, MOST = 150, 0.02, 1 / 3
 
 
 def draw(box, tables, radius=None):
     """Draw x2 − x1 against time from trajectory.csv.
 
-    In a box higher than wide, or where x is periodic, it is y2 − y1. The ``radius``, if given, is
-    written above. The discs move freely between events, or fall alike, so straight lines
-    through the rows are the trajectory itself. More than two discs are drawn by
+    In a box higher than wide, or if x is periodic, it is y2 − y1. The ``radius``, if given, is
+    written above. Between events the discs move freely, or fall with the same acceleration, so
+    straight lines through the rows are the trajectory itself. More than two discs are drawn by
     ``many.world_lines``.
     """
     if box.family == "many":
@@ -32,7 +32,7 @@ def draw(box, tables, radius=None):
     apart = np.array([row[f"{axis}2"] - row[f"{axis}1"] for row in rows])
     hops = times[[row["event"] == hop for row in rows]]
 
-    # Points: what leaves no room for the legend beside it is written above.
+    # Points: a heading that leaves no space for the legend beside it is higher.
     above = 0 if panels.is_short(box, radius) else panels.ABOVE
     more = panels.of_radius(radius)
     room = above / 72 + panels.room(box, more)
@@ -108,7 +108,7 @@ def shown_hop(box):
 
 
 def _crowded(hops, length, start, end):
-    """Return the ends of a stretch of ``length`` that holds as many ``hops`` as any other."""
+    """Return the ends of the stretch of ``length`` with the most ``hops``."""
     first = start
     if len(hops):
         counts = np.searchsorted(hops, hops + 0.6 * length) - np.arange(len(hops))

@@ -1,6 +1,6 @@
 """More than two discs as they move, coloured by their order along the longer side at the start.
 
-In a channel where they cannot pass each other colours keep that order for ever; elsewhere they mix.
+In a channel in which they cannot pass each other, colours keep that order; elsewhere they mix.
 """
 
 import numpy as np
@@ -19,13 +19,13 @@ from twodiscs.figures.kit.style import (
 )
 from twodiscs.model.events import HOPS
 
-#: Colours of so few discs.
+#: The colours of up to six discs.
 FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 
 #: The part of the map of colours of more discs that is neither too dark nor too light.
 LOW, HIGH = 0.05, 0.95
 
-#: Inches: each of the two panels, the gap between them and the room above.
+#: Inches: each of the two panels, the gap between them and the space above.
 PANEL, GAP, TOP = 1.45, 0.3, 0.22
 
 #: Points: a line for each disc, in the upper panel and in the lower one.
@@ -54,10 +54,10 @@ def colours(box, first):
 
 
 def world_lines(box, rows, radius=None):
-    """Draw where all discs of a ``Box`` are along its longer side, against time.
+    """Draw the positions of all discs of a ``Box`` along its longer side, against time.
 
-    ``rows`` are those of trajectory.csv, of which the first are shown; between them discs move
-    freely. The ``radius``, if given, is written above.
+    ``rows`` are the rows of trajectory.csv; the first ones are shown, and discs move freely between
+    them. The ``radius``, if given, is written above.
     """
     axis, side = along(box), max(box.width, box.height)
     rows = [row for row in rows if row["event"] not in HOPS][: MANY * box.discs + 1]

@@ -1,4 +1,4 @@
-"""What changes with the time that has gone by: averages of an observable, and κ(t) of a hop."""
+"""Curves over time: averages of an observable, and κ(t) of a hop."""
 
 import numpy as np
 
@@ -10,12 +10,12 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.theory import tails
 
-#: Inches: the panel, and the room above.
+#: Inches: the panel, and the space above.
 HEIGHT, TOP = 1.9, 0.22
 
 
 def _panel(scene, more=""):
-    """Return (figure, its axes) under the sides of the box, the radius, ``more`` and effects."""
+    """Return (figure, axes); the heading has the box, the radius, ``more`` and effects."""
     box, more = Box.of(scene), panels.of_radius(scene.radius) + more
     figure = new_figure(panels.BOTTOM + HEIGHT + TOP + panels.room(box, more))
     axes = panels.add_panel(figure, panels.BOTTOM, HEIGHT, name="main")
@@ -31,30 +31,31 @@ def _points(axes, times, values, errors, look, label=None, full=False):
 def observed(result):
     """Draw the averages of an ``Observed``, numbered as in its frame, with their errors.
 
-    Raises ``InputError`` for more of them than symbols, open and full ones, tell apart.
+    Raises ``InputError`` for more averages than there are different symbols, open and full.
     """
     flat = (values.reshape(result.times.size, -1).T for values in (result.mean, result.stderr))
     series, most = [*zip(*flat, strict=True)], 2 * len(SERIES)
     if len(series) > most:
         raise InputError(
             f"result must have at most {most} averages at a time to be drawn, not {len(series)}; "
-            "frame() has them all"
+            "frame() has all of them"
         )
     figure, axes = _panel(result.scene)
     for k, (mean, error) in enumerate(series):
         full, look = divmod(k, len(SERIES))
-        _points(axes, result.times, mean, error, SERIES[look], f"mean {k}", full)
+        name = result.names[k].replace("_", " ") if result.names else f"mean {k}"
+        _points(axes, result.times, mean, error, SERIES[look], name, full)
     if len(series) > 1:
         axes.legend()
     axes.set(xlabel="time $t$", ylabel="average")
-    axes.ticklabel_format(axis="y", scilimits=(-1, 3))  # short numbers, for the label has no room
+    axes.ticklabel_format(axis="y", scilimits=(-1, 3))  # short numbers leave space for the label
     return figure
 
 
 def transmission(result):
-    """Draw κ(t) of a ``Transmission`` with its errors, its exact start and its end by clusters.
+    """Draw κ(t) of a ``Transmission`` with errors, its exact start and its plateau from clusters.
 
-    The start is known in plain scenes, the end where hops are rare enough for a coefficient.
+    The start is known in plain scenes, the plateau if hops are rare enough for a coefficient.
     """
     scene, hop = result.scene, result.hop
     figure, axes = _panel(scene, f",  {name_of(hop)}")

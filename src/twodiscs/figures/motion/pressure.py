@@ -1,4 +1,4 @@
-"""Pressures on the walls, and the virials that they and the collisions of the discs add up to."""
+"""Pressures on the walls, and the virials of the walls and of the collisions of the discs."""
 
 import numpy as np
 
@@ -12,15 +12,15 @@ from twodiscs.theory.laws import threshold_time
 
 WALLS = ("right_wall", "top_wall")
 
-#: Inches: the height of the lower panel and of the room that it takes.
+#: Inches: the height of the lower panel, and with its margins.
 VIRIALS, ROOM = 1.4, 1.8
 
-#: The law below the largest radius is drawn this far from it, relatively.
+#: The law below the largest radius is drawn up to this relative distance from it.
 LAST = 0.12
 
 
 def draw(box, tables):
-    """Draw the pressures that the rows of mean_times.csv come to, and the terms of the virial."""
+    """Draw the pressures from the rows of mean_times.csv, and the terms of the virial."""
     rows = tables["mean_times"]
     radii = np.concatenate([np.append(branch, np.nan) for branch in curves.branches(box)])
     summed = virial.weights(box.tiny) is not None
@@ -72,7 +72,7 @@ def caption(shown):
     if shown.box is None or virial.weights(shown.box.tiny) is not None:
         text += """
         (b) The virials of the walls and of the collisions of the discs, divided by twice the mean
-        kinetic energy: those of the walls minus that of collisions are one at every radius.
+        kinetic energy: the sum over the walls minus that of collisions is one at every radius.
         """
     return text
 
@@ -89,7 +89,7 @@ def _series(name, box, event, rows, radii, factor):
         if row["event"] == event and row["stderr"] is not None:
             scene, time = box.scene(row["radius"]), row["estimate"]
             value = factor(scene, event) * scene.share(event) / time
-            # What is too long a time is too low a rate.
+            # If the time is too long, the rate is too low.
             measured = {"estimate": value, "stderr": value * row["stderr"] / time}
             measured["z"] = None if row["z"] is None else -row["z"]
             shown.append(row | measured)

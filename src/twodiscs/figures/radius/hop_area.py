@@ -7,7 +7,7 @@ from twodiscs.model.events import AXIS
 def draw(box, tables, hop):
     """Draw the area of a ``hop`` in a ``Box``, with the rows of areas.csv.
 
-    It is exact that no sample falls into the shell of a hop that is blocked: that is a symbol at 0.
+    No sample can be in the shell of a blocked hop: this exact result is a symbol at 0.
     """
     direction = hop.removesuffix("_hop")
     label = rf"root of the {direction}-hop area, $\sqrt{{S_{{\mathrm{{{direction[0]}}}}}}}$"
@@ -37,7 +37,5 @@ def caption(shown, hop):
         (symbols).
         """
     if shown.any_row(lambda row: row["exact"] == 0 and row["hits"] == 0):
-        text += (
-            "A symbol at zero says that no sample fell into the shell of a hop that is blocked. "
-        )
-    return text + "The square root of an area with a quadratic end is a straight line there."
+        text += "A symbol at zero means that no sample was in the shell of a blocked hop. "
+    return text + "If an area ends quadratically, its square root ends as a straight line."

@@ -13,10 +13,10 @@ from twodiscs.model.checks import InputError
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import small_radius_time, threshold_time
 
-#: Reach of the limiting laws, over the largest radius: from r = 0, and down from the end.
+#: The range of the limiting laws, over the largest radius: from r = 0 up, and from the end down.
 SMALL, LAST = 0.4, 0.1
 
-#: Inches: the height of a lower panel and of the room that it takes.
+#: Inches: the height of a lower panel, and with its margins.
 APPROACH, ROOM = 1.4, 1.8
 
 #: The events of walls, and their names in a legend.
@@ -42,15 +42,15 @@ def over_radius(
     approach=False,
     looks=None,
 ):
-    """Draw quantities of a ``Box`` over the radius, with the rows of the one table that is given.
+    """Draw quantities of a ``Box`` over the radius, with the rows of the only table in ``tables``.
 
-    ``names`` maps quantities, as theory.csv names them, to their names in the legend; those that
-    the table has are drawn. ``label`` is that of the ordinate, which is logarithmic; if ``rooted``,
-    square roots are drawn instead, from zero on. ``loc`` is the place of the legend, and ``single``
-    the name of the method if there is only one series. ``laws`` are "small" and "last": the
-    limiting laws of mean times that are drawn. With ``approach`` a panel beneath shows the times
-    over the distance from the radius of their end, unless no exact value is known. There is a panel
-    of residuals if there are any. ``looks`` maps quantities to (colour, marker). Raises
+    ``names`` maps quantities, as theory.csv names them, to their names in the legend; the ones in
+    the table are drawn. ``label`` is the label of the ordinate, which is logarithmic; if
+    ``rooted``, square roots are drawn instead, from zero on. ``loc`` is the place of the legend,
+    and ``single`` the name of the method if there is only one series. ``laws`` are the limiting
+    laws of mean times to be drawn, "small" and "last". With ``approach`` a panel beneath shows the
+    times over the distance from the radius of their end, unless no exact value is known. There is a
+    panel of residuals if there are any. ``looks`` maps quantities to (colour, marker). Raises
     ``InputError`` if the table has none of the quantities, and for no table or several.
     """
     if len(tables) != 1:
@@ -74,7 +74,7 @@ def over_radius(
     else:
         panels.logarithmic(main, radii, series)
     more = [(panels.LAW_NAME, panels.LAW)] if laws and box.is_plain else []
-    # The place is one for all of the quantities.
+    # ``loc`` fits if all quantities are drawn.
     place = loc if len(series) == len(names) else "best"
     panels.legend(main, box, series, place, single=single, more=more)
     if approach:
@@ -85,7 +85,7 @@ def over_radius(
 
 
 def series_of(box, rows, names, looks):
-    """Return (radii of the curves, {quantity: ``Series``}) of the quantities that ``rows`` have."""
+    """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``."""
     radii, exact = curves.exact(box)
     found = {}
     for quantity, name in names.items():
@@ -96,7 +96,7 @@ def series_of(box, rows, names, looks):
 
 
 def _rooted(series):
-    """Return a ``Series`` of the square roots, with the standard errors of these."""
+    """Return a ``Series`` of the square roots, with their standard errors."""
 
     def root(row):
         if not row["estimate"]:
@@ -127,7 +127,7 @@ def _laws(axes, box, event, laws):
 
 
 def _approach(axes, box, by_quantity):
-    """Draw the times over the distance from the radius at which the hop dies out."""
+    """Draw the times over the distance from the radius at which the hop ends."""
     distances = np.geomspace(CLOSEST, 0.99, 70)
     ends = hop_ends(box)
     shown, handles = [], []
@@ -139,7 +139,7 @@ def _approach(axes, box, by_quantity):
         exact = np.array(times, float)
         axes.plot(distances, exact, color=colour, zorder=5)
         label = rf"{part.name}, $r_{{\mathrm{{c}}}}={name}$"
-        if part.is_seen():
+        if part.is_visible():
             handles.append(Line2D([], [], label=label, color=colour))
         shown += [time for time in times if time]
         if box.family == "many":

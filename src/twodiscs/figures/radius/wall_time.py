@@ -17,15 +17,15 @@ def caption(shown):
     (symbols).
     """
     if shown.many:
-        text += "Those of disc 1 are averages over all initial conditions. "
+        text += "Times of disc 1 are averages over all initial conditions. "
     elif shown.shows("right_wall_time") or shown.shows("top_wall_time"):
-        text += "Those of disc 1 are over trajectories that can reach the wall. "
+        text += "Times of disc 1 are averages over trajectories that can reach the wall. "
     if shown.square and shown.shows("right_wall_time", "top_wall_time"):
         text += "In a square box the mean times of both walls are the same. "
     if shown.plain and shown.shows("right_wall_time") and shown.is_marked("h/4"):
         text += """
-        The mean time of the right wall halves at r = h/4, where configuration space falls apart
-        and disc 1 keeps to one side.
+        The mean time of the right wall halves at r = h/4, where configuration space becomes
+        disconnected and disc 1 keeps to one side.
         """
     if shown.plain and shown.shows("top_wall_time") and shown.is_marked("w/4"):
         text += """
@@ -40,7 +40,7 @@ def caption(shown):
 
 
 def _keeps_side(shown):
-    """Say whether the figure shows a wall that disc 1 reaches from its side of disc 2 alone."""
+    """Return whether the figure shows a wall that disc 1 reaches only from its side of disc 2."""
     near = shown.box.scene(shown.box.last_radius * (1 - 1e-9))
     walls = zip(near.confined, ("right_wall_time", "top_wall_time"), strict=True)
     return any(confined and shown.shows(time) for confined, time in walls)

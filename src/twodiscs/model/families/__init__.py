@@ -1,1 +1,1 @@
-"""The geometry of each family of scenes: what fits, which hops are open, how many components."""
+"""The geometry of each family of scenes: largest radius, open hops, number of components."""

@@ -19,8 +19,8 @@ __all__ = [
 def largest_radius(scene):
     """Return the radius of disc 1 at which two discs just fit in the box of a ``Scene``.
 
-    In σ: Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ², unless a disc spans
-    a side before.
+    The equation for σ is Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ²,
+    unless a disc spans a side before.
     """
     walls, ratio = [scene.side(axis) for axis in scene.walled], scene.radius_ratio
     n, total = len(walls), math.fsum(walls)
@@ -40,4 +40,4 @@ def largest_radius(scene):
 
 
 def require_followable(scene):
-    """Accept every ``Scene``: initial states need more room than dynamics in doubles does."""
+    """Accept every ``Scene``: initial states need more room than dynamics in doubles."""

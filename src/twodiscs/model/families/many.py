@@ -1,6 +1,6 @@
 """The geometry of N equal, smooth discs in the plane, between walls or on a ring along x.
 
-What two discs have in ``families.plain`` and ``families.effects`` has the same name here.
+Functions have the same names as in ``families.plain`` and ``families.effects``.
 """
 
 import math
@@ -14,17 +14,17 @@ __all__ = [
     "require_followable",
 ]  # fmt: skip
 
-#: Decimal digits before or after the point that the volume of all places may have: a double then
-#: holds it.
+#: The most decimal digits before or after the point of the volume of the prism: a double can then
+#: represent it.
 MOST_DIGITS = 150
 
 
 def check(scene):
-    """Raise ``InputError`` for a ``Scene`` that is none: effects, a radius that does not fit."""
+    """Raise ``InputError`` for an invalid ``Scene``: effects, or a radius that does not fit."""
     if other := [name for name in scene.effects if name != "periodic"]:
         raise InputError(
-            f"{other[0]} must be left out with {scene.discs} discs, for more than two are equal "
-            f"and smooth discs of the plane, not {scene.effects[other[0]]!r}"
+            f"{other[0]} must be left out with {scene.discs} discs, because more than two are "
+            f"equal and smooth discs in the plane, not {scene.effects[other[0]]!r}"
         )
     if scene.periodic not in ("", "x"):
         raise InputError(
@@ -39,8 +39,8 @@ def check(scene):
     size = scene.discs * math.log10(scene.range_x * scene.range_y)
     if scene.discs <= MOST_WITH_VOLUME and abs(size) > MOST_DIGITS:
         raise InputError(
-            f"width and height must be in a unit of length in which the prism of all places of "
-            f"{scene.discs} discs lies between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
+            f"width and height must be in a unit of length in which the prism of all centres of "
+            f"{scene.discs} discs is between 1e-{MOST_DIGITS} and 1e{MOST_DIGITS}, not "
             f"{scene.width!r} and {scene.height!r} at radius {scene.radius!r}"
         )
 
@@ -48,8 +48,8 @@ def check(scene):
 def largest_radius(scene):
     """Return the largest radius at which an arrangement of the discs is known here.
 
-    Two and three discs between walls, and any number in an ordered channel, have none at a larger
-    one.
+    For two and three discs between walls, and for any number in an ordered channel, no larger
+    radius is possible.
     """
     return largest_known_radius(scene.discs, scene.width, scene.height, scene.periodic)
 
@@ -69,31 +69,32 @@ def confined(scene):
 
 
 def multiplicity(scene, event):
-    """Return how many events of a ``Scene`` have the rate of ``event``; an ``Event``.
+    """Return the number of events of a ``Scene`` with the rate of ``event``, an ``Event``.
 
-    Any of the discs hits either wall of an axis at the rate of one of them at one wall.
+    Each disc hits each wall of an axis at the same rate.
     """
     return 2 * scene.discs if event.kind == "wall" else 1
 
 
 def is_ordered(scene):
-    """Say whether the discs keep their order along x and only neighbours can touch.
+    """Return whether the discs keep their order along x and only neighbours can touch.
 
-    That is so between walls if h ≤ (2 + √3) r: discs with one between them are then at least
+    This holds between walls if h ≤ (2 + √3) r: discs with one between them are then at least
     2√(σ² − B²) ≥ σ apart.
     """
     return not scene.periodic and scene.height <= (2 + math.sqrt(3)) * scene.radius
 
 
 def ergodic_components(scene):
-    """Return the number of disjoint parts of configuration space; None where it is not known here.
+    """Return the number of disjoint parts of configuration space; None if it is not known here.
 
-    Where all discs fit side by side along an axis, they can always be drawn apart along it:
-    places that go linearly, in their order, to σ or more from neighbour to neighbour never come
-    nearer to each other than √(σ² − Δ²), Δ what the pair is apart along the other axis. Then
-    neighbours can be exchanged if that other axis has more room than σ, and all is one part.
-    Else there is one for each order, N! of them, on a ring (N − 1)! up to a cyclic shift. In an
-    ordered channel too short for that the heights have parts of their own (``_zigzags``).
+    If all discs fit side by side along an axis, they can always be drawn apart along it. The
+    centres move linearly, in their order, until neighbours are at least σ apart. They are never
+    nearer to each other than √(σ² − Δ²), with the separation Δ of the pair along the other axis. If
+    the range along the other axis is larger than σ, neighbours can then be exchanged, and there is
+    one part. Otherwise each order is a part: there are N!, on a ring (N − 1)! up to a cyclic shift.
+    In an ordered channel too short for this, the heights of one order also form several parts
+    (``_zigzags``).
     """
     n, sigma, ring = scene.discs, 2 * Fraction(scene.radius), bool(scene.periodic)
     a, b = Fraction(scene.width) - sigma, Fraction(scene.height) - sigma
@@ -107,14 +108,14 @@ def ergodic_components(scene):
 
 
 def _zigzags(scene):
-    """Return how many disjoint parts the heights of one order have in an ordered channel.
+    """Return the number of disjoint parts of the heights of one order in an ordered channel.
 
-    They are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave: so
-    each part has a corner of that cube, and two corners are in one part if a path along edges
-    joins them, for what is cut out is convex. At a corner k neighbours are level, with d = σ,
-    and all others d₀ = √(σ² − B²) apart. A level pair comes and goes at the ends of the row,
-    or with one next to it; it moves by one disc where A allows for two pairs halfway,
-    2 √(σ² − B²/4).
+    The heights are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave. So
+    each part has a corner of this cube, and two corners are in one part if a path along edges joins
+    them, because the excluded set is convex. At a corner k pairs of neighbours have the same
+    height, with d = σ, and all others d₀ = √(σ² − B²). A pair of the same height appears and
+    disappears at the ends of the row, or together with the pair next to it. It moves by one disc if
+    A allows for two pairs halfway, 2 √(σ² − B²/4).
     """
     n, sigma, a = scene.discs, scene.contact_distance, scene.range_x
     least = math.sqrt((sigma - scene.range_y) * (sigma + scene.range_y))
@@ -124,17 +125,17 @@ def _zigzags(scene):
     midway = 2 * math.sqrt(sigma**2 - scene.range_y**2 / 4)
     if most == n - 1 or (most - 1) * sigma + (n - 2 - most) * least + midway < a:
         return 1
-    # The others stay where they are: neither at an end nor next to each other.
+    # The other pairs cannot move: they are neither at an end nor next to each other.
     return (2 if most == 1 else 1) + 2 * math.comb(n - 2 - most, most)
 
 
 def can_be_level(scene, axis):
-    """Say whether geometry lets two discs be level along ``axis``, "x" or "y", beside a third.
+    """Return whether two discs can have the same ``axis`` coordinate, x or y, beside a third.
 
-    Two that are level along y are σ apart at least along x, and a third one keeps σ from both:
-    it is best off at the other wall of y, in the middle between them or beside them. The condition
-    is exact for three discs; for two the third is ignored; for more than three it is necessary, not
-    sufficient.
+    Two discs with the same y are at least σ apart along x, and a third one is at least σ from both.
+    It has the most room at the other wall of y, in the middle between them or beside them. The
+    condition is exact for three discs. For two discs the third is ignored. For more than three it
+    is necessary, not sufficient.
     """
     along, across = scene.range_x, scene.range_y
     if axis == "x":
@@ -148,7 +149,7 @@ def can_be_level(scene, axis):
 
 
 def arrangement(scene):
-    """Return centres [(x, y), …] of a state without overlap, as far apart as is known here."""
+    """Return centres [(x, y), …] without overlap, with the largest distances known here."""
     half_x = scene.range_x / 2
     centres, _ = arranged(scene.discs, scene.range_x, scene.range_y, scene.periodic)
     return [(x - half_x, y - scene.range_y / 2) for x, y in centres]
@@ -160,8 +161,7 @@ def arrangement(scene):
 def _patterns(n, along, across, ring):
     """Yield (least distance, rows, discs a row, shift, fewer, spacing) of rows of ``n`` discs.
 
-    Rows stand in line, or are shifted in turns by half a spacing; then every other one may have a
-    disc less.
+    Rows are in line, or every other row is shifted by half a spacing and may have a disc less.
     """
     for rows in range(1, n + 1):
         v = across / (rows - 1) if rows > 1 else math.inf
@@ -172,7 +172,7 @@ def _patterns(n, along, across, ring):
                     continue
                 steps = count if ring else count - 1 + (0.0 if fewer else shift)
                 s = along / steps if steps > 0 else 0.0
-                # On a ring the only disc of a row is its own neighbour, which is no contact.
+                # On a ring the only neighbour of a single disc is its image, which is no contact.
                 in_row = s if count > 1 else math.inf
                 two_on = 2 * v if shift else math.inf
                 yield min(in_row, math.hypot(shift * s, v), two_on), rows, count, shift, fewer, s
@@ -204,7 +204,7 @@ def arranged(discs, a, b, periodic=""):
     """Return (centres in [0, ``a``] × [0, ``b``], their least distance), the best known here.
 
     Candidates are rows in line and staggered rows along either axis; for three discs also the
-    largest triangle, which is the best of all.
+    largest triangle, which is optimal.
     """
     least, centres = _rows(discs, a, b, bool(periodic))
     if not periodic:
@@ -220,9 +220,10 @@ def arranged(discs, a, b, periodic=""):
 
 @cache
 def largest_known_radius(discs, width, height, periodic=""):
-    """Return the largest radius of which ``arranged`` knows centres at least 2r apart.
+    """Return the largest radius r for which ``arranged`` has centres at least 2r apart.
 
-    Bisection, to the last digit. On a ring it is at most a quarter of the circumference.
+    It is found by bisection, to the last digit. On a ring it is at most a quarter of the
+    circumference.
     """
     low, high = 0.0, min(width, height) / 2
     if periodic:

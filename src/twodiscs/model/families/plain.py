@@ -16,16 +16,16 @@ __all__ = [
     "require_followable",
 ]  # fmt: skip
 
-#: How close to the largest radius dynamics in doubles holds, relatively: at a tenth of that mean
-#: times begin to be off by more than 1e-4.
+#: The least relative distance from the largest radius for dynamics in doubles: at a tenth of it
+#: mean times begin to be wrong by more than 1e-4.
 FOLLOWED = 1e-12
 
 
 def largest_radius(scene):
     """Return the radius at which two equal discs just fit in the box of a ``Scene``.
 
-    For max < 2 min the discs jam along a diagonal, (w + h − √(2wh))/2; otherwise each of them spans
-    the short side, min/2.
+    If the long side is less than twice the short one, the discs jam along a diagonal, at
+    (w + h − √(2wh))/2. Otherwise each of them spans the short side, at half of it.
     """
     width, height = scene.width, scene.height
     short, long = min(width, height), max(width, height)
@@ -35,14 +35,14 @@ def largest_radius(scene):
 
 
 def require_followable(scene):
-    """Raise ``InputError`` where dynamics in doubles is off: too close to the largest radius.
+    """Raise ``InputError`` too close to the largest radius for dynamics in doubles.
 
-    Where discs jam along a diagonal, the room left to them is lost in the roundings of places.
+    If discs jam along a diagonal, roundings of the centres become larger than their free lengths.
     """
     largest = scene.largest_radius
     jams = largest < min(scene.width, scene.height) / 2
     if jams and scene.radius > (closest := largest * (1 - FOLLOWED)):
         raise InputError(
             f"radius {scene.radius!r} must not exceed {closest!r} for molecular dynamics: "
-            f"beyond it, roundings count in the room that is left below {largest!r}"
+            f"above it, roundings matter, because discs only fit up to {largest!r}"
         )

@@ -1,4 +1,4 @@
-"""The geometry that two discs have with and without effects."""
+"""The geometry of two discs, with and without effects."""
 
 import math
 from fractions import Fraction
@@ -10,7 +10,7 @@ ENERGY = 0.5
 
 
 def check(scene):
-    """Raise ``InputError`` for a ``Scene`` whose discs have no room, or too little energy."""
+    """Raise ``InputError`` for a ``Scene`` whose discs do not fit, or have too little energy."""
     if not _fits(scene):
         raise InputError(
             f"radius {scene.radius!r} does not fit: two {scene.noun} in a box of "
@@ -21,7 +21,7 @@ def check(scene):
 
 
 def _fits(scene):
-    """Say, in exact arithmetic, whether both discs have room to move."""
+    """Return, by exact arithmetic, whether both discs have room to move."""
     widest = 2 * max(scene.exact_radii)
     if any(Fraction(scene.side(axis)) <= widest for axis in scene.axes):
         return False
@@ -39,17 +39,16 @@ def _check_energy(scene):
         )
     if (scene.radius_ratio, scene.mass_ratio) != (1.0, 1.0) and not scene.vertical_hops:
         raise InputError(
-            "unequal discs in a field need room and energy to pass each other on y1 = y2, or "
-            f"the parts of configuration space are unequal, too; at radius {scene.radius!r} "
-            "they lack it"
+            "unequal discs in a field need room and energy to pass each other on y1 = y2, so that "
+            f"configuration space has no unequal parts; at radius {scene.radius!r} they lack it"
         )
 
 
 def _lowest_potential(scene, spread):
-    """Return the least potential energy of discs whose separation except along y has this square.
+    """Return the least potential energy, for the largest squared separation across y, ``spread``.
 
-    ``spread`` is the largest such square. The lower disc lies on the bottom and the other one
-    on it, or beside it if there is room.
+    The lower disc is on the bottom. The other one is on the bottom beside it if there is room, or
+    else on the lower disc.
     """
     if not scene.field:
         return 0.0
@@ -78,21 +77,21 @@ def _has_gap(scene, axis):
 def ergodic_components(scene):
     """Return the number of disjoint parts of configuration space.
 
-    Each hop that is blocked between walls doubles it; a periodic axis has a way around.
+    Each hop that is blocked between walls doubles it. On a periodic axis discs can go around.
     """
     return 2 ** (len(scene.walled) - len(scene.passed))
 
 
 def confined(scene):
-    """Return whether disc 1 reaches a wall of x, and one of y, only from its own side of disc 2."""
+    """Return whether disc 1 reaches a wall of x, and one of y, only from one side of disc 2."""
     return _confined(scene, "x"), _confined(scene, "y")
 
 
 def _confined(scene, axis):
-    """Say whether disc 1 reaches the far wall of ``axis`` only from its own side of disc 2.
+    """Return whether disc 1 reaches the far wall of ``axis`` only from one side of disc 2.
 
-    It does so once the hop is blocked, unless it is the larger disc and there is room for
-    disc 2 in the corner behind it.
+    This is so if the hop is blocked, unless disc 1 is the larger disc and the corner behind it has
+    room for disc 2.
     """
     if axis in scene.passed or axis not in scene.walled:
         return False
@@ -106,11 +105,11 @@ def _confined(scene, axis):
 
 
 def multiplicity(scene, event):
-    """Return how many events of a ``Scene`` have the rate of ``event``, an ``Event``.
+    """Return the number of events of a ``Scene`` with the rate of ``event``, an ``Event``.
 
-    Mirror images and equal discs leave four of the pairs of a disc and a wall that have one rate,
-    two of them within the reach of a trajectory where the discs keep their sides. A field has no
-    mirror image along y.
+    By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If the
+    discs keep their sides, a trajectory can reach two of them. With a field there is no mirror
+    image along y.
     """
     if event.kind != "wall":
         return 1

@@ -1,1 +1,1 @@
-"""Work in blocks: their random streams, rounds, and strata."""
+"""Work in blocks: their random streams, and rounds."""

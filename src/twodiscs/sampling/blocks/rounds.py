@@ -1,9 +1,9 @@
 """Work in blocks whose sums are integers: by one process in rounds, or by many in pieces.
 
-One process works in rounds until all is known well enough (``in_rounds``), or does the blocks that
-are planned in one go (``all_at_once``). Many processes do the ``pieces`` of as many blocks as are
-planned before anything runs, and their sums are ``joined``: the same bits however large the pieces
-are and whoever does them.
+One process works in rounds until all errors are small enough (``in_rounds``), or does all planned
+blocks without rounds (``all_at_once``). The number of planned blocks is known before anything runs.
+Many processes can do ``pieces`` of it, and their sums are ``joined``: the bits do not depend on the
+size of the pieces or on the process that does them.
 """
 
 import math
@@ -16,16 +16,16 @@ import numpy as np
 from twodiscs.model.checks import InputError
 from twodiscs.sampling.blocks.threads import in_threads
 
-#: Blocks of the first round, and how many times the work done so far a round may be: an error seen
-#: in few events predicts badly.
+#: Blocks of the first round, and the longest round over the work before it: an error from few
+#: events predicts badly.
 FIRST_ROUND = 32
 GROWTH = 8.0
 
-#: A round is this much longer than it seems to need, so that it need not come back for a little.
+#: A round is longer than its prediction by this factor, so that no short round has to follow.
 MARGIN = 1.05
 
-#: Events of the plain ensemble that one call of a kernel does, about, unless a block has more: some
-#: tenths of a second. So who waits sees how far it is, and can stop it.
+#: Events of the plain ensemble in one call of a kernel, about, unless a block has more: some tenths
+#: of a second. Between calls the progress bar moves, and Ctrl-C stops the work.
 CALL = 2**24
 
 #: Steps of the grid of planned blocks while their number doubles.
@@ -34,14 +34,15 @@ STEPS = 16
 
 @dataclass(frozen=True)
 class SequentialRun:
-    """Work on one thing until it is known well enough or a budget is spent.
+    """Work in blocks until the errors are small enough or a budget is spent.
 
-    ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays;
-    ``excess_of(sums, blocks)`` their errors over those asked for, an array, which is empty where
-    there is nothing to wait for; ``events_of(sums)`` the events simulated. ``block_events`` is
-    about what a block has, ``budget`` the most of them there may be. ``planned`` is the number of
-    blocks for many processes, known before anything runs, ``cost_ratio`` the time of an event over
-    that of one of the plain ensemble, and ``first_round`` the blocks of the first round.
+    ``work(first, stop)`` returns the sums of a range of blocks, a tuple of integer arrays.
+    ``excess_of(sums, blocks)`` returns the array of their errors over the errors asked for; if it
+    is empty, one round is enough. ``events_of(sums)`` returns the number of events.
+    ``block_events`` is the approximate number of events in a block, ``budget`` the largest number
+    of events. ``planned`` is the number of blocks for many processes, known before anything runs.
+    ``cost_ratio`` is the time of an event over the time of an event in the plain ensemble, and
+    ``first_round`` the number of blocks in the first round.
     """
 
     work: Callable
@@ -60,7 +61,7 @@ class SequentialRun:
 
 
 class Outcome(NamedTuple):
-    """The result of a run: the sums of its blocks, how many rounds they took, and their errors."""
+    """The result of a run: the sums of its blocks, the number of rounds, and the errors."""
 
     sums: list
     blocks: int
@@ -81,9 +82,10 @@ def _added(sums, part):
 
 
 def _sums(run, stop, kept, cores, progress):
-    """Return the sums of the blocks 0 … ``stop`` − 1, from those in ``kept`` that come nearest.
+    """Return the sums of the blocks 0 … ``stop`` − 1, which continue the longest sums in ``kept``.
 
-    ``kept`` is {blocks: their sums}; these are added to it. Threads do some blocks a call.
+    ``kept`` is {blocks: their sums}; the new sums are added to it. One call of a thread does some
+    blocks.
     """
     first = max((blocks for blocks in kept if blocks <= stop), default=0)
     sums = kept.get(first)
@@ -97,41 +99,41 @@ def _sums(run, stop, kept, cores, progress):
 
 
 def all_at_once(run):
-    """Return the ``Outcome`` when the planned blocks of a run are done, in this process."""
+    """Do the planned blocks of a run in this process and return the ``Outcome``."""
     sums = _sums(run, run.planned, {}, 1, lambda blocks: None)
     return Outcome(sums, run.planned, 1, run.excess_of(sums, run.planned))
 
 
 def in_rounds(run, progress=None, cores=1, kept=None):
-    """Return the ``Outcome`` when all is known well enough or the budget is spent.
+    """Work in rounds until the errors are small enough or the budget is spent.
 
-    The first round is small, no more than the budget affords or one block, the next ones as long as
-    the errors seen so far predict; without anything to wait for it is the only one. ``progress``,
-    if given, is called now and then with the work that is done and about how much it will be, in
-    events of the plain ensemble.
+    The first round is small: it keeps to the budget, but has at least one block. The errors so far
+    predict the length of each next round. If no error is asked for, there is one round.
+    ``progress``, if given, is called repeatedly with the work that is done and the expected total,
+    in events of the plain ensemble.
 
-    ``kept``, {blocks: sums} of the rounds of an earlier run to another error, saves what it has:
-    the result is the same without. The rounds of this one are added.
+    ``kept`` has {blocks: sums} of the rounds of an earlier run to another error. This run does not
+    repeat them, and the ``Outcome`` is the same as without. Its own rounds are added to ``kept``.
     """
     kept = {} if kept is None else kept
     blocks = int(max(1, min(run.first_round, run.budget / run.block_events)))
     last, done, rounds = max(blocks, min(run.planned, run.budget / run.block_events)), 0, 0
 
-    def seen(number):
+    def report(number):
         if progress is not None:
             progress(number if number is None else number * run.block_work, last * run.block_work)
 
     while True:
         done, rounds = done + blocks, rounds + 1
-        sums = _sums(run, done, kept, cores, seen)
+        sums = _sums(run, done, kept, cores, report)
         excess, simulated = run.excess_of(sums, done), run.events_of(sums)
         if not excess.size:
             break
         worst = float(np.max(excess))
-        # In units of the work done so far: what the error asks for, and what the budget allows.
+        # The work that is missing for the error, and that the budget allows, over the work so far.
         missing, affordable = MARGIN * worst * worst - 1.0, run.budget / simulated - 1.0
         last = done * (1 + max(0.0, min(missing, affordable)))
-        seen(done)
+        report(done)
         if worst <= 1.0 or affordable * done < 1.0:
             break
         blocks = math.ceil(min(missing, GROWTH) * done)
@@ -143,8 +145,8 @@ class Sampler(NamedTuple):
     """Draws in blocks of ``block`` samples.
 
     ``count(first, stop)`` returns the counts of a range of blocks, and ``point(samples, counts)``
-    what is found, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over that of one
-    of the prism.
+    the point, as ``sample_point`` does. ``cost_ratio`` is the time of a sample over the time of a
+    sample of the prism.
     """
 
     block: int
@@ -156,19 +158,20 @@ class Sampler(NamedTuple):
 def all_in_rounds(parts, progress=None, cores=1, kept=None):
     """Return {name: ``Outcome``} of the runs in ``parts``, {name: run}, one after the other.
 
-    ``progress`` sees the work of all of them; ``kept`` holds that of ``in_rounds`` by name.
+    ``progress`` is called with the work of all of them; ``kept`` has the argument ``kept`` of
+    ``in_rounds`` for each name.
     """
     kept = {} if kept is None else kept
     reached, work = {}, {name: run.planned * run.block_work for name, run in parts.items()}
 
-    def seen(done, expected):
+    def report(done, expected):
         work[name] = expected
         if progress is not None:
             before = sum(work[earlier] for earlier in reached)
             progress(done if done is None else before + done, sum(work.values()))
 
     for name, run in parts.items():
-        reached[name] = in_rounds(run, seen, cores, kept.setdefault(name, {}))
+        reached[name] = in_rounds(run, report, cores, kept.setdefault(name, {}))
     return reached
 
 
@@ -178,7 +181,7 @@ def all_in_rounds(parts, progress=None, cores=1, kept=None):
 def on_grid(blocks):
     """Return the next number of blocks on a grid of ``STEPS`` while it doubles, at least 1.
 
-    So a somewhat tighter accuracy asks for the same pieces, or for some more of them.
+    A slightly smaller error then needs the same pieces, or a few more.
     """
     blocks = max(1, math.ceil(blocks))
     step = max(1, (1 << (blocks - 1).bit_length()) // (2 * STEPS))

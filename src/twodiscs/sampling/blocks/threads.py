@@ -1,9 +1,9 @@
-"""Work in threads: on a number of cores, and so that Ctrl-C is heard without delay.
+"""Work in threads: on several cores, and so that Ctrl-C stops it without delay.
 
-Kernels release Python's lock, so threads are enough for all cores. A kernel hears of no signal
-while it runs, and when Python's handler strikes in the middle of what numba does before and after,
-the KeyboardInterrupt is lost, or a ``SystemError`` takes its place. Signals are for the main thread
-alone: it waits, and others call the kernels.
+Kernels release Python's lock, so threads can use all cores. Python handles no signal while a kernel
+runs. If it handles one while numba prepares or ends a call, the KeyboardInterrupt is lost, or a
+``SystemError`` takes its place. Python handles signals in the main thread only. The main thread
+therefore waits, and other threads call the kernels.
 """
 
 from collections import deque
@@ -13,10 +13,10 @@ from threading import Thread
 
 from twodiscs.model.checks import check_integer
 
-#: Seconds between two calls of ``waiting`` while a result is waited for.
+#: Seconds between two calls of ``waiting`` during the wait for a result.
 LOOK = 0.2
 
-#: No more threads than that.
+#: The largest number of threads.
 MOST_CORES = 1024
 
 
@@ -34,9 +34,9 @@ def _serve(work, calls):
 def in_threads(work, arguments, cores=1, waiting=None):
     """Yield ``work(*given)`` for each tuple in ``arguments``, in their order, by ``cores`` threads.
 
-    With one of them the calls come one after the other. Only some are begun ahead of what is asked
-    for; those that have not begun when this ends, or is interrupted, never are. ``waiting()`` is
-    called now and then while a result is waited for.
+    With one core the calls run one after the other. Only a few calls begin before the caller asks
+    for their result. When the generator ends or is interrupted, no further call begins.
+    ``waiting()`` is called repeatedly during the wait for a result.
     """
     from concurrent.futures import Future, wait
 
@@ -49,8 +49,8 @@ def in_threads(work, arguments, cores=1, waiting=None):
             calls.put((begun[-1], some))
 
     try:
-        # A call may take a minute. A script that ends does not wait for daemons, as it would for
-        # the threads of an executor.
+        # A call may take a minute. A script that ends does not wait for daemon threads, but would
+        # wait for the threads of an executor.
         for _ in range(cores):
             Thread(target=_serve, args=(work, calls), daemon=True).start()
         begin(2 * cores)
@@ -68,6 +68,6 @@ def in_threads(work, arguments, cores=1, waiting=None):
 
 
 def in_a_thread(work, *given):
-    """Return ``work(*given)``, done by another thread: for a kernel that is called once."""
+    """Return ``work(*given)``, run in another thread: for a kernel that is called once."""
     (result,) = in_threads(work, [given])
     return result

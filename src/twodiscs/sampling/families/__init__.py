@@ -1,1 +1,1 @@
-"""How each family of scenes is sampled: initial states, and Monte Carlo of volume and areas."""
+"""Sampling for each family of scenes: initial states, and Monte Carlo of volume and areas."""

@@ -20,25 +20,25 @@ __all__ = [
     "thickness",
 ]  # fmt: skip
 
-#: The events that Monte Carlo samples by a shell of their own, in the order of its counts.
+#: The events that Monte Carlo samples by a shell, in the order of its counts.
 shelled = EVENTS
 
 thickness, rejection, states = weighted_thickness, weighted, states_of_two
 
 
 def components(scene):
-    """Return the names of the components of a state: centres, velocities, then what effects add."""
+    """Return the names of the components of a state: centres, velocities, then those of effects."""
     balls = ("z1", "z2", "w1", "w2") if scene.depth is not None else ()
     rough = ("s1", "s2") if scene.moment_of_inertia is not None else ()
     return ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2", *balls, *rough)
 
 
 def require_free_fraction(scene):
-    """Raise ``InputError`` for a ``Scene`` that hardly ever accepts a place in the prism."""
+    """Raise ``InputError`` for a ``Scene`` whose discs overlap in almost all of the prism."""
     if (fraction := exact.free_fraction(scene)) < exact.MIN_FRACTION:
         raise InputError(
-            f"radius {scene.radius!r} leaves the discs {fraction:.1g} of the prism of all places, "
-            f"and a scene with effects needs more room, {exact.MIN_FRACTION:g} of it"
+            f"radius {scene.radius!r} leaves a fraction {fraction:.1g} of the prism of all centres "
+            f"without overlap, but a scene with effects needs {exact.MIN_FRACTION:g} of it"
         )
 
 
@@ -53,10 +53,10 @@ def proposals_per_event(scene, duration):
 
 
 def near_hop(scene, hop):
-    """Return the ``Scene`` and the hop as they are: draws are made along any axis."""
+    """Return the ``Scene`` and the hop unchanged: draws are possible along any axis."""
     return scene, hop
 
 
 def plan(scene, samples):
-    """Return what makes the ``Sampler`` of a ``Scene``, and the number of its samples."""
+    """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples."""
     return weighted, in_blocks(samples)

@@ -13,11 +13,11 @@ def components(scene):
 
 
 def require_free_fraction(scene):
-    """Accept every ``Scene``: initial states do not need a free prism."""
+    """Accept every ``Scene``: initial states do not come from the prism."""
 
 
 def proposals_per_event(scene, duration):
-    """Return 0: what initial states take is in the length of a replica."""
+    """Return 0: the length of a replica takes account of the cost of its initial state."""
     return 0.0
 
 
@@ -27,6 +27,6 @@ def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
 
 
 def plan(scene, samples):
-    """Return what makes the ``Sampler`` of a ``Scene``, and the number of its insertions."""
+    """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples."""
     blocks = -(-check_integer("samples", samples) // measures.BLOCK)
     return measures.inserted, blocks * measures.BLOCK

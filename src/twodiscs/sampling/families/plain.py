@@ -27,7 +27,7 @@ __all__ = [
     "thickness",
 ]  # fmt: skip
 
-#: The events that Monte Carlo samples by a shell of their own, in the order of its counts.
+#: The events that Monte Carlo samples by a shell, in the order of its counts.
 shelled = SHELLS
 
 thickness, rejection, states = plain_thickness, in_prism, states_of_two
@@ -39,7 +39,7 @@ def components(scene):
 
 
 def require_free_fraction(scene):
-    """Accept every ``Scene``: draws keep to where the discs fit."""
+    """Accept every ``Scene``: draws keep to separations at which the discs fit."""
 
 
 def origins(scene, hop=None, within=None):
@@ -53,14 +53,15 @@ def proposals_per_event(scene, duration):
 
 
 def near_hop(scene, hop):
-    """Return an equivalent ``Scene`` and hop along x, the axis along which draws are made."""
+    """Return an equivalent ``Scene`` and hop along x: draws are possible along this axis only."""
     return hopping_along(scene, hop, "x")
 
 
 def plan(scene, samples):
-    """Return what makes the ``Sampler`` of a ``Scene``, and the number of its samples.
+    """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples.
 
-    ``samples`` are those of the prism, of which rejection uses one in ``COST_RATIO`` at least.
+    ``samples`` are samples of the prism. Rejection is used if it accepts at least one in
+    ``COST_RATIO``.
     """
     if exact.free_fraction(scene) >= 1 / COST_RATIO:
         return in_prism, in_blocks(samples)

@@ -1,7 +1,7 @@
 """Cells of a box of N discs: only discs in the same cell or in neighbouring ones can touch.
 
-Their sides are longer than σ. Each disc has the numbers of its column and of its row; the discs of
-a cell are a list.
+Their sides are longer than σ. Each disc has the numbers of its column and row; the discs of a cell
+form a linked list.
 """
 
 import math
@@ -11,24 +11,24 @@ import numpy as np
 
 from twodiscs.sampling.jit import compiled, inlined, optional
 
-#: The least side of a cell over the root of the area for a disc, and over σ.
+#: The least side of a cell over the root of the area per disc, and over σ.
 SPACING, LEAST_SIDE = 1.25, 1 + 2.0**-20
 
-#: The least number of columns around a ring: then the nearest image of a neighbour is the only one.
+#: The least number of columns around a ring; a neighbour then has one image within reach.
 LEAST_COLUMNS = 4
 
 
 class Grid(NamedTuple):
-    """Borders of the columns and rows of cells: the outermost ones are walls, or the seam."""
+    """Borders of the columns and rows of cells; the outermost are walls, or the ends of a ring."""
 
     x: np.ndarray
     y: np.ndarray
 
 
 class Places(NamedTuple):
-    """Where discs are: ``column`` and ``row`` (N,), and the list of the discs of each cell.
+    """The cell of each disc, ``column`` and ``row`` (N,), and the list of the discs of each cell.
 
-    It begins with ``head`` (cells,) and goes on with ``after`` (N,); −1 is its end.
+    A list begins with ``head`` (cells,) and goes on with ``after`` (N,); −1 is its end.
     """
 
     column: np.ndarray
@@ -57,7 +57,7 @@ def _borders(length, number):
 
 @compiled
 def new_places(discs, grid):
-    """Return ``Places`` for so many discs, none of which is anywhere yet."""
+    """Return ``Places`` for a number of ``discs``, which are in no cell yet."""
     cells = (grid.x.size - 1) * (grid.y.size - 1)
     return Places(
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
@@ -98,12 +98,12 @@ def leave(i, places, grid):
 
 @optional(lambda column, columns, ring: column)
 def around_columns(column, columns, ring):
-    """Return the number of a column on a ring that may be counted beyond its seam."""
+    """Return the number of a column on a ring; ``column`` may be one turn too low or high."""
     column -= columns if column >= columns else 0
     return column + (columns if column < 0 else 0)
 
 
 @optional(lambda low, high, columns, ring: (max(low, 0), min(high, columns - 1)))
 def columns_within(low, high, columns, ring):
-    """Return the first and the last column; on a ring they may be beyond its seam."""
+    """Return the first and the last column; on a ring they may be one turn too low or high."""
     return low, high

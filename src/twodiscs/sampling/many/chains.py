@@ -1,13 +1,13 @@
-"""Event chains: many discs in a new arrangement, by moves that none of them refuses.
+"""Event chains: moves without rejection that bring many discs into a new arrangement.
 
 A chain picks a disc and one of the four directions, all with the same probability. The disc moves
-until it touches another one, which then moves on in its place, or a wall, where it turns back; so
-on until all discs together have come as far as was drawn beforehand (Bernard, Krauth and Wilson,
-Phys. Rev. E 80, 056704 (2009)). A state of the chain is the centres, the disc that moves and its
-direction. For a given length the chain maps such states one to one onto each other, and it keeps
-their volume: a move is a translation, and at a contact or at a wall the disc that comes and the one
-that goes have the same flux. So centres that are uniform among all allowed ones stay uniform. The
-number of the chains and their lengths do not depend on the centres.
+until it touches another disc, which then moves on in its place, or a wall, where it turns back. The
+chain ends when all moves together have a length that was drawn at its begin (Bernard, Krauth and
+Wilson, Phys. Rev. E 80, 056704 (2009)). A state of the chain has the centres, the disc that moves
+and its direction. For a given length the chain maps such states one to one onto each other, and it
+keeps their volume: a move is a translation, and at a contact or at a wall the disc that arrives and
+the disc that leaves have the same flux. Centres that are uniform among all allowed ones therefore
+stay uniform. The number of the chains and their lengths do not depend on the centres.
 """
 
 import math
@@ -25,26 +25,26 @@ from twodiscs.sampling.many.cells import (
 from twodiscs.sampling.many.measures import around
 from twodiscs.sampling.streams import next_bits, uniform
 
-#: Contacts of each disc, and of a chain, about.
+#: The approximate numbers of contacts of each disc, and of a chain.
 CONTACTS, CONTACTS_OF_CHAIN = 512, 16
 
 
 def plan(scene):
-    """Return (number, mean length) of the chains that a new arrangement of a ``Scene`` takes.
+    """Return (number, mean length) of the chains for a new arrangement of a ``Scene``.
 
-    Discs that fill the box at the radius r_max have the pressure Z − 1 ≈ r/(r_max − r), which is
-    also the number of contacts in a length (π/4) σ of chain.
+    If the discs fill the box at the radius r_max, Z − 1 ≈ r/(r_max − r), with the compressibility
+    factor Z. This is also the number of contacts in a length (π/4) σ of chain.
     """
     room = (scene.largest_radius - scene.radius) / scene.radius
     length = CONTACTS_OF_CHAIN * math.pi / 4 * scene.contact_distance * room
-    # Small discs hardly meet.
+    # Small discs hardly touch.
     length = min(length, 4 * max(scene.width, scene.height))
     return math.ceil(CONTACTS * scene.discs / CONTACTS_OF_CHAIN), length
 
 
 @optional(lambda column, columns, ring: column if 0 <= column < columns else -1)
 def column_of(column, columns, ring):
-    """Return the number of a column, −1 where there is none."""
+    """Return the number of a column, −1 if there is none."""
     return around_columns(column, columns, ring)
 
 
@@ -62,7 +62,7 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
     beyond = abs(borders[along + (1 if sign > 0.0 else 0)] - centres[axis, i]) - sigma
     reach, disc = left, -1
     for step in range(columns + rows):
-        # The nearest contact with a disc of the next cells.
+        # The next cells have no contact that is nearer.
         if step > 0 and beyond + (step - 1) * side >= reach:
             break
         a = along + (step if sign > 0.0 else -step)
@@ -86,19 +86,19 @@ def first_contact(i, axis, sign, left, centres, places, grid, initial):
 
 @optional(lambda left, ring: left)
 def short_of_half(left, ring):
-    """Return how far a disc on a ring moves before it looks again, at most ``left``."""
+    """Return the length of a disc's next move on a ring, at most ``left``."""
     return min(left, ring / 4)
 
 
 @optional(lambda axis, position, sign, half, ring: half - sign * position)
 def to_wall(axis, position, sign, half, ring):
-    """Return how far it is to the wall ahead; on a ring there is none of x."""
+    """Return the distance to the wall ahead, infinite along a ring."""
     return math.inf if axis == 0 else half - sign * position
 
 
 @compiled
 def run_chains(state, initial, centres, number, length, grid):
-    """Move the discs of ``centres`` (2, N) by that ``number`` of chains of a mean ``length``."""
+    """Move the discs of ``centres`` (2, N) by a ``number`` of chains of a mean ``length``."""
     discs, places = initial.discs, new_places(initial.discs, grid)
     for i in range(discs):
         column, row = interval_of(centres[0, i], grid.x), interval_of(centres[1, i], grid.y)

@@ -1,18 +1,17 @@
 """States of the invariant measure for N discs: velocities on a sphere, centres in three ways.
 
-* ``rejection``: N centres are drawn, and all of them again on any overlap. Exact. A draw is
-  accepted with the probability V/(AB)^N, and it is used where that is at least ``LEAST``.
-* ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. They are proposed
-  cell by cell as a Markov chain whose weights are above those of exp(−c d), and accepted with what
-  is left of the ratio; positions along the channel are then order statistics. Exact at every
-  density.
-* ``chain``: elsewhere, from the widest known arrangement, ``SWEEPS`` sweeps of trial moves of one
-  disc at a time, a new chain for each state. ``LARGE`` numbers of discs take event chains instead
-  (``chains``). Not exact: how far it is from equilibrium is tested,
-  against rejection and channels where they can be used, and against chains of other lengths. Where
-  discs cannot get from one arrangement to another, it keeps to the known one.
+* ``rejection``: N centres are drawn; after an overlap all are drawn again. Exact. The acceptance is
+  V/(AB)^N, and the method is used if it is at least ``LEAST``.
+* ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. A Markov chain
+  proposes them cell by cell, with weights that are not below exp(−c d). They are accepted with the
+  rest of the ratio. Positions along the channel are then order statistics. Exact at every density.
+* ``chain``: otherwise ``SWEEPS`` sweeps of trial moves of one disc at a time, which begin at the
+  widest known arrangement; each state has a new chain. From ``LARGE`` discs on, event chains
+  (``chains``) take their place. Not exact: tests compare its states with rejection and channels, if
+  these can be used, and with chains of other lengths. If discs cannot go from one arrangement to
+  another, it stays near the known one.
 
-Nothing here needs more than + − × / and √.
+The arithmetic is + − × / and √ only.
 """
 
 import math
@@ -31,42 +30,43 @@ from twodiscs.sampling.many.measures import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many import channel
 
-#: The least part of (AB)^N that must be free for rejection: it takes less time than a chain then.
+#: The least free fraction of (AB)^N for rejection, which then takes less time than a chain.
 LEAST = 1e-3
 
-#: Sweeps of a chain, and the least number of sizes of its moves, which are halves of one another.
+#: Sweeps of a chain, and the least number of sizes of its moves; each is half of the one before.
 SWEEPS, SCALES = 4000, 8
 
-#: From that many discs on moves are event chains, and cells tell who may touch whom.
+#: From this number of discs on, moves are event chains, and cells list the discs that may touch.
 LARGE = 20
 
-#: With more discs too few heights in a channel would be accepted.
+#: The most discs for rejection of heights in a channel: with more, too few would be accepted.
 MOST_REJECTED = 64
 
-#: Weights of cells are at least those of exp(−z): (1 + z/64)^(−64).
+#: Weights of cells are (1 + z/64)^(−64), which is not below exp(−z).
 POWER = 64
 
-#: States that a call of a kernel draws at most for ``labelled``, and the seconds up to which a call
-#: is short.
+#: The most states that a call of a kernel draws for ``labelled``, and the longest short call in
+#: seconds.
 PIECE, SHORT = 2**13, 0.05
 
 
 class Cells(NamedTuple):
-    """Proposals of heights in a channel of m cells across: see ``propose_heights``."""
+    """Proposals of heights in a channel with m cells across (see ``propose_heights``)."""
 
     ends: np.ndarray  # (m + 1,), from the middle of the channel
     weights: np.ndarray  # (m, m), of a pair of cells
     backward: np.ndarray  # (N, m): Σ over the cells of all discs that follow
     room: float  # A − (N − 1) d₀
     least: float  # d₀
-    scale: float  # with which a factor of the ratio is at most 1 in the mean
+    scale: float  # makes the N factors of the ratio at most 1 in the geometric mean
     turned: bool  # whether the channel is along y
 
 
 class Chain(NamedTuple):
-    """A chain from an arrangement (2, N): its sweeps, and of how many sizes its moves are.
+    """A chain from an arrangement (2, N), its number of sweeps, and the number of sizes of moves.
 
-    With a ``grid`` they are event chains, as many as ``sweeps``, of a mean ``length``.
+    With a ``grid`` there are event chains: their number is ``sweeps``, their mean length
+    ``length``.
     """
 
     centres: np.ndarray
@@ -77,7 +77,7 @@ class Chain(NamedTuple):
 
 
 class Initial(NamedTuple):
-    """How the states of a scene are drawn; of ``cells`` and ``chain`` one at most is not None."""
+    """The constants of a scene for draws of states; ``cells`` and ``chain`` may be None."""
 
     discs: int
     half_x: float
@@ -90,10 +90,10 @@ class Initial(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def method(scene):
-    """Return how centres of a ``Scene`` are drawn: "channel", "rejection" or "chain".
+    """Return the method that draws the centres of a ``Scene``: "channel", "rejection" or "chain".
 
-    A block of insertions, the same one everywhere, tells how much of (AB)^N is free. Where discs
-    hardly fit it finds too little, if anything.
+    A block of insertions, always the same one, gives the free fraction of (AB)^N. If discs hardly
+    fit, its result is too small, maybe 0.
     """
     if is_ordered(scene) or (not scene.periodic and is_ordered(scene.turned())):
         return "channel"
@@ -114,7 +114,7 @@ def initial_of(scene, by=None):
 
 
 def _chain(scene):
-    # The smallest moves are some fraction of the room that is left to the discs.
+    # The smallest moves are a fraction of the free length that is left to the discs.
     tightness = max(scene.range_x, scene.range_y) / (scene.largest_radius - scene.radius)
     scales = min(62, max(SCALES, 2 + math.frexp(tightness)[1]))
     centres, grid = np.array(arrangement(scene)).T.copy(), large_grid(scene)
@@ -125,9 +125,9 @@ def _chain(scene):
 
 
 def large_grid(scene):
-    """Return the ``Grid`` of a ``Scene`` of ``LARGE`` numbers of discs, None for others.
+    """Return the ``Grid`` of a ``Scene`` of at least ``LARGE`` discs; None for fewer.
 
-    There is none for a short ring either.
+    It is also None on a short ring.
     """
     return grid_of(scene) if scene.discs >= LARGE else None
 
@@ -152,10 +152,10 @@ def _cells(scene):
     while ends[-1] < b / 2:
         width = fine if ends[-1] * tilt * steepest < 4 else 1.15 * width
         ends.append(ends[-1] + min(width, b / 24))
-    # From the wall to the middle, as parts of that.
+    # From the wall to the middle, scaled to half of the height.
     ends = [end / ends[-1] * b / 2 for end in ends]
     ends = np.array([end - b / 2 for end in ends] + [b / 2 - end for end in reversed(ends[:-1])])
-    # (room − x)^N ≤ (N/c)^N e^{c (room − x) − N}, c the tilt: with that K there are N factors.
+    # (room − x)^N ≤ (N/c)^N e^{c (room − x) − N}, c the tilt. ``bound`` is the N-th root at x = 0.
     bound = _rounded(n / tilt * math.exp(tilt * room / n - 1))
     cells = len(ends) - 1
     weights, backward = np.empty((cells, cells)), np.ones((n, cells))
@@ -170,7 +170,7 @@ def fill_cells(ends, tilt, sigma, height, least, weights, backward):
     cells, discs = weights.shape[0], backward.shape[0]
     for k in range(cells):
         for l in range(cells):
-            # The least d of two cells is that of their far ends.
+            # Two cells have the least d at their far ends.
             far = max(ends[k + 1] - ends[l], ends[l + 1] - ends[k])
             z = tilt * excess(min(far, height), sigma, height, least)
             weight = 1.0 / (1.0 + z / POWER)
@@ -212,7 +212,7 @@ def sort(values):
 
 @optional(lambda velocities, ring: None)
 def keep_still(velocities, ring):
-    """Take the mean off the first of ``velocities`` (2, N), and scale them to the energy 1/2."""
+    """Subtract the mean from ``velocities[0]`` of (2, N), and scale all to the energy 1/2."""
     n = velocities.shape[1]
     mean, total = 0.0, 0.0
     for i in range(n):
@@ -231,8 +231,8 @@ def keep_still(velocities, ring):
 def draw_velocities(state, velocities, cuts, ring):
     """Fill ``velocities`` (2, N) uniformly on the unit sphere, on a ring with no momentum along x.
 
-    The energies of N discs of the plane are uniform on their simplex, so they are what N − 1 sorted
-    uniform numbers (``cuts``) leave between them; all directions are equal.
+    The energies of N discs in the plane are uniform on their simplex: they are the spacings of
+    N − 1 sorted uniform numbers (``cuts``). All directions have the same probability.
     """
     n = velocities.shape[1]
     for i in range(n - 1):
@@ -255,7 +255,7 @@ def draw_velocities(state, velocities, cuts, ring):
 
 @inlined
 def overlaps(centres, i, stop, x, y, initial):
-    """Say whether a disc at (x, y) overlaps any of those before ``stop`` but disc ``i``."""
+    """Return whether a disc at (x, y) overlaps any disc before ``stop`` except disc ``i``."""
     for j in range(stop):
         dx, dy = around(x - centres[0, j], initial.ring), y - centres[1, j]
         if j != i and dx * dx + dy * dy < initial.sigma * initial.sigma:
@@ -289,26 +289,26 @@ def _one_by_one(state, initial, centres, chain, grid):
 
 @optional(_one_by_one)
 def move_discs(state, initial, centres, chain, grid):
-    """Move discs by event chains, or one by one where there is no grid."""
+    """Move discs by event chains, or one by one if there is no grid."""
     chains.run_chains(state, initial, centres, chain.sweeps, chain.length, grid)
 
 
 @optional(_rejected)
 def by_chain(state, initial, centres, chain):
-    """Fill ``centres`` (2, N) by a chain of moves, or by rejection where there is none."""
+    """Fill ``centres`` (2, N) by a chain of moves, or by rejection if there is no chain."""
     centres[:] = chain.centres
     move_discs(state, initial, centres, chain, chain.grid)
 
 
 @optional(lambda chain: False)
 def is_there(chain):
-    """Say whether there is a chain."""
+    """Return whether there is a chain."""
     return True
 
 
 @optional(lambda state, initial, centres, chain: None)
 def settle(state, initial, centres, chain):
-    """Move the discs from where they are, if there is a chain."""
+    """Move the discs from their present centres, if there is a chain."""
     move_discs(state, initial, centres, chain, chain.grid)
 
 
@@ -332,9 +332,10 @@ def chosen(state, weights, ends, backward):
 
 @compiled
 def propose_heights(state, cells, sigma, heights, tilted=False):
-    """Fill ``heights`` (N,), from the middle of the channel; say whether they are accepted.
+    """Fill ``heights`` (N,), from the middle of the channel; return whether they are accepted.
 
-    They are then distributed as (A − S)₊^N; if ``tilted``, as the weights of cells where S < A.
+    Accepted heights have the density (A − S)₊^N; if ``tilted``, that of the weights of cells for
+    S < A.
     """
     discs, height = heights.size, cells.ends[-1] - cells.ends[0]
     ratio, left, k = 1.0, cells.room, 0
@@ -357,7 +358,7 @@ def propose_heights(state, cells, sigma, heights, tilted=False):
 
 @optional(_elsewhere)
 def draw_centres(state, initial, centres, cells):
-    """Fill ``centres`` (2, N) in a channel, where there is one, or in the other two ways."""
+    """Fill ``centres`` (2, N) by the method of the channel if there is one, else by the others."""
     along, across = (1, 0) if cells.turned else (0, 1)
     half = initial.half_y if cells.turned else initial.half_x
     heights, order = centres[across], centres[along]
@@ -394,7 +395,7 @@ def draw_states(state, initial, states):
 
 @compiled
 def exchange_labels(state, states):
-    """Give the centres of each column of ``states`` (4N, number) to the discs at random."""
+    """Permute the discs in each column of ``states`` (4N, number) randomly."""
     n = states.shape[0] // 4
     for k in range(states.shape[1]):
         for i in range(n - 1, 0, -1):
@@ -404,12 +405,12 @@ def exchange_labels(state, states):
 
 
 def labelled(scene, number, seed, block=0, progress=None):
-    """Return ``states`` of which each disc is any of them with the same probability.
+    """Return ``states`` with randomly permuted labels of the discs.
 
-    A channel has its discs in order, and a chain may not get far from the order it starts with.
-    That is of no concern to what all discs do together. Labels have a stream of their own, so that
-    the first states are the same however many there are. ``progress``, if given, is called now and
-    then with how many are drawn (None: as before), and ``number``.
+    In a channel the discs are in order, and a chain may not get far from its first order. The sum
+    over all discs does not depend on labels, but one disc does. Labels have a separate stream, so
+    that the first states do not depend on their number. ``progress``, if given, is called
+    repeatedly with the number of drawn states (None: as before), and ``number``.
     """
     filled, initial, exchanged = (
         np.zeros((4 * scene.discs, number)),
@@ -431,7 +432,7 @@ def labelled(scene, number, seed, block=0, progress=None):
         return stop
 
     def calls():
-        # A state takes a microsecond or a tenth of a second: calls grow while they are short.
+        # A state may take a microsecond or a tenth of a second: calls grow while they are short.
         first, step = 0, 1
         while first < number:
             yield first, min(first + step, number)
@@ -446,7 +447,7 @@ def labelled(scene, number, seed, block=0, progress=None):
 def states(scene, number, seed, block=0, by=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, columns of (4N, number).
 
-    They are the first ones of the stream of ``seed`` for ``block``.
+    They are the first states of the stream of ``seed`` for ``block``.
     """
     states = np.zeros((4 * scene.discs, number))
     draw_states(open_stream(np.uint64(seed), block), initial_of(scene, by), states)

@@ -1,17 +1,17 @@
 """Monte Carlo of the volume and all areas of N discs, by discs that are inserted one at a time.
 
-Each disc takes a height at random and then a place in the length ℓ that the discs before it leave
-free at that height, uniformly. The weight W_k = Π ℓ_i/A of the first k discs makes up for it
+The height of each disc is uniform. Its x is then uniform in the length ℓ that the discs before it
+leave free at this height. The weight W_k = Π ℓ_i/A of the first k discs corrects for the choice
 (Rosenbluth and Rosenbluth, J. Chem. Phys. 23, 356 (1955)): V = (AB)^N ⟨W_N⟩ without bias. The last
-disc is then tried on each surface, where it stands for all N of them:
+disc is then tried on each surface, in place of any of the N discs:
 
     ∂V/∂A            (N/2) (AB)^(N−1) B ⟨W_(N−1) [free on the right + free on the left]⟩
     −∂V/∂σ           N(N − 1)/2 (AB)^(N−1) 2πσ ⟨W_(N−1) [free where it touches a disc]⟩
-    Σ ∫δ(x_i − x_j)  N(N − 1)/2 (AB)^(N−1) B ⟨W_(N−1) [free where it is level with a disc]⟩
+    Σ ∫δ(x_i − x_j)  N(N − 1)/2 (AB)^(N−1) B ⟨W_(N−1) [free at the x of a disc]⟩
 
-with heights, directions and discs at random; ∂V/∂B and hops in y likewise. A sample adds an integer
-for each of them, its weight in units of 2^(−20) of a typical one and rounded at random, so that
-sums are unbiased integers, the same on every machine.
+with random heights, directions and discs; ∂V/∂B and hops in y likewise. A sample adds an integer to
+each sum: its weight in units of 2^(−20) typical weights, rounded up or down randomly. Sums are
+therefore unbiased integers, the same on every machine.
 """
 
 import math
@@ -28,42 +28,44 @@ from twodiscs.model.checks import (
     check_integer,
 )
 from twodiscs.model.events import SHELLS, by_kind
+from twodiscs.points.monte_carlo import InsertionPoint, Weights
 from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many.rates import Measures, overlap_of_two
 
-#: Samples that share a random stream.
+#: Samples with one random stream.
 BLOCK = 1 << 12
 
 #: Units of a typical weight.
 UNITS = 2.0**20
 
-#: What is summed: the volume and the numbers of ``Measures`` after the logarithm.
-QUANTITIES = ("volume", "per_width", "per_height", "per_contact", "hops_x", "hops_y")
+#: The names of the sums: the volume and the fields of ``Measures`` after the logarithm.
+QUANTITIES = (
+    "volume", "per_width", "per_height", "per_contact", "horizontal_hops", "vertical_hops",
+)  # fmt: skip
 
-
-#: Which of the sums is that of an event; both walls of an axis have one.
+#: The index of the sum of an event; both walls of an axis have the same one.
 SUM_OF = by_kind(
     "sampling/many/measures.py",
     {
-        "hop": lambda event: QUANTITIES.index(f"hops_{event.axis}"),
+        "hop": lambda event: QUANTITIES.index(f"{event.name}s"),
         "collision": lambda event: QUANTITIES.index("per_contact"),
         "wall": lambda event: QUANTITIES.index("per_width" if event.axis == "x" else "per_height"),
     },
     SHELLS,
 )
 
-#: The same of the quantities of a point, in the order of the sums.
+#: The index of the sum of each quantity of a point, in the order of the sums.
 SUMS = {"volume": 0} | {f"{event}_area": SUM_OF[event] for event in sorted(SUM_OF, key=SUM_OF.get)}
 
-#: How many times the time of a sample of the prism of two discs a disc takes, roughly.
+#: The time of one disc over the time of a sample of the prism of two discs, roughly.
 COST_RATIO = 10.0
 
 
 class Box(NamedTuple):
-    """What a sample needs: half-ranges, σ, circumference of a ring or None, a typical weight."""
+    """The constants of a scene: half-ranges, σ, circumference of a ring or None, typical weight."""
 
     half_x: float
     half_y: float
@@ -74,7 +76,7 @@ class Box(NamedTuple):
 
 @optional(lambda dx, ring: dx)
 def around(dx, ring):
-    """Return the shorter way around a ring."""
+    """Return the separation to the nearest image on a ring."""
     dx -= ring if dx > ring / 2 else 0.0
     dx += ring if dx < -ring / 2 else 0.0
     return dx
@@ -84,7 +86,7 @@ def around(dx, ring):
     lambda starts, ends, n, low, high, half, ring: put_between(starts, ends, n, low, high, half)
 )
 def put_interval(starts, ends, n, low, high, half, ring):
-    """Add what is closed from ``low`` to ``high``, in two parts where that is across the seam."""
+    """Add the blocked interval from ``low`` to ``high``, as two if it crosses ±``half``."""
     starts[n], ends[n] = max(low, -half), min(high, half)
     n += 1
     if low < -half:
@@ -98,7 +100,7 @@ def put_interval(starts, ends, n, low, high, half, ring):
 
 @inlined
 def put_between(starts, ends, n, low, high, half):
-    """Add what is closed from ``low`` to ``high`` between walls."""
+    """Add the blocked interval from ``low`` to ``high`` between walls."""
     low, high = max(low, -half), min(high, half)
     starts[n], ends[n] = low, high
     return n + 1 if high > low else n
@@ -106,7 +108,7 @@ def put_between(starts, ends, n, low, high, half):
 
 @compiled
 def free_place(state, centres, k, y, box, starts, ends):
-    """Return (free length at height ``y`` beside the first ``k`` discs, a place in it)."""
+    """Return (free length at height ``y`` beside the first ``k`` discs, a random x in it)."""
     n = 0
     for j in range(k):
         dy = y - centres[1, j]
@@ -114,7 +116,7 @@ def free_place(state, centres, k, y, box, starts, ends):
         if square > 0.0:
             d, x = math.sqrt(square), centres[0, j]
             n = put_interval(starts, ends, n, x - d, x + d, box.half_x, box.ring)
-    # By their starts, a short list.
+    # Sort the short list by starts.
     for i in range(1, n):
         low, high, j = starts[i], ends[i], i
         while j > 0 and starts[j - 1] > low:
@@ -138,7 +140,10 @@ def free_place(state, centres, k, y, box, starts, ends):
 
 @inlined
 def is_free(centres, k, x, y, box, but):
-    """Say whether a disc at (x, y) is in the box and overlaps none of the first ``k`` but one."""
+    """Return whether a disc at (x, y) is in the box without overlap of the first ``k`` discs.
+
+    Disc ``but`` is ignored.
+    """
     if (abs(x) > box.half_x) | (abs(y) > box.half_y):
         return False
     for j in range(k):
@@ -150,7 +155,7 @@ def is_free(centres, k, x, y, box, but):
 
 @optional(lambda centres, k, y, box, walls: 0.0)
 def free_at_sides(centres, k, y, box, walls):
-    """Return at how many of the two walls of x a disc is free at height ``y``."""
+    """Return the number of x-walls, 0 to 2, at which a disc is free at height ``y``."""
     free = 1.0 if is_free(centres, k, box.half_x, y, box, -1) else 0.0
     return free + (1.0 if is_free(centres, k, -box.half_x, y, box, -1) else 0.0)
 
@@ -159,7 +164,7 @@ def free_at_sides(centres, k, y, box, walls):
 def sample_blocks(seed, first, stop, discs, box, walls):
     """Return (sums, products) of the samples of blocks ``first`` … ``stop`` − 1, int64.
 
-    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``; products (6, 6),
+    Sums (6) are in ``UNITS`` of a typical weight, in the order of ``QUANTITIES``. Products (6, 6),
     for errors, are Σ w_e w_f in the same units. ``walls`` is None on a ring.
     """
     n = len(QUANTITIES)
@@ -221,26 +226,27 @@ def box_of(scene):
 
 
 def run_blocks(scene, seed, first, stop):
-    """Return (sums, products) of the samples of a ``Scene``, integers: two shards add up."""
+    """Return (sums, products) of the samples of a ``Scene``, integers that shards can add."""
     seed, walls = np.uint64(check_integer("seed", seed, 0)), None if scene.periodic else True
     return sample_blocks(seed, first, stop, scene.discs, box_of(scene), walls)
 
 
 def free_fraction(scene):
-    """Return V/(AB)^N of a ``Scene`` as the first block of the stream 0 has it, maybe 0."""
+    """Return the estimate of V/(AB)^N from the first block of the stream 0, maybe 0."""
     sums, _ = in_a_thread(run_blocks, scene, 0, 0, 1)
     return float(sums[0]) / UNITS / BLOCK * box_of(scene).typical
 
 
 def estimate(scene, sums, products, samples):
-    """Return (``Measures``, their standard errors as ``Measures``) of so many ``samples``.
+    """Return (``Measures``, their standard errors as ``Measures``) from a number of ``samples``.
 
-    Of ratios to the volume by linear propagation, with their covariance; ln V by that of V. On a
-    ring the walls of x are 0. Raises ``InputError`` where not a sample had room.
+    Errors are linearly propagated: for ratios to the volume with their covariance, for ln V from
+    the error of V. On a ring the walls of x have 0. Raises ``InputError`` if the discs fit in no
+    sample.
     """
     n, a, b = scene.discs, scene.range_x, scene.range_y
     if sums[0] == 0:
-        raise InputError(f"of {samples} samples none had room for {n} discs")
+        raise InputError(f"samples must be more than {samples}: in none of them {n} discs fit")
     unit = UNITS * samples
     mean = np.asarray(sums) / unit
     second = np.triu(products) / unit
@@ -274,24 +280,22 @@ def sample(scene, samples, seed):
 def inserted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of volume and areas of a ``Scene`` of more than two discs.
 
-    Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is a dict for a
-    JSON file: radius, method "insertion", samples, ``unit`` (2^20), and for each quantity its
-    measure, ``sum`` Σ w and ``squares`` Σ w², both in units, so that measure × sum / (unit ×
-    samples) is the estimate; ``products`` hold Σ w_a w_b of the pairs of them. All walls are
-    wanted by their two parts. Raises ``InputError`` for an unknown quantity, a shell that is no
-    fraction, and a seed that is no integer ≥ 0.
+    Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is an
+    ``InsertionPoint``. The area of all walls comes with those of the right and the top wall. Raises
+    ``InputError`` for an unknown quantity, a shell that is no fraction, and a seed that is no
+    integer ≥ 0.
     """
     allowed = ("volume", *(f"{event}_area" for event in scene.events))
     for quantity in quantities:
         check_choice("quantity", quantity, allowed)
     if not quantities:
-        raise InputError("quantities must name at least one quantity, not none")
+        raise InputError("quantities must name at least one quantity, but is empty")
     check_fraction("shell", shell)
     check_integer("seed", seed, 0)
     if scene.discs > MOST_WITH_VOLUME:
         raise InputError(
             f"discs must be at most {MOST_WITH_VOLUME} for Monte Carlo by insertion, not "
-            f"{scene.discs}: almost no insertion of more would have a weight"
+            f"{scene.discs}: almost every insertion of more discs has the weight 0"
         )
     wanted = {*quantities, "volume"}
     if "any_wall_area" in wanted:
@@ -304,30 +308,28 @@ def inserted(scene, quantities, shell, seed):
     def point(samples, counts):
         sums, products = counts[0], counts[1:]
         measures = _sampled_measures(scene)
-        return {
-            "radius": scene.radius,
-            "method": "insertion",
-            "samples": samples,
-            "unit": int(UNITS),
-            "quantities": {
-                name: {
-                    "sum": int(sums[k]), "squares": int(products[k, k]), "measure": measures[k],
-                }
+        return InsertionPoint(
+            radius=scene.radius,
+            method=InsertionPoint.METHOD,
+            samples=samples,
+            unit=int(UNITS),
+            quantities={
+                name: Weights(int(sums[k]), int(products[k, k]), measures[k])
                 for name, k in sampled.items()
             },
-            "products": {
+            products={
                 f"{a}*{b}": int(products[j, k])
                 for (a, j), (b, k) in combinations(sampled.items(), 2)
             },
-        }  # fmt: skip
+        )
 
     return Sampler(BLOCK, count, point, COST_RATIO * scene.discs)
 
 
 def _sampled_measures(scene):
-    """Return what a mean weight of 1 says of volume and areas, in the order of ``QUANTITIES``.
+    """Return volume and areas for a mean weight of 1, in the order of ``QUANTITIES``.
 
-    Areas are those of ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
+    Areas are defined as in ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
     """
     a, b, n = scene.range_x, scene.range_y, scene.discs
     volume, pairs = (a * b) ** n * box_of(scene).typical, n * (n - 1) / 2
@@ -338,9 +340,9 @@ def _sampled_measures(scene):
 
 
 def expected(scene):
-    """Return about what the ``Measures`` of a ``Scene`` are, from a few blocks of the stream 0.
+    """Return an estimate of the ``Measures`` of a ``Scene`` from a few blocks of the stream 0.
 
-    The same everywhere. None where not a sample has room.
+    It is the same on every machine, and None if the discs fit in no sample.
     """
     try:
         return sample(scene, 16 * BLOCK, 0)[0]

@@ -1,18 +1,25 @@
-"""Where rough discs have their events in crowds, and how many initial states have to be there.
+"""The bursts of events of rough discs, and the number of initial states that must be in them.
 
-Two rough discs that are level in a narrow gap bounce to and fro in it and leave it late, because
-the impulses along their surfaces turn their motion along the gap back. A run without an initial
-state in the gap misses a part of the rate, and its sample does not show that.
+Two rough discs side by side in a narrow gap bounce between its walls and leave it late, because the
+impulses along their surfaces reverse their motion along the gap. A run without an initial state in
+the gap misses a part of the rate, and its sample does not show that.
 
-The part is exact. Let G be the configurations that are level along an axis within a distance d. The
-share s of the rate of an event that comes from G is the area of its surface in G over the whole
-area. The share P of initial states in G is the volume of G over the whole volume. Of R replicas
-n = P R begin in G, in the mean. If none does, the mean count is short by s. If some do, they add
-s/√n to its relative error at least.
+The part is exact. Let G be the configurations with a separation of at most d along an axis. The
+fraction s of an event's rate that comes from G is the area of its surface in G over the whole area.
+The fraction P of initial states in G is the volume of G over the whole volume. On average n = P R
+out of R replicas begin in G. If none does, the mean count is too small by s. If some do, they add
+at least s/√n to its relative error.
 
-The least G is the neck, where the room of the discs is at most twice the room of level ones, and d
-doubles from there on. Visits of G that begin outside are not counted, so the answer is on the safe
-side. Smooth discs pass a neck in one flight along it and have no such crowds.
+The smallest G is the neck, in which the free length of the discs is at most twice that at
+separation 0. From there on d doubles. Visits of G that begin outside are not counted, so the number
+of initial states is an upper bound. Smooth discs pass a neck in one flight along it and have no
+bursts.
+
+A rough disc may also stay in a corner of two walls as long as a replica lasts. At a distance d from
+the corner it hits the walls N ~ T/d times, so P(N > n) ~ n⁻². The variance of N then grows as the
+logarithm of the number of replicas, but the mean over its standard error from the same sample still
+tends to a normal variable (Giné, Götze and Mason 1997). No run is rejected because its sample has a
+few large N: this would keep the runs without large N, whose errors are too small.
 """
 
 import math
@@ -22,18 +29,18 @@ from typing import NamedTuple
 from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.theory import weighted
 
-#: So many initial states in G show how large its crowds are.
+#: The number of initial states in G that is enough for the error of its bursts.
 VISITS = 100
 
-#: A part of an error that is too small to matter.
+#: A contribution to the error below this fraction of it is ignored.
 NEGLIGIBLE = 0.3
 
-#: The least distance from level, in units of the largest one: below, there are next to no events.
+#: The smallest d over the largest one: below, almost no events come from G.
 SMALLEST = 2.0**-20
 
 
 class Region(NamedTuple):
-    """What is level along an axis ``within`` a distance: its shares of volume and of each rate."""
+    """A region ``within`` a separation along an axis: its fractions of volume and of each rate."""
 
     axis: str
     within: float
@@ -42,17 +49,17 @@ class Region(NamedTuple):
 
 
 def _neck(scene, hop):
-    """Return the distance from level up to which there is a neck, None without one."""
+    """Return the separation up to which there is a neck, None without one."""
     room, sigma = scene.room(hop), scene.contact_distance
-    depth = room if room > 0 else -2 * room  # of the arch that the discs leave over it
+    depth = room if room > 0 else -2 * room  # the height of the arch above the gap
     return math.sqrt(depth * (2 * sigma - depth)) if depth < sigma else None
 
 
 @lru_cache(maxsize=256)
 def regions(scene):
-    """Return the ``Region``s of a ``Scene`` in which events come in crowds, none for smooth discs.
+    """Return the ``Region``s of a ``Scene`` with bursts of events, none for smooth discs.
 
-    The largest ones have no crowds themselves, but enough initial states in any run.
+    The largest ones have no bursts, but enough initial states in any run.
     """
     if scene.moment_of_inertia is None:
         return ()
@@ -73,9 +80,9 @@ def regions(scene):
 
 
 def replicas_needed(scene, event, error):
-    """Return how many initial states show the crowds of an ``event``, for a relative ``error``.
+    """Return the number of initial states that a relative ``error`` of an ``event`` needs.
 
-    Fewer may see none of its crowds, and then have too small an error bar. 0 where there are none.
+    Fewer may miss all of its bursts and have too small an error bar. It is 0 without bursts.
     """
     most = 0.0
     for region in regions(scene):

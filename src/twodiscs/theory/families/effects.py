@@ -12,7 +12,7 @@ __all__ = [
     "shell_expectation", "shells", "volume_and_areas", "work_per_event",
 ]  # fmt: skip
 
-#: Times that discs may leave their periodic cell between two events before that counts as work.
+#: Crossings of the periodic cell between two events that the usual cost of an event includes.
 PASSES_PER_EVENT = 64
 
 
@@ -27,26 +27,26 @@ def rate(scene, event, volume, areas):
 
 
 def passing_rate(scene, hop, volume):
-    """Return how often the discs pass each other in a ``hop`` along a periodic axis."""
+    """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
     area = weighted.passing_area(scene, hop)
     return constant(scene.velocity_components) * area / volume
 
 
 def work_per_event(scene, event_rate):
-    """Return how many times as much an event costs as usual, at most; 1 in a box without ends.
+    """Return an upper bound on the cost of an event over the usual cost, 1 between walls.
 
-    On a periodic axis discs leave their cell between two events, very often where they are small;
-    ``PASSES_PER_EVENT`` times are in what an event costs anyhow.
+    On a periodic axis discs leave their cell between two events, very often if they are small. The
+    usual cost includes ``PASSES_PER_EVENT`` such crossings.
     """
     passes = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
     return max(1.0, passes / PASSES_PER_EVENT / event_rate)
 
 
 def shells(scene):
-    """Return the events whose surface has a shell of its own: all, for masses may differ."""
+    """Return the events whose surface has a shell: all of them, because masses may differ."""
     return scene.events
 
 
 def fraction_near(scene, hop, distance, volume):
-    """Return the share of configuration space within a ``distance`` of level, see ``exact``."""
+    """Return the fraction of configuration space within a ``distance`` of a hop, see ``exact``."""
     return weighted.volume_near(scene, hop, distance) / volume

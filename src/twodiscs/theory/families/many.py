@@ -1,4 +1,4 @@
-"""The exact theory of more than two discs, where there is any."""
+"""The exact theory of more than two discs, as far as it is known."""
 
 from twodiscs.theory.many.exact import event_rates, volume_and_areas
 
@@ -10,15 +10,15 @@ least_free_fraction = 0.0
 
 
 def rate(scene, event, volume, areas):
-    """Return the rate of ``event``, None where no exact value is known; the volume is not used."""
+    """Return the rate of ``event``, None if no exact value is known; the volume is not used."""
     return event_rates(scene)[event]
 
 
 def work_per_event(scene, event_rate):
-    """Return 1: the kernel of N discs looks again only after half a period."""
+    """Return 1: the kernel of N discs has extra work only once in half a period."""
     return 1.0
 
 
 def replicas_needed(scene, event, error):
-    """Return 0: smooth discs have no crowds of events."""
+    """Return 0: smooth discs have no bursts of events."""
     return 0.0

@@ -12,7 +12,7 @@ __all__ = [
 ]  # fmt: skip
 
 
-#: Initial states are drawn where the discs fit, not in the prism.
+#: Initial states are drawn at separations at which the discs fit, not in the prism.
 least_free_fraction = 0.0
 
 
@@ -27,21 +27,21 @@ def rate(scene, event, volume, areas):
 
 
 def work_per_event(scene, event_rate):
-    """Return 1: an event costs as usual."""
+    """Return 1: an event has the usual cost."""
     return 1.0
 
 
 def shells(scene):
-    """Return the events whose surface has a shell of its own."""
+    """Return the events whose surface has a shell."""
     return SHELLS
 
 
 def fraction_near(scene, hop, distance, volume):
-    """Return the share of configuration space within a ``distance`` of level, see ``exact``."""
+    """Return the fraction of configuration space within a ``distance`` of a hop, see ``exact``."""
     epsilon = distance / math.sqrt(2)
     return 2 * epsilon * shell_expectation(scene, hop, epsilon) / volume
 
 
 def replicas_needed(scene, event, error):
-    """Return 0: smooth discs have no crowds of events."""
+    """Return 0: smooth discs have no bursts of events."""
     return 0.0

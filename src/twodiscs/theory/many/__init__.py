@@ -1,1 +1,1 @@
-"""More than two discs: exact numbers where they are known, and what holds for every number."""
+"""More than two discs: exact numbers, if they are known, and relations for any number of discs."""

@@ -4,25 +4,25 @@ For h ≤ (2 + √3) r only neighbours touch. They keep d(y, y') = √(σ² − 
 
     V = ∫_[0,B]^N dy (A − S)₊^N,  S = Σ d(y_i, y_{i+1})
 
-The Laplace transform of that by A is N! p^(−N−1) Z(p), with Z(p) = ⟨1|T^(N−1)|1⟩ of the transfer
-operator T(y, y') = exp(−p d(y, y')). Derivatives of V are such integrals, with one of the T
-replaced by T σ/d (by σ) or by T (y − y')²/(B d) (by B): all their terms are positive. In a hop in y
-of neighbours it is T δ(y − y'), in others the diagonal of a power of T.
+Its Laplace transform with respect to A is N! p^(−N−1) Z(p), with Z(p) = ⟨1|T^(N−1)|1⟩ of the
+transfer operator T(y, y') = exp(−p d(y, y')). Derivatives of V are such integrals, with one of the
+T replaced by T σ/d (by σ) or by T (y − y')²/(B d) (by B): all their terms are positive. For a hop
+in y of neighbours it is T δ(y − y'), for other pairs the diagonal of a power of T.
 
 Conditioning. The least d is d₀ = √(σ² − B²) ≥ r, between discs on opposite walls: d is smooth
 everywhere (B < σ), and only the room A − (N − 1) d₀ and d − d₀ = (B² − (y − y')²)/(d + d₀) count.
-Both are formed without cancellation, with y measured from the nearer wall. Nodes are those of Gauss
-on panels that crowd at both walls, where discs that hardly fit are.
+Both are formed without cancellation, with y measured from the nearer wall. Nodes are Gauss nodes on
+panels that are narrow at both walls, to which discs that hardly fit are confined.
 
-The inverse is taken along the vertical line through the saddle of e^{pA} p^(−N−1) Z(p), where terms
-do not cancel, by the trapezoidal rule. A contour that bends to the left, such as Talbot's, would be
-wrong: Z grows there like exp(|p| (N − 1) σ), which is more than e^{pA} takes back unless the
-channel is longer than the discs in a row. Along the line terms fall like a power of p at least, the
-higher the more discs; they are most where A is near a length at which S is stationary, as it is at
-(N − 1) σ.
+The inverse is taken by the trapezoidal rule along the vertical line through the saddle of
+e^{pA} p^(−N−1) Z(p), on which terms do not cancel. A contour that bends to the left, such as
+Talbot's, would be wrong: Z grows there like exp(|p| (N − 1) σ), faster than e^{pA} falls unless the
+channel is longer than the discs in a row. Along the line terms fall at least like a power of p,
+which is higher for more discs. The number of terms is largest if A is near a length at which S is
+stationary, such as (N − 1) σ.
 
-As N → ∞ at a given p, which is the force along the channel over kT, V grows by the factor λ/p for
-each disc, λ the largest eigenvalue of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
+As N → ∞ at a given p, the force along the channel over kT, V grows by the factor λ/p for each disc,
+with the largest eigenvalue λ of T (Kofke and Post, J. Chem. Phys. 98, 4853 (1993)).
 """
 
 import math
@@ -36,27 +36,31 @@ from twodiscs.model.families.many import is_ordered
 from twodiscs.theory.many.rates import Measures
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 
-#: Nodes of a panel, the phase that they follow, and the most panels that double.
+#: Nodes of a panel, the phase that they resolve, and the most panels that double.
 ORDER, PHASE, MOST_PANELS = 20, 15.0, 60
 
-#: exp(−this) is negligible.
+#: An exponent x with a negligible exp(−x).
 NEGLIGIBLE = 40.0
 
-#: Relative size of what is left out: copies of the function that the step of the trapezoidal rule
-#: lets in, and terms that are not summed.
+#: Relative sizes of neglected parts: periodic images of the function, which come from the step of
+#: the trapezoidal rule, and the terms after the last.
 ALIAS, TAIL = 1e-14, 1e-11
 
-#: Vectors that a first guess at the range of the kernel takes, and what may be missing of it.
+#: The number of vectors in the first trial for the range of the kernel, and its relative error.
 FIRST_RANK, RANK_ERROR = 16, 2e-15
 
-#: Terms of an inverse at the first look at them, and at most.
+#: How much two powers of the kernel may differ in shape before the next ones are taken to be a
+#: geometric series.
+RATIO_ERROR = 4e-15
+
+#: The terms of an inverse in the first trial, and at most.
 FIRST_TERMS, TERMS = 24, 6000
 
 
 class Channel(NamedTuple):
-    """What the transfer operator needs: lengths, nodes across half of the channel, and their pairs.
+    """The constants of the transfer operator: lengths, nodes across half of the channel, and pairs.
 
-    Of pairs of nodes there are two kinds, on the same side of the middle and on opposite ones:
+    There are two kinds of pairs of nodes, on the same side of the middle and on opposite sides, in
     arrays (2, m, m).
     """
 
@@ -114,15 +118,15 @@ def _room(scene):
 def channel_of(scene, force=None, reach=None):
     """Return the ``Channel`` of a ``Scene``, for transforms at a real part ``force`` of p.
 
-    Its nodes follow exp(−p (d − d₀)) up to |p| = ``reach``, where that is not negligible.
+    Its nodes resolve exp(−p (d − d₀)) up to |p| = ``reach``, unless it is negligible.
     """
     if not is_ordered(scene):
         raise InputError(
-            "the transfer operator is for an ordered channel, height ≤ (2 + √3) radius, but the "
-            f"height is {scene.height / scene.radius!r} radii"
+            "height must be at most 2 + √3 radii for the transfer operator of an ordered channel, "
+            f"not {scene.height / scene.radius!r} radii"
         )
     room = _room(scene)
-    # At the saddle p is N/room to (2N + 1)/room.
+    # At the saddle p is between N/room and (2N + 1)/room.
     force = force or scene.discs / room
     nodes = _nodes(*_panels(scene.range_y, scene.contact_distance, force, reach or 2 * force))
     y, weights = nodes
@@ -136,8 +140,8 @@ def channel_of(scene, force=None, reach=None):
 def _panels(height, sigma, force, reach):
     """Return the arguments of ``_nodes`` for p with a real part ``force`` up to |p| = ``reach``."""
     least = math.sqrt((sigma - height) * (sigma + height))
-    # For a length ℓ off a corner d − d₀ rises by at most ℓ B/d₀; a disc that far off both walls has
-    # no neighbour as close as this.
+    # At a distance ℓ from a corner d − d₀ is at most ℓ B/d₀. A disc ``far`` from both walls has no
+    # neighbour this close.
     steepest, far = height / least, least + NEGLIGIBLE / force
     return (
         height,
@@ -153,23 +157,23 @@ def _panels(height, sigma, force, reach):
 def _folded(channel, kinds):
     """Return the operator of a kernel (2, m, m) on functions that are even about the middle.
 
-    √weight stands with each node, so that it is symmetric.
+    Each node has a factor √weight, so that the operator is symmetric.
     """
     root = np.sqrt(channel.weights)
     return root[:, None] * (kinds[0] + kinds[1]) * root
 
 
 def _vectors(channel, p):
-    """Return (kernels T, T^k 1 for k = 0 … N − 1, ln of the factors taken out of those).
+    """Return (kernels T, T^k 1 for k = 0 … N − 1, ln of the factors that scale these vectors).
 
-    Without the factor exp(−p d₀) of each T.
+    Each T is without its factor exp(−p d₀).
     """
     kinds = np.exp(-p * channel.apart)
     kernel = _folded(channel, kinds)
     vectors, logs = [np.sqrt(channel.weights) + 0 * p], [0.0]
     for _ in range(channel.discs - 1):
         new = kernel @ vectors[-1]
-        # Powers of 64 discs might underflow.
+        # Powers of many discs would underflow.
         size = np.max(np.abs(new))
         vectors.append(new / size)
         logs.append(logs[-1] + math.log(size))
@@ -183,13 +187,13 @@ def _log_partition(channel, p):
 
 
 def saddle(channel):
-    """Return (p, φ(p)) where φ = p room − (N + 1) ln p + ln Z is least on the real axis."""
+    """Return (p, φ(p)) at the minimum of φ = p room − (N + 1) ln p + ln Z on the real axis."""
 
     def phi(log_p):
         p = math.exp(log_p)
         return p * channel.room - (channel.discs + 1) * log_p + _log_partition(channel, p)
 
-    # From the ideal gas, N + 1, to discs that hardly fit, 2N + 1.
+    # The product of p and room is N + 1 for an ideal gas, 2N + 1 for discs that hardly fit.
     low = math.log((channel.discs + 1) / channel.room) - 0.1
     high = math.log((2 * channel.discs + 1) / channel.room) + 0.5
     golden = (math.sqrt(5) - 1) / 2
@@ -203,14 +207,14 @@ def saddle(channel):
 def _inverses(channel, p, hops):
     """Return (ln |scale|, values of the transforms at ``p``): V, ∂A, ∂B, −∂σ, hops in y.
 
-    All without exp(p room) and N!.
+    They are without the factors exp(p room) and N!.
     """
     kinds, vectors, logs = _vectors(channel, p)
-    n, scale = channel.discs, logs[-1]
+    n, scale = channel.discs, logs[-1] - (channel.discs + 1) * math.log(abs(p))
     total = 2 * (vectors[0] @ vectors[-1])
-    # T^(k−1) 1 and T^(N−1−k) 1 stand on both sides of bond k; each has its own scale.
+    # Bond k is between T^(k−1) 1 and T^(N−1−k) 1; each has its own scale.
     left, right = vectors[: n - 1], vectors[: n - 1][::-1]
-    factors = 2 * np.exp(logs[: n - 1] + logs[: n - 1][::-1] - scale)
+    factors = 2 * np.exp(logs[: n - 1] + logs[: n - 1][::-1] - logs[-1])
 
     def bonds(weight):
         operator = _folded(channel, kinds * weight)
@@ -219,18 +223,18 @@ def _inverses(channel, p, hops):
     contact = bonds(channel.sigma / channel.distance)
     height = bonds(channel.separation**2 / (channel.height * channel.distance))
     level = _levels(channel, kinds, vectors, logs) if hops else 0.0
-    power = p ** -(n + 1)
+    power = (abs(p) / p) ** (n + 1)
     per_height = n / channel.height * power * total + power * p * height
     values = (power * total, power * p * total, per_height, power * p * contact, power * level)
     return scale, np.array(values)
 
 
 def _factors(kernel):
-    """Return (Q, R) with ``kernel`` = Q R to rounding, as thin as the kernel allows.
+    """Return (Q, R) with ``kernel`` = Q R to rounding, of the smallest inner dimension.
 
-    The kernel is smooth, so that its rank is some tens where it has a thousand nodes. Its range is
-    that of its action on random vectors, the same ones each time (Halko, Martinsson and Tropp, SIAM
-    Rev. 53, 217 (2011)), half of which are left to say whether they are enough.
+    The kernel is smooth, so that its rank is some tens for a thousand nodes. Its range is found
+    from its products with random vectors, always the same ones (Halko, Martinsson and Tropp, SIAM
+    Rev. 53, 217 (2011)). Half of the vectors test whether the other half is enough.
     """
     nodes, rank = len(kernel), FIRST_RANK
     while 2 * rank < nodes:
@@ -247,38 +251,56 @@ def _factors(kernel):
 def _levels(channel, kinds, vectors, logs):
     """Return Σ over i < j of ∫ T^(i−1)1 T^(j−i)(y, y) T^(N−j)1 dy.
 
-    With T = Q R the diagonal of T^k is that of Q (R Q)^(k−1) R, whose middle is small.
+    With T = Q R the diagonal of T^k is the diagonal of Q (R Q)^(k−1) R, in which R Q is small.
     """
     n, total = channel.discs, 0.0
     for sign in (1, -1):
-        # Even and odd functions about the middle have half of the diagonal each, on both sides.
+        # Functions that are even and odd about the middle have half of the diagonal each.
         kernel = _folded(channel, kinds * np.array([1, sign])[:, None, None])
         columns, rows = _factors(kernel)
-        small, log, diagonal = rows @ columns, 0.0, np.diag(kernel)
+        small, log, size = rows @ columns, 0.0, 1.0
+        diagonal = np.diag(kernel) / channel.weights
         for k in range(1, n):
             if k > 1:
-                diagonal = np.einsum("ia,ai->i", columns, rows)
-            i = np.arange(n - k)
-            part = np.einsum(
-                "ki,i,ki->k", vectors[i], diagonal / channel.weights, vectors[n - 1 - k - i]
-            )
-            total += np.sum(np.exp(logs[i] + logs[n - 1 - k - i] + log - logs[-1]) * part)
-            # Powers of 64 discs might underflow.
+                last = diagonal
+                diagonal = np.einsum("ia,ai->i", columns, rows) / channel.weights
+                ratio = np.vdot(last, diagonal) / np.vdot(last, last)
+                change = np.max(np.abs(diagonal - ratio * last))
+                if change <= RATIO_ERROR * np.max(np.abs(diagonal)):
+                    total += _geometric(vectors, logs, ratio * size, k, log) @ diagonal
+                    break
+            scales = logs[: n - k] + logs[n - 1 - k :: -1] + log - logs[-1]
+            total += np.exp(scales) @ ((vectors[: n - k] * vectors[n - 1 - k :: -1]) @ diagonal)
+            # Powers of many discs would underflow.
             columns = columns @ small
             size = np.max(np.abs(columns))
             columns, log = columns / size, log + math.log(size)
     return total
 
 
+def _geometric(vectors, logs, growth, k, log):
+    """Return Σ over i + j ≤ n − 1 − k of T^i 1 T^j 1 ``growth``^(n − 1 − k − i − j), at each node.
+
+    ``log`` is that of the factor of the first term, and the sum is divided by T^(n−1) 1.
+    """
+    last, partial, sums = len(vectors) - 1 - k, 0.0, 0.0
+    for i in range(last + 1):
+        # The sum over the first ones, in units of T^i 1.
+        shrunk = np.exp(logs[i - 1] - logs[i]) if i else 0.0
+        partial = vectors[i] + growth * shrunk * partial
+        sums += np.exp(logs[i] + logs[last - i] + log - logs[-1]) * partial * vectors[last - i]
+    return sums
+
+
 def measures(scene, hops=True, tail=TAIL):
     """Return the ``Measures`` of a ``Scene`` in an ordered channel.
 
     Hops in x are impossible. Hops in y, of any pair, take about as long as all the rest; with
-    ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer
-    than the discs in a row, some 1e-11 (``tail``) in others, and roundings over the room that is
-    left where the discs hardly fit. Of two or three discs there are many terms in a short channel:
-    they have methods of their own. Raises ``InputError`` where the channel is not ordered or the
-    terms are too many.
+    ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer than the
+    discs in a row, and some 1e-11 (``tail``) in others. If the discs hardly fit, errors are
+    roundings over the free length. Two or three discs in a short channel have many terms; other
+    modules have methods for them. Raises ``InputError`` if the channel is not ordered or there are
+    too many terms.
     """
     channel = channel_of(scene)
     p, phi = saddle(channel)
@@ -288,7 +310,7 @@ def measures(scene, hops=True, tail=TAIL):
     while True:
         z = complex(p, len(terms) * step)
         if abs(z) > reach:
-            # Nodes that follow the phase p (d − d₀), as far as the next doubling.
+            # Nodes that resolve the phase p (d − d₀) up to the next doubling.
             reach = 2 * abs(z)
             channel = channel_of(scene, p, reach)
         scale, values = _inverses(channel, z, hops)
@@ -310,15 +332,18 @@ def measures(scene, hops=True, tail=TAIL):
     log_volume = math.lgamma(scene.discs + 1) + math.log(sums[0]) + first + p * channel.room
     ratios = sums[1:] / sums[0]
     return Measures(
-        log_volume, *map(float, ratios[:3]), hops_x=0.0, hops_y=float(ratios[3]) if hops else None
+        log_volume,
+        *map(float, ratios[:3]),
+        horizontal_hops=0.0,
+        vertical_hops=float(ratios[3]) if hops else None,
     )
 
 
 def _windowed(terms):
-    """Return the sums of ``terms`` (n, …), the first one halved, with a smooth end to them.
+    """Return the sums of ``terms`` (n, …) with a window; the first term is halved.
 
     The terms oscillate as exp(i ω (A − S)) for each S that is stationary or at an end of its range.
-    A smooth end leaves next to nothing of what is not summed, but where A is such an S.
+    A window with a smooth end makes the missing terms negligible, unless A is such an S.
     """
     n = len(terms)
     window = [math.erfc(10 * (k / n - 0.6)) / 2 for k in range(n)]
@@ -327,17 +352,17 @@ def _windowed(terms):
 
 
 def _step(channel, p, phi):
-    """Return the step along the line at which copies of V let in by the rule are below ``ALIAS``.
+    """Return the step along the line at which periodic images of V are below ``ALIAS``.
 
-    They are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each; and V there
-    is at most what its transform at any q < p says, e^{q (room + 2π/step)} q^(−N−1) Z(q).
+    The images are V at rooms longer by multiples of 2π/step, times exp(−p 2π/step) for each. V is
+    bounded there by its transform at any q < p, e^{q (room + 2π/step)} q^(−N−1) Z(q).
     """
     best = math.inf
     for share in (0.2, 0.35, 0.5, 0.65, 0.8):
         q = share * p
         at_q = q * channel.room - (channel.discs + 1) * math.log(q) + _log_partition(channel, q)
         best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - share) * p))
-    # V vanishes for no room at all, so copies at shorter rooms need only be that far.
+    # V vanishes for a room of 0, so images at shorter rooms need no larger period than the room.
     return 2 * math.pi / max(best, channel.room)
 
 
@@ -345,10 +370,10 @@ def _step(channel, p, phi):
 
 
 class Limit(NamedTuple):
-    """A channel of infinitely many discs at kT = 1, all for each disc.
+    """A channel of infinitely many discs at kT = 1; all values are per disc.
 
-    ``length`` is the mean length of the channel for a disc, ``per_height`` ∂lnV/∂B and
-    ``per_contact`` −∂lnV/∂σ, ``level`` the density of neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
+    ``length`` is the mean length of the channel, ``per_height`` is ∂lnV/∂B and ``per_contact``
+    −∂lnV/∂σ; ``level`` is the density of neighbours at y = y', Σ∫δ(y_i − y_{i+1})/V.
     """
 
     force: float
@@ -368,7 +393,7 @@ def limit(height, radius, force):
     force = check_number("force", force, 1e-60, 1e60)
     if not 2 * radius < height <= (2 + math.sqrt(3)) * radius:
         raise InputError(
-            "height must lie between 2 and 2 + √3 radii for an ordered channel, not be "
+            "height must be between 2 and 2 + √3 radii for an ordered channel, not "
             f"{height / radius!r} radii"
         )
     sigma, b = 2 * radius, float(Fraction(height) - 2 * Fraction(radius))

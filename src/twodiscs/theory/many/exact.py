@@ -1,8 +1,8 @@
-"""The exact numbers of N discs, where there are any: which method has them.
+"""The exact numbers of N discs, as far as they are known, by the method for each scene.
 
-Two discs have the plain theory, three the quadrature between its kinks, and up to
-``MOST_WITH_VOLUME`` in a channel so low that they keep their order the transfer operator. No exact
-value is known here for all others; their events may be possible all the same.
+Two discs have the plain theory, and three the quadrature between kinks. Any number of discs has the
+transfer operator, if the channel is so low that they keep their order. For other scenes no exact
+value is known here; their events may be possible.
 """
 
 import math
@@ -19,11 +19,8 @@ from twodiscs.theory.many.rates import Measures, rates
 
 
 def method(scene):
-    """Return which theory knows a ``Scene``: "plain", "three", "channel", or None.
-
-    A channel of more than ``MOST_WITH_VOLUME`` discs is not computed: it would take minutes.
-    """
-    if scene.periodic or scene.discs > MOST_WITH_VOLUME:
+    """Return the theory for a ``Scene``: "plain", "three", "channel", or None."""
+    if scene.periodic:
         return None
     if scene.discs < 4:
         return "plain" if scene.discs == 2 else "three"
@@ -32,7 +29,7 @@ def method(scene):
 
 @lru_cache(maxsize=1024)
 def measures(scene, hops=True):
-    """Return the ``Measures`` of a ``Scene``, None where no exact value is known here.
+    """Return the ``Measures`` of a ``Scene``, None if no exact value is known here.
 
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
@@ -61,13 +58,13 @@ def measures(scene, hops=True):
 def volume_and_areas(scene):
     """Return (volume, {event: area}) of a ``Scene`` of N > 2 discs, as ``theory.exact`` does.
 
-    The volume is in length^2N, areas are those of all events that count as one: of any pair, or of
-    one disc at one wall. An area is 0.0 where the event is impossible or has no place; where no
-    exact value is known it is None, and so is the volume.
+    The volume is in length^2N. Areas are for an event of any pair, or of one disc at one wall. An
+    area is 0.0 if the event is impossible or does not exist in the scene. If no exact value is
+    known, an area and the volume are None. Both are None for more than ``MOST_WITH_VOLUME`` discs,
+    whose volume a double may not hold.
     """
-    known = measures(scene)
     areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    if known is None:
+    if scene.discs > MOST_WITH_VOLUME or (known := measures(scene)) is None:
         return None, areas
     volume = math.exp(known.log_volume)
     over_volume = surfaces(scene, known)
@@ -78,12 +75,14 @@ def volume_and_areas(scene):
 def surfaces(scene, known):
     """Return {event: area over volume} of a ``Scene``, given its ``Measures``, as ``theory.exact``.
 
-    That is in the metric in which a state is a point of 2N coordinates. All walls are 2N of each
-    axis with walls.
+    The metric is that of the 2N coordinates. For each axis with walls, all walls have 2N times the
+    area of one disc at one wall.
     """
     root, discs = math.sqrt(2), scene.discs
     over = {
-        "hop": lambda event: root * (known.hops_y if event.axis == "y" else known.hops_x),
+        "hop": lambda event: (
+            root * (known.vertical_hops if event.axis == "y" else known.horizontal_hops)
+        ),
         "collision": lambda event: root * known.per_contact,
         "wall": lambda event: (known.per_width if event.axis == "x" else known.per_height) / discs,
         "walls": lambda event: 2 * (known.per_width + known.per_height),
@@ -95,9 +94,8 @@ def surfaces(scene, known):
 def event_rates(scene):
     """Return {event: rate} of a ``Scene`` of more than two discs; 0.0 if never, None if not known.
 
-    Rates are those of a collision or a hop of any pair, of one disc at one wall, and of any disc at
-    any wall. They do not need the volume, which may be too small for a double although its
-    logarithm is not.
+    Rates are for a collision or a hop of any pair, for one disc at one wall, and for any disc at
+    any wall. They need only the logarithm of the volume, because the volume may underflow.
     """
     known = measures(scene)
     if known is None:
@@ -112,8 +110,9 @@ def event_rates(scene):
 def mean_times(scene):
     """Return {event: mean time}.
 
-    For walls that is one disc at one wall, averaged over all initial conditions; for collisions and
-    hops any pair. None where the event is impossible; an empty dict where no exact value is known.
+    For walls the time is of one disc at one wall, averaged over all initial conditions; for
+    collisions and hops it is of any pair. It is None if the event is impossible. The dict is empty
+    if no exact value is known.
     """
     known = measures(scene)
     if known is None:

@@ -1,19 +1,20 @@
-"""Rates of N discs from what is known of configuration space, and what holds for every N.
+"""Rates of N discs from volume and areas of configuration space, and relations for every N.
 
-With D components of velocity (2N, less a momentum that is conserved) uniform on a sphere at total
-energy 1/2, and c_D of ``flux.constant``, all events of a class together happen at the rates
+With D components of velocity (2N, minus 1 if a momentum is conserved) uniform on a sphere at total
+energy 1/2, and c_D of ``flux.constant``, all events of a class together have the rates
 
     collisions     −(c_D/√2) ∂lnV/∂σ
     walls of x     c_D ∂lnV/∂A                              walls of y likewise
     hops in x      √2 c_D Σ_pairs ∫ δ(x_i − x_j) / V        hops in y likewise
 
 V is the volume of configuration space, a function of the ranges A and B of the centres and of the
-contact distance σ. It scales as a length to the power 2N, so that the virial theorem follows for
-any N, without V:
+contact distance σ. It scales as a length to the power 2N. The virial theorem follows for any N,
+without V:
 
     (A ν_x + B ν_y − √2 σ ν_coll) / (2N c_D) = 1
 
-ν_x are all hits of both walls of x by any disc. At the same energy per disc times scale as 1/√N.
+ν_x is the rate of all hits of both walls of x by any disc. At the same energy per disc times scale
+as 1/√N.
 """
 
 import math
@@ -28,35 +29,35 @@ from twodiscs.theory.flux import constant
 class Measures(NamedTuple):
     """The volume V of configuration space and, over it, its derivatives and the hops.
 
-    ``per_contact`` is −∂lnV/∂σ. ``hops_x`` is Σ_pairs ∫ δ(x_i − x_j)/V; either of the hops may be
-    None where it was not asked for. All but the logarithm are over a length.
+    ``per_contact`` is −∂lnV/∂σ. ``horizontal_hops`` is Σ_pairs ∫ δ(x_i − x_j)/V; either of the hops
+    may be None if it was not asked for. All except the logarithm are in 1/length.
     """
 
     log_volume: float
     per_width: float
     per_height: float
     per_contact: float
-    hops_x: float | None = None
-    hops_y: float | None = None
+    horizontal_hops: float | None = None
+    vertical_hops: float | None = None
 
     def turned(self):
-        """Return what these are for the box turned by a quarter."""
+        """Return the measures of the box turned by a quarter."""
         return Measures(
             self.log_volume, self.per_height, self.per_width, self.per_contact,
-            self.hops_y, self.hops_x,
+            self.vertical_hops, self.horizontal_hops,
         )  # fmt: skip
 
 
 def rates(scene, measures):
     """Return {event: rate × multiplicity} of a ``Scene``, given its ``Measures``.
 
-    Hops that are None there have no entry. Those along a ring, which are no events, have one: how
-    often two discs pass each other.
+    Hops that are None have no entry. Hops along a ring are no events, but have an entry: the rate
+    at which two discs pass each other.
     """
     c = constant(scene.velocity_components)
     rates = {
-        "vertical_hop": measures.hops_y and math.sqrt(2) * c * measures.hops_y,
-        "horizontal_hop": measures.hops_x and math.sqrt(2) * c * measures.hops_x,
+        "vertical_hop": measures.vertical_hops and math.sqrt(2) * c * measures.vertical_hops,
+        "horizontal_hop": measures.horizontal_hops and math.sqrt(2) * c * measures.horizontal_hops,
         "disc_collision": c / math.sqrt(2) * measures.per_contact,
         "right_wall": c * measures.per_width,
         "top_wall": c * measures.per_height,
@@ -67,11 +68,11 @@ def rates(scene, measures):
 def virial_weights(scene):
     """Return {class of events: weight} with which the rates of a ``Scene`` add up to 1.
 
-    Between walls only: on a ring the force across a line is no rate of events. Raises
-    ``InputError`` there.
+    This holds between walls only. On a ring no rate of events gives the force across a line; there
+    ``InputError`` is raised.
     """
     if scene.periodic:
-        raise InputError("a ring has no walls of x, whose rate the virial theorem needs")
+        raise InputError("scene must have walls along x for the virial theorem, but x is periodic")
     c = scene.velocity_components * constant(scene.velocity_components)
     return {
         "disc_collision": -math.sqrt(2) * scene.contact_distance / c,
@@ -81,7 +82,7 @@ def virial_weights(scene):
 
 
 def virial_sum(scene, rates):
-    """Return what the virial theorem says is 1, from {class of events: rate} of a ``Scene``."""
+    """Return the sum in the virial theorem, which is 1, from {class of events: rate}."""
     return math.fsum(weight * rates[event] for event, weight in virial_weights(scene).items())
 
 
@@ -91,7 +92,7 @@ def virial_sum(scene, rates):
 def overlap_of_two(scene):
     """Return q, the probability that two of the centres, drawn uniformly, overlap."""
     if scene.periodic:
-        # The separation along x is uniform, that along y has the density 2 (B − v)/B².
+        # On a ring the separation along x is uniform; along y it has the density 2 (B − v)/B².
         b, sigma = scene.range_y, scene.contact_distance
         reach = min(b, sigma)
         phi = math.asin(reach / sigma)
@@ -103,11 +104,12 @@ def overlap_of_two(scene):
 
 
 def bonferroni_bounds(scene):
-    """Return (lower, upper) bounds of V/(AB)^N, the probability of no overlap at all.
+    """Return (lower, upper) bounds of V/(AB)^N, the probability of no overlap.
 
-    With q for a pair they are 1 − n q and 1 − n q + S₂, n = N(N − 1)/2 (Bonferroni 1936). S₂ sums
-    the probabilities that two given pairs overlap: q² where they have no disc in common, and else
-    at most q times the largest part of the box that a disc closes to another one, πσ²/(AB).
+    With the probability q of a pair they are 1 − n q and 1 − n q + S₂, n = N(N − 1)/2 (Bonferroni
+    1936). S₂ is the sum of the probabilities that two given pairs overlap. It is q² for pairs
+    without a common disc, and otherwise at most q times πσ²/(AB), the largest fraction of the box
+    that one disc blocks for another.
     """
     n, q = scene.discs * (scene.discs - 1) / 2, overlap_of_two(scene)
     closed = min(1.0, math.pi * scene.contact_distance**2 / (scene.range_x * scene.range_y))
@@ -118,10 +120,11 @@ def bonferroni_bounds(scene):
 
 
 def small_disc_rates(scene):
-    """Return {class of events: rate} to the first order in σ at fixed ranges A and B, but hops.
+    """Return {class of events: rate} without hops, for small σ at fixed ranges A and B.
 
-    From V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2: walls are those of
-    an ideal gas with its second virial coefficient, and collisions have the first two orders.
+    They follow from V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2. Wall
+    hits are those of an ideal gas with the second virial coefficient, and collisions have the first
+    two orders.
     """
     c, n = constant(scene.velocity_components), scene.discs * (scene.discs - 1) / 2
     a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
@@ -138,10 +141,10 @@ def small_disc_rates(scene):
 
 
 def bulk_measures(scene):
-    """Return about what the ``Measures`` of many discs are, from an equation of state.
+    """Return approximate ``Measures`` of many discs, from an equation of state.
 
     PV/(N kT) is Z = (1 + η²/8)/(1 − η)², with η the packing fraction (Henderson, Mol. Phys. 30, 971
-    (1975)). Two of them that are level are as if alone.
+    (1975)). The rate of hops of a pair is taken as without other discs.
     """
     a, b, n, sigma = scene.range_x, scene.range_y, scene.discs, scene.contact_distance
     packing = min(0.9, n * math.pi * sigma * sigma / 4 / (scene.width * scene.height))

@@ -1,26 +1,26 @@
-"""Three discs in any box, exact by quadrature that is split where the integrand is not smooth.
+"""Three discs in any box, exact by quadrature between the kinks of the integrand.
 
-With centres x1 < x2 < x3 the discs i and j keep d_ij = √(σ² − (y_i − y_j)²)₊ apart along x, so that
-given the heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, as long as d13 ≤ s, and
+With centres x1 < x2 < x3 the discs i and j are at least d_ij = √(σ² − (y_i − y_j)²)₊ apart along x.
+For given heights the x fill a volume g(s) = (A − s)₊³/6, s = d12 + d23, if d13 ≤ s, and otherwise
 
     h(s, d13) = ∫ (A − t)(t − s) dt from d13 to A = (A − s) m²/2 − m³/3,  m = (A − d13)₊
 
-beyond that. Only the gaps between the heights matter, sorted by height: a larger one P, a
-smaller one Q and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
+The integrand depends only on the gaps between the sorted heights: a larger one P, a smaller one Q
+and their sum t, with weight B − t. With p, q, c = d(P), d(Q), d(t)
 
     V = 24 ∫_0^B dt (B − t) ∫_{t/2}^t dP [g(p + q) + g(q + c) + h(p + c, q)]
 
-where h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
-their terms are positive. For pairs that are level in x, at least σ apart in y,
+In it h is g unless q > p + c. The derivatives by A, B and σ are taken under the integral, and all
+their terms are positive. For pairs with the same x, at least σ apart in y,
 
     Σ ∫ δ(x_i − x_j) = 12 ∫_0^B dt (B − t) ∫_{t/2}^t dP
                        [A² 1(Q ≥ σ) + (A − q)₊² (1(P ≥ σ) + 1(t ≥ σ))]
 
-The integrands are smooth but where P, Q or t is σ, p + q, p + c, q + c or q is A, and q = p + c,
-which is where the discs form an equilateral triangle. All of these P and the t at which two of them
-meet are known in closed form. Between them P, Q and t are σ times the sine of an angle, as far as
-they are less than σ, in which the roots d are smooth too. Relative errors are some 1e-14, times
-r/(r_max − r) where the discs hardly fit.
+The integrands are smooth except at kinks: P, Q or t is σ; p + q, p + c, q + c or q is A; and
+q = p + c, at which the discs form an equilateral triangle. Closed forms give all of these P, and
+the t at which two of them meet. Between them the variables are angles: P, Q and t below σ are σ
+times a sine, so that the roots d are smooth too. Relative errors are some 1e-14, times
+r/(r_max − r) if the discs hardly fit.
 """
 
 import math
@@ -32,7 +32,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.theory.many.rates import Measures
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 
-#: Nodes between two ends, of the sum of the gaps and of the larger gap.
+#: Nodes between two kinks, for the sum of the gaps and for the larger gap.
 OUTER, INNER = 48, 32
 
 
@@ -46,12 +46,12 @@ def _root(square):
 
 
 def _ends(a, b, sigma):
-    """Return the ascending sums of gaps, 0 and B among them, at which two kinks in P meet."""
-    level = _root(sigma**2 - a * a)  # where q is A
+    """Return the ascending sums of gaps at which two kinks in P meet, including 0 and B."""
+    level = _root(sigma**2 - a * a)  # the gap with q = A
     values = [
         sigma, 2 * sigma, math.sqrt(0.75) * sigma,
         _root(4 * sigma**2 - a * a),  # p + q reaches A at P = Q
-        _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, as q + c does
+        _root(sigma**2 - (a - sigma) ** 2),  # … and at Q = 0, like q + c
         _root(sigma**2 - a * a / 4),  # p + c at Q = 0
         level, 2 * level, sigma + level,
     ]  # fmt: skip
@@ -84,10 +84,10 @@ def _sums(a, b, sigma):
 
 
 def _kinks(a, sigma, t, c):
-    """Return gaps (P, Q), each (n, t), with a kink of the integrand there, and with both ends.
+    """Return gaps (P, Q), each (n, t), of the kinks of the integrand and of both ends.
 
-    P ascends. Where the one is known the other is t less it, with a rounding that would count in
-    the root of a Q that should be σ: so both are kept.
+    P ascends. Both gaps are kept, because the difference of t and the other gap has a rounding that
+    matters in the root if Q is exactly σ.
     """
     level = _root(sigma**2 - a * a)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -127,7 +127,7 @@ def _gaps(a, sigma, t, c):
         d = sigma * np.cos(angle)
         return sigma * np.sin(angle), d, (stop - start) * d * w
 
-    # The larger gap as a sine; or it is beyond σ, and the smaller one is, or beyond it, too.
+    # The larger gap is a sine, or above σ; then the smaller one is a sine, or above σ, too.
     gap, p, weight_p = sines(low, high)
     rest = t - gap
     q_of_p = np.sqrt(np.maximum((sigma - rest) * (sigma + rest), 0.0))
@@ -143,14 +143,17 @@ def measures(scene):
     Raises ``InputError`` for another number of discs and for a ring.
     """
     if scene.discs != 3 or scene.periodic:
-        raise InputError("the quadrature for three discs is for three discs between walls")
-    volume, per_width, per_height, per_contact, hops_x = integrals(
+        raise InputError("scene must have three discs between walls for this quadrature")
+    volume, per_width, per_height, per_contact, horizontal_hops = integrals(
         scene.range_x, scene.range_y, scene.contact_distance
     )
-    hops_y = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
+    vertical_hops = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
     return Measures(
         math.log(volume),
-        *(part / volume for part in (per_width, per_height, per_contact, hops_x, hops_y)),
+        *(
+            part / volume
+            for part in (per_width, per_height, per_contact, horizontal_hops, vertical_hops)
+        ),
     )
 
 

@@ -1,4 +1,4 @@
-"""Rules of quadrature on [0, 1]. Standard library only: exact numbers are to start quickly."""
+"""Rules of quadrature on [0, 1]. Only the standard library is imported, for a quick start."""
 
 import math
 
@@ -6,7 +6,7 @@ import math
 def gauss_legendre(order):
     """Return triples (t, 1 − t, weight) of the Gauss–Legendre rule of ``order`` nodes on [0, 1].
 
-    Exact for polynomials of degree 2 ``order`` − 1; nodes by Newton's method.
+    It is exact for polynomials of degree 2 ``order`` − 1. The nodes come from Newton's method.
     """
     rule = []
     for i in range(order):
@@ -24,8 +24,8 @@ def gauss_legendre(order):
 def double_exponential(step):
     """Return triples (t, 1 − t, weight) for any power ≥ 0 at, or just beyond, the ends of [0, 1].
 
-    The trapezoidal rule in s of x = 1/(1 + exp(−π sinh s)) (Takahasi and Mori 1974). It stops 2e-17
-    short of the ends, so that of an integrand that grows towards them something is missing.
+    It is the trapezoidal rule in s of x = 1/(1 + exp(−π sinh s)) (Takahasi and Mori 1974). It stops
+    2e-17 before the ends, so that a part is missing if the integrand grows towards them.
     """
     rule = []
     reach = round(3.2 / step)

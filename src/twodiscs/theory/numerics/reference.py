@@ -1,8 +1,8 @@
 """Volume, areas and mean times to fifty digits, by quadrature from their definitions.
 
-This is what all exact values are set against: slow, made of mpmath numbers, and independent of the
-other modules of this folder. Only the separations u = |x1 − x2| in [0, A] and v = |y1 − y2| in [0,
-B] matter, or x = u/√2 and y = v/√2 where the source divides the quadrant of them into parts.
+All exact values are compared with these: slow, made of mpmath numbers, and independent of the other
+modules of this folder. The integrals depend only on the separations u = |x1 − x2| in [0, A] and
+v = |y1 − y2| in [0, B], or on x = u/√2 and y = v/√2, whose quadrant the source divides into parts.
 """
 
 from functools import cache, wraps
@@ -25,7 +25,7 @@ class MpScene(NamedTuple):
 
     @classmethod
     def of(cls, width, height, radius):
-        """Return the scene of three numbers, taken for exactly what they are."""
+        """Return the scene of three numbers, without rounding."""
         return cls(mpf(width), mpf(height), mpf(radius))
 
     @property
@@ -50,12 +50,12 @@ class MpScene(NamedTuple):
 
     @property
     def upper(self):
-        """√(r² − b²), where that is positive, or else 0."""
+        """√(r² − b²), or 0 if r < b."""
         return mp.sqrt(max(self.r**2 - self.b**2, mpf(0)))
 
     @property
     def lower(self):
-        """√(r² − a²), where that is positive, or else 0."""
+        """√(r² − a²), or 0 if r < a."""
         return mp.sqrt(max(self.r**2 - self.a**2, mpf(0)))
 
     def weight(self, x, y):
@@ -104,7 +104,7 @@ def on_circle(q, f):
     """Return ∬ f(x, y) δ(√(x² + y²) − √2 r) over [0, √2 a] × [0, √2 b], along x and along y."""
     rho = mp.sqrt(2) * q.r
     middle = min(max(mp.pi / 4, q.beta), q.alpha)
-    # Along x where the circle is flat, along y where it is steep.
+    # Over x on the flat part of the circle, over y on the steep part.
     flat = smooth(
         lambda x: f(x, mp.sqrt(rho**2 - x * x)) * rho / mp.sqrt(rho**2 - x * x),
         rho * mp.cos(q.alpha),
@@ -124,7 +124,7 @@ def _triangle(f, x_end, y_end):
 
 
 def _exact(function):
-    """Give a function of a ``MpScene`` its working digits and a memory."""
+    """Decorate a function of a ``MpScene``: it has ``DIGITS`` digits and a cache."""
 
     @cache
     @wraps(function)
@@ -141,7 +141,7 @@ def _exact(function):
 def _profile(x_range, y_range, contact, weight, power):
     """Return ∫ weight(u) (B − k)₊^power du over [0, A], k = √(σ² − u²)₊, A and B the ranges.
 
-    With u = σ sin φ, in which there is no root, as far as the discs keep apart along y.
+    For u < σ the variable is φ in u = σ sin φ, in which there is no root.
     """
     start = mp.acos(min(y_range / contact, mpf(1)))
     stop = mp.asin(min(x_range / contact, mpf(1)))
@@ -192,7 +192,7 @@ def disc_collision_area(q):
 
 @_exact
 def right_wall_area(q):
-    """The area of x1 = a, over all u and v of disc 2 from there."""
+    """The area of x1 = a, over all separations u and v of disc 2."""
     return _profile(2 * q.a, 2 * q.b, 2 * q.r, lambda u: mpf(1), 2)
 
 
@@ -220,7 +220,7 @@ AREAS = by_kind(
 
 
 def contact_density(q):
-    """∫ δ(u² + v² − 4r²) over the prism: what the volume loses as 4r² grows and A, B stay."""
+    """∫ δ(u² + v² − 4r²) over the prism, minus the derivative of V by 4r² at fixed A and B."""
     return -mp.diff(lambda square: volume_of(2 * q.a, 2 * q.b, mp.sqrt(square)), 4 * q.r**2)
 
 
@@ -235,7 +235,7 @@ def largest_radius(q):
 
 
 def sphere(d):
-    """The area of the unit sphere in d ≥ 2 dimensions, circle by circle."""
+    """The area of the unit sphere in d ≥ 2 dimensions, as an integral over circles."""
     area = 2 * mp.pi
     for power in range(1, d - 1):
         area *= mp.quad(lambda t, power=power: mp.sin(t) ** power, [0, mp.pi])
@@ -251,9 +251,9 @@ def normal_speed():
 
 
 def mean_time(event, q):
-    """The mean time between events: the volume of what can see them, over the flux through it.
+    """The mean time between events: the volume of the states that can have them, over the flux.
 
-    Where a hop is blocked, disc 1 reaches a given wall in one of two parts that mirror each other.
+    If a hop is blocked, disc 1 reaches a given wall in one of two parts that mirror each other.
     """
     declared = DECLARED[event]
     blocked = horizontal_hop_area if declared.axis == "x" else vertical_hop_area
@@ -272,7 +272,8 @@ QUANTITIES = {
 def exact_numbers(scene):
     """Return ({"volume": V}, {event: area}, {event: mean time}) of a plain ``Scene``.
 
-    Fifty digits of each for the very doubles of the scene; impossible events have no mean time.
+    Each has fifty digits, for exactly the doubles of the scene; impossible events have no mean
+    time.
     """
     q = MpScene.of(scene.width, scene.height, scene.radius)
     areas = {event: area(q) for event, area in AREAS.items()}
@@ -280,7 +281,7 @@ def exact_numbers(scene):
     return {"volume": volume(q)}, areas, times
 
 
-# Parts of them, as the appendix of the source divides the quadrant --------------------------------
+# Parts of volume and areas, as the appendix of the source divides the quadrant --------------------
 
 
 def _upper(q, f):
@@ -340,11 +341,11 @@ def sector_wall(q):
 
 
 def beside_volume(q):
-    """A sixteenth of the volume, where x < √2 r."""
+    """The part of a sixteenth of the volume with x < √2 r."""
     return outside(q.weight, mp.sqrt(2) * q.r, mp.sqrt(2) * q.b, mp.sqrt(2) * q.r)
 
 
 def beyond_volume(q):
-    """A sixteenth of the volume, where x > √2 r."""
+    """The part of a sixteenth of the volume with x > √2 r."""
     a, b, r = (mp.sqrt(2) * x for x in (q.a, q.b, q.r))
     return rectangle(q.weight, a, b) - rectangle(q.weight, r, b)

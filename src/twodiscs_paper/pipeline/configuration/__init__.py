@@ -1,1 +1,1 @@
-"""From configuration files to what each job depends on."""
+"""From configuration files to the parameters of each job."""

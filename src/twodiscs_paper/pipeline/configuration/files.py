@@ -7,7 +7,7 @@ from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline.configuration.request import STAGES
 
-#: The tables of a scene that are made of points, and the stages that found those.
+#: The tables of a scene that are made of points, and the stages of these points.
 GATHERED = {
     "volume": ["monte_carlo"],
     "areas": ["monte_carlo"],
@@ -19,10 +19,10 @@ GATHERED = {
 
 
 class Files:
-    """The paths of what is built of a ``Configuration``, below its folder of results.
+    """The paths of all files of a ``Configuration``, below its folder of results.
 
-    ``scenes`` are {folder: ``SceneRequest``}; methods take the folder of a scene. Those that return
-    {name: path} name the tables as who reads them does.
+    ``scenes`` are {folder: ``SceneRequest``}; methods take the folder of a scene. If a method
+    returns {name: path}, the reader of the tables uses these names.
     """
 
     def __init__(self, configuration, scenes):
@@ -30,41 +30,44 @@ class Files:
         self.folder = configuration.results
 
     def table(self, name, scene=None):
-        """Return the path of a table of a ``scene``, or of one that belongs to none."""
+        """Return the path of a table of a ``scene``, or without a scene of a shared table."""
         return "/".join(filter(None, (self.folder, scene, f"{name}.csv")))
 
     def tables(self, scene):
-        """Return {name: path} of the tables that a scene calls for."""
+        """Return {name: path} of the tables of a scene."""
         return {name: self.table(name, scene) for name in self.scenes[scene].tables}
 
     def points(self, scene, table, stage):
-        """Return the points of a ``stage`` that a table of a scene is made of."""
+        """Return the paths of the points of a ``stage`` from which a table of a scene is made."""
         keys = self.scenes[scene].keys[stage] if stage in GATHERED[table] else ()
         return [f"{self.folder}/{scene}/points/{stage}/{key}.json" for key in keys]
 
     def figures(self, scene):
-        """Return {name: (PDF, PNG)} of the figures that a scene calls for."""
+        """Return {name: (PDF, PNG)} of the figures of a scene."""
         request = self.scenes[scene]
         return {
-            name: _drawn(f"{self.folder}/{scene}/figures/{name}")
+            name: _pictures(f"{self.folder}/{scene}/figures/{name}")
             for name, entry in FIGURES.items()
             if entry.is_called(request.quantities.names, request.effects)
         }
 
     def animation(self, scene):
-        """Return the files of the animation of a scene, none if the scene has no trajectory."""
+        """Return the files of the animation of a scene, () if the scene has no trajectory."""
         request = self.scenes[scene]
         called = ANIMATION.is_called(request.quantities.names, request.effects)
-        return _drawn(f"{self.folder}/{scene}/figures/animation", "gif") if called else ()
+        return _pictures(f"{self.folder}/{scene}/figures/animation", "gif") if called else ()
 
     def study(self, name):
         """Return the tables of a study and its figures, as PDF and as PNG."""
         study = STUDIES[name]
         tables = [self.table(table.name()) for table in study.tables]
-        return [*tables, *(_drawn(f"{self.folder}/figures/{figure}") for figure in study.figures)]
+        return [
+            *tables,
+            *(_pictures(f"{self.folder}/figures/{figure}") for figure in study.figures),
+        ]
 
     def study_reads(self, study):
-        """Return {name: path} of the tables that a study reads, its own parts among them."""
+        """Return {name: path} of the tables that a study reads, including its own parts."""
         parts = {name: (f"parts/{study.name}", name) for name in study.parts(self.configuration)}
         return {
             name: self.table(table, scene)
@@ -90,7 +93,7 @@ class Files:
         return blake2b(repr(self.configuration).encode(), digest_size=8).hexdigest()
 
     def report(self):
-        """Return what the report says of the scenes."""
+        """Return the properties of the scenes that the report shows."""
         return [
             {
                 "box": " × ".join(f"{side:g}" for side in scene.box.sides),
@@ -103,7 +106,7 @@ class Files:
         ]
 
 
-def _drawn(path, first="pdf"):
+def _pictures(path, first="pdf"):
     return f"{path}.{first}", f"{path}.png"
 
 
@@ -113,7 +116,7 @@ def assigned(names, paths):
 
 
 def braced(paths):
-    """Return paths in one folder as a person would type them: folder/{a,b}.json; "" of none."""
+    """Return paths in one folder as a person types them: folder/{a,b}.json; "" without paths."""
     if not paths:
         return ""
     folders, names = zip(*(str(path).rsplit("/", 1) for path in paths), strict=True)

@@ -1,6 +1,6 @@
-"""From a configuration file to what it asks for, or to one sentence about a mistake.
+"""From a configuration file to a ``Configuration``, or to one sentence about a mistake.
 
-Quick to import, for the Snakefile reads it: no numerical package but for effects.
+The Snakefile imports this, so it must be quick: only effects need a numerical package.
 """
 
 import math
@@ -16,18 +16,18 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import even_radii, radii
 from twodiscs.theory.exact import events_per_interval, free_fraction, least_free_fraction
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.reading import ConfigError, shown
+from twodiscs_paper.pipeline.configuration.reading import ConfigError, describe
 from twodiscs_paper.pipeline.configuration.request import Configuration, Quantities, SceneRequest
 from twodiscs_paper.pipeline.configuration.schema import schema
 
 #: Radii of the default hop histograms, over the radius at which the hop becomes blocked.
 HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
 
-#: Radius of the default trajectory over the shorter side: both hops are open, one of them is rare.
+#: Radius of the default trajectory over the shorter side: both hops are open, one hop is rare.
 TRAJECTORY_FRACTION = 0.24
 
-#: The same for a scene with effects, over the radius at which the first hop becomes blocked: in a
-#: field it is rare long before.
+#: Radius of the default trajectory of a scene with effects, over the radius at which the first hop
+#: becomes blocked: in a field this hop is rare far below that radius.
 BELOW_THRESHOLD = 0.5
 
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
@@ -43,11 +43,11 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 def load(mapping):
-    """Return the ``Configuration`` that a mapping, as YAML gives it, asks for.
+    """Return the ``Configuration`` of a mapping, as YAML gives it.
 
     Numbers may be text such as "2e9", which YAML does not take for a number. Raises ``ConfigError``
-    with one sentence that names the key, what it may hold and what it holds, and the scene; of
-    several mistakes with a line for each.
+    with one sentence that names the key, the allowed values, the given value and the scene. If
+    there are several mistakes, each has a line.
     """
     try:
         return _load(mapping)
@@ -61,7 +61,7 @@ def _with_scene(sentence, mapping):
     match = re.match(r"scenes\[(\d+)\](?!\.name)", sentence)
     block = mapping["scenes"][int(match[1])] if match else None
     name = block.get("name") if isinstance(block, Mapping) else None
-    return f"{sentence} (scene {shown(name)})" if name else sentence
+    return f"{sentence} (scene {describe(name)})" if name else sentence
 
 
 def check_results(results, home):
@@ -76,7 +76,9 @@ def check_results(results, home):
 
 def _load(mapping):
     if not isinstance(mapping, Mapping):
-        raise ConfigError(f"the configuration must be {schema()['allowed']}, not {shown(mapping)}")
+        raise ConfigError(
+            f"the configuration must be {schema()['allowed']}, not {describe(mapping)}"
+        )
     settled = _settled(mapping, schema(), "")
     _validate(settled)
     _fill_defaults(settled, schema())
@@ -99,13 +101,13 @@ def _load(mapping):
         raise ConfigError(
             f"shared must leave out 'stability' unless the sides of the scene {main.name!r} "
             f"lie between {format_number(LOW, 'g')} and {format_number(HIGH, 'g')}, because it "
-            "goes far below them"
+            "uses much smaller radii"
         )
     return configuration
 
 
 def _settled(value, node, path):
-    """Copy ``value`` with every number in one form: float, or int where an integer is asked."""
+    """Return a copy of ``value``, each number a float, or an int if the schema asks for one."""
     if isinstance(value, Mapping):
         known = node.get("properties", {})
         return {k: _settled(v, known.get(k, {}), f"{path}.{k}") for k, v in value.items()}
@@ -135,7 +137,7 @@ def _validate(settled):
     errors = list(Draft202012Validator(schema()).iter_errors(settled))
     # A misspelt key often explains a missing one, so it goes first.
     errors.sort(key=lambda error: error.validator != "additionalProperties")
-    # Of each block or value what is wrong first, for the rest may follow from it.
+    # Only the first mistake of each block or value is reported: others may follow from it.
     first = {tuple(error.absolute_path): error for error in reversed(errors)}
     if first:
         raise ConfigError(*map(_sentence, reversed(first.values())))
@@ -159,9 +161,9 @@ def _sentence(error):
         else:
             free = [key for key in known if key not in value]
             hint = _nearest(unknown, free) or f"; its keys are {', '.join(known)}"
-        return f"{path} has an unknown key {shown(unknown)}{hint}"
+        return f"{path} has an unknown key {describe(unknown)}{hint}"
     hint = _nearest(value, node.get("enum", ())) or decimal_hint(value)
-    return f"{path} must be {node['allowed']}, not {shown(value)}{hint}"
+    return f"{path} must be {node['allowed']}, not {describe(value)}{hint}"
 
 
 def _keys(node, home):
@@ -246,7 +248,7 @@ def _scene(block, path, common):
 
 
 def _box(block, path):
-    """Return the ``Box`` of a scene; its effects are checked to go together."""
+    """Return the ``Box`` of a scene, or raise ``ConfigError`` if its effects exclude each other."""
     try:
         return Box.configured(block["box"], block["effects"], block["discs"])
     except InputError as error:
@@ -292,14 +294,14 @@ def _histogram(asked, box, scene, path):
         return {**asked, "radii": (), "event": event}
     if not _is_smooth(scene):
         raise ConfigError(
-            f"{path} must be false, for rough discs in a box are not ergodic and their intervals "
-            "have no exact mean; watch mean_times instead"
+            f"{path} must be false, because rough discs in a box are not ergodic and their "
+            "intervals have no exact mean; watch mean_times instead"
         )
     if not hops:
-        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+        raise ConfigError(f"{path} must be false, because on these periodic axes discs cannot hop")
     if event not in hops:
         raise ConfigError(
-            f"{path}.event must have a place in the scene, as {hops[0]} has, not {event!r}"
+            f"{path}.event must be a hop of this scene, such as {hops[0]}, not {event!r}"
         )
     threshold = box.threshold(event)
     default = [_short(fraction * threshold) for fraction in HISTOGRAM_FRACTIONS]
@@ -317,7 +319,7 @@ def _trajectory(asked, box, scene, path):
     if asked is False:
         return None
     if not _hops(scene):
-        raise ConfigError(f"{path} must be false, for on periodic axes hops have no place")
+        raise ConfigError(f"{path} must be false, because on these periodic axes discs cannot hop")
     if asked is not True:
         radius = asked
     elif not box.is_plain:
@@ -328,21 +330,20 @@ def _trajectory(asked, box, scene, path):
 
 
 def _events(asked, scene, path):
-    """Return the events asked for in the order of ``EVENTS``, if all have a place in the scene."""
+    """Return the requested events in the order of ``EVENTS``, if the scene has all of them."""
     if isinstance(asked, bool):
         return scene.events if asked else ()
     for event in asked:
         if event not in scene.events:
             raise ConfigError(
-                f"{path} must keep to what has a place in the scene, {', '.join(scene.events)}, "
-                f"not {event!r}"
+                f"{path} must hold events of this scene, {', '.join(scene.events)}, not {event!r}"
             )
     return tuple(event for event in EVENTS if event in asked)
 
 
 def _checked(radii, box, path):
     """Return radii as an ascending tuple if all of them fit and none appears twice."""
-    seen = set()
+    found = set()
     for radius in radii:
         try:
             scene = box.scene(radius)
@@ -351,12 +352,12 @@ def _checked(radii, box, path):
         least = least_free_fraction(scene)
         if least and (share := free_fraction(scene)) < least:
             raise ConfigError(
-                f"{path}: radius {radius!r} leaves the discs {share:.1g} of the prism of all "
-                f"places with {_effects_of(box)}, and at least {least:g} of it is needed"
+                f"{path}: with {_effects_of(box)}, radius {radius!r} leaves the discs "
+                f"{share:.1g} of all positions, and at least {least:g} is needed"
             )
-        if radius in seen:
+        if radius in found:
             raise ConfigError(f"{path} must hold every radius once, but holds {radius!r} twice")
-        seen.add(radius)
+        found.add(radius)
     return tuple(sorted(radii))
 
 
@@ -365,15 +366,15 @@ def _effects_of(box):
 
 
 def _shared(asked, all_have_effects):
-    """Return the names of what is built once, in the order of the schema."""
+    """Return the names of ``shared`` with all that the manuscript reads, in the schema's order."""
     known = schema()["properties"]["shared"]["items"]["enum"]
     studies = [study.name for study in STUDIES.values() if study.shared]
     about_plain = {name for name in studies if STUDIES[name].about_plain} | {"paper"}
     for name in asked:
         if all_have_effects and name in about_plain:
             raise ConfigError(
-                f"shared must leave out {name!r} where every scene has effects, for it is about a "
-                "scene without them"
+                f"shared must leave out {name!r} if every scene has effects, because it is about "
+                "a scene without effects"
             )
     wanted = {*asked, *(studies if "paper" in asked else ())}
     return tuple(name for name in known if name in wanted)

@@ -1,4 +1,4 @@
-"""Configuration files, read with limits before anything else reads them.
+"""Read configuration files with limits, before anything else reads them.
 
 The Snakefile calls ``read`` before its own ``configfile:``.
 """
@@ -16,8 +16,8 @@ from twodiscs_paper.pipeline.configuration.schema import schema
 #: values once every alias is written out.
 BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
 
-#: What YAML takes for a number, and numbers as everyone reads them: YAML 1.1 has octal, binary and
-#: sexagesimal ones too, so that 010 is 8 and 1:30 is 90.
+#: The tags of numbers in YAML, and the form of a decimal number. YAML 1.1 also has octal, binary
+#: and sexagesimal numbers: 010 is 8 and 1:30 is 90.
 NUMBERS = {f"tag:yaml.org,2002:{kind}" for kind in ("int", "float")}
 PLAIN = re.compile(
     r"[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)([eE][-+]?\d+)?|[-+]?\.(inf|nan)", re.IGNORECASE
@@ -25,15 +25,15 @@ PLAIN = re.compile(
 
 
 class ConfigError(InputError):
-    """Mistakes in a configuration, each told in one sentence and on one line."""
+    """Mistakes in a configuration, one sentence and one line for each."""
 
 
 def read(path):
     """Return the mapping in the YAML file ``path``.
 
-    Raises ``ConfigError`` with file and line for what YAML does not allow, for a key given twice
-    (the last one would win in silence), for what exceeds the limits of this module, and for a file
-    that cannot be read or holds no mapping.
+    Raises ``ConfigError`` with file and line if the text is no YAML, if a key is given twice (YAML
+    would silently take the last), if the file exceeds the limits of this module, cannot be read or
+    holds no mapping.
     """
     try:
         with open(path, "rb") as file:
@@ -54,7 +54,7 @@ def read(path):
     except (yaml.YAMLError, ArithmeticError, ValueError) as error:
         raise ConfigError(f"{path}: {' '.join(str(error).split())}") from None
     if not isinstance(mapping, dict):
-        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {shown(mapping)}")
+        raise ConfigError(f"{path}: must hold {schema()['allowed']}, not {describe(mapping)}")
     return mapping
 
 
@@ -66,13 +66,13 @@ def or_exit(function, *arguments):
         sys.exit("\n".join(f"Configuration: {sentence}" for sentence in str(error).split("\n")))
 
 
-def shown(value):
-    """Return a ``value`` as a sentence shows it: shortened."""
+def describe(value):
+    """Return a short text of a ``value`` for a sentence."""
     return "empty" if value is None else checks.quote(value)
 
 
 def _step(index):
-    """Return how a path goes on to what is at an ``index``: a key, or a number in a list."""
+    """Return the part of a path that stands for ``index``: a key, or a number in a list."""
     if isinstance(index, yaml.ScalarNode):
         return f".{index.value}"
     return "" if index is None else f"[{index}]"
@@ -83,20 +83,20 @@ def _mistake(problem, node):
 
 
 class _StrictLoader(yaml.SafeLoader):
-    """YAML as usual, within limits, and a key given twice is a mistake."""
+    """The usual YAML, within limits; a key given twice is a mistake."""
 
     def __init__(self, stream):
         super().__init__(stream)
         self.path, self.names, self.sizes, self.total = [], [], {}, 0
 
     def compose_node(self, parent, index):
-        # Values are counted where they are composed: an alias stands for as many as its anchor.
+        # Values are counted as they are composed: an alias counts as much as its anchor.
         if len(self.path) > DEPTH:
             raise _mistake(f"there must be at most {DEPTH} blocks within blocks", parent)
         if self.check_event(yaml.AliasEvent):
             node = super().compose_node(parent, index)
             if node not in self.sizes:
-                raise _mistake("an alias must not stand within what it stands for", node)
+                raise _mistake("an alias must not stand within its own anchor", node)
         else:
             self.path.append(0)
             self.names.append(_step(index))
@@ -118,12 +118,12 @@ class _StrictLoader(yaml.SafeLoader):
 
     def compose_mapping_node(self, anchor):
         node = super().compose_mapping_node(anchor)
-        seen = set()
+        keys = set()
         for key, _ in node.value:
             if isinstance(key, yaml.ScalarNode):
-                if key.value in seen:
+                if key.value in keys:
                     raise _mistake(f"the key {key.value!r} is given a second time", key)
-                seen.add(key.value)
+                keys.add(key.value)
         return node
 
     def construct_object(self, node, deep=False):
@@ -131,5 +131,5 @@ class _StrictLoader(yaml.SafeLoader):
             return super().construct_object(node, deep)
         except yaml.YAMLError:
             raise
-        except Exception as error:  # of many kinds: what int(), float() and datetime say
+        except Exception as error:  # of many kinds, from int(), float() and datetime
             raise _mistake(f"{node.value!r:.40} cannot be read: {error}", node) from None

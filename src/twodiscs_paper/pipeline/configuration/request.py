@@ -1,4 +1,4 @@
-"""What a configuration asks for, checked and with every default filled in."""
+"""A configuration as classes, checked and with every default filled in."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -7,15 +7,15 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
 
-#: The stages whose jobs run once for each radius, and the module that does the work of each.
+#: The stages whose jobs run once for each radius, and the module that does the work of a stage.
 STAGES = {
     "monte_carlo": "twodiscs.sampling.montecarlo",
     "dynamics": "twodiscs.dynamics.counting",
     "intervals": "twodiscs.dynamics.intervals",
 }
 
-#: The thickness of shells in jobs that sample no area: any will do, and so an edit of the
-#: configured one does not concern them.
+#: The thickness of shells in jobs that sample no area. It has no effect; as a constant it keeps an
+#: edit of the configured thickness from running these jobs again.
 NO_SHELL = 0.5
 
 #: The most events that any budget allows.
@@ -24,7 +24,7 @@ MOST_EVENTS = 10**15
 
 @dataclass(frozen=True)
 class Quantities:
-    """What a scene computes and measures; an empty tuple, ``False`` or ``None`` means not at all.
+    """The quantities that a scene computes and measures; empty, ``False`` or ``None`` means not.
 
     ``areas`` and ``mean_times`` hold events in the order of ``EVENTS``, ``hop_histogram`` ascending
     radii, ``trajectory`` a radius.
@@ -38,9 +38,9 @@ class Quantities:
 
     @property
     def names(self):
-        """Everything watched, as a set of names: those of theory.csv, and the two others.
+        """The names of all quantities: as in theory.csv, "hop_histogram" and "trajectory".
 
-        Such as {"volume", "right_wall_area", "right_wall_time", "hop_histogram", "trajectory"}.
+        An example is {"volume", "right_wall_area", "right_wall_time", "hop_histogram"}.
         """
         names = {f"{event}_area" for event in self.areas}
         names |= {f"{event}_time" for event in self.mean_times}
@@ -53,7 +53,7 @@ class SceneRequest:
     """One scene of the configuration.
 
     ``radii`` ascend. ``monte_carlo``, ``dynamics`` and ``histogram`` are the settings of the
-    stages, blocks of the configuration. A job of one radius is named by its key.
+    stages, blocks of the configuration. The key of a radius names its jobs.
     """
 
     name: str
@@ -68,9 +68,9 @@ class SceneRequest:
 
     @property
     def effects(self):
-        """What the box calls for beyond two equal, smooth discs between walls, {name: value}.
+        """All that differs from two equal, smooth discs between walls, {name: value}.
 
-        That is its effects, and ``discs`` where they are more than two.
+        These are the effects, and ``discs`` if there are more than two.
         """
         return self.box.calls_for
 
@@ -81,7 +81,7 @@ class SceneRequest:
 
     @cached_property
     def keys(self):
-        """{stage: {key: radius}} of the jobs that there are."""
+        """{stage: {key: radius}} of all jobs."""
         quantities = self.quantities
         radii = {
             "monte_carlo": self.radii if quantities.volume or quantities.areas else (),
@@ -91,12 +91,12 @@ class SceneRequest:
         return {stage: {key(radius): radius for radius in radii[stage]} for stage in STAGES}
 
     def exact_radii(self, table):
-        """Return the radii of a table of exact values: in theory those of histograms, too."""
+        """Return the radii of a table of exact values; theory.csv also has radii of histograms."""
         return sorted({*self.radii, *(self.quantities.hop_histogram if table == "theory" else ())})
 
     @cached_property
     def tables(self):
-        """The names of the tables that the scene calls for."""
+        """The names of the tables of the scene."""
         jobs = any(self.keys.values())
         measured = {
             "volume": self.quantities.volume,
@@ -111,22 +111,22 @@ class SceneRequest:
 
     @property
     def sampled(self):
-        """What Monte Carlo samples: the volume, and areas of events."""
+        """The quantities that Monte Carlo samples: the volume, and areas of events."""
         areas = [f"{event}_area" for event in self.quantities.areas]
         return ["volume"] * self.quantities.volume + areas
 
     @property
     def shell(self):
-        """The thickness of the shells that Monte Carlo measures areas by."""
+        """The thickness of the shells with which Monte Carlo measures areas."""
         return self.monte_carlo["shell"] if self.quantities.areas else NO_SHELL
 
     @property
     def target(self):
-        """{event: relative standard error asked for} of the mean times."""
+        """{event: requested relative standard error} of the mean times."""
         return self.dynamics["accuracy"]
 
     def arguments(self, stage, radius):
-        """Return what the job of a ``stage`` depends on, beside its scene, by name."""
+        """Return {name: value} of all that the job of a ``stage`` depends on, except its scene."""
         settings = {
             "monte_carlo": {
                 "quantities": self.sampled,
@@ -143,13 +143,13 @@ class SceneRequest:
         return settings[stage] | {"seed": self.seed_of(stage, radius)}
 
     def shard_arguments(self, stage, radius):
-        """Return ``arguments`` of a shard, to which accuracy and budgets are of no consequence."""
-        whatever = {
+        """Return ``arguments`` of a shard, which does not depend on accuracy and budgets."""
+        constant = {
             "monte_carlo": {"samples": 1},
             "dynamics": {"target": dict.fromkeys(self.target, 0.5), "budget": 1},
             "intervals": {"intervals": 1, "budget": MOST_EVENTS},
         }
-        return self.arguments(stage, radius) | whatever[stage]
+        return self.arguments(stage, radius) | constant[stage]
 
     @property
     def trajectory_seed(self):
@@ -165,9 +165,9 @@ class SceneRequest:
 class Configuration:
     """A whole configuration: the folder of results, the root seed and the scenes in their order.
 
-    ``accuracy_cost`` is the block of this name, and ``shared`` names what is built once, in the
-    order of the schema, with all that the manuscript reads. ``effect_scenes`` are the scenes of the
-    study of effects, whatever ``scenes`` are.
+    ``accuracy_cost`` is the block of this name. ``shared`` names the documents and studies that are
+    built once, in the order of the schema, with all that the manuscript reads. ``effect_scenes``
+    are the scenes of the study of effects; they do not depend on ``scenes``.
     """
 
     results: str

@@ -1,7 +1,7 @@
 """The schema of the configuration, and the page config/README.md that is made from it.
 
-``schema.yaml`` says what a file may hold; what follows from the declarations of events, effects and
-studies is filled in here.
+``schema.yaml`` declares the keys and their values. This module fills in all that follows from the
+declarations of events, effects and studies.
 """
 
 from functools import cache
@@ -14,7 +14,7 @@ from twodiscs.model.effects import EFFECTS
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.catalogue import STUDIES
 
-#: What is built once beside the studies.
+#: The documents that are built once, beside the studies.
 DOCUMENTS = ("paper", "report")
 
 
@@ -71,7 +71,7 @@ def _effect(effect):
 
 
 def _fill(node):
-    """Say what a node may hold where that follows from the rest."""
+    """Fill in ``allowed`` of every block below a node that does not have it."""
     for key, child in node.get("properties", {}).items():
         _fill(child)
         if "allowed" not in child and "properties" in child:

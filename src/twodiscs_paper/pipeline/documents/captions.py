@@ -1,4 +1,4 @@
-"""Captions of figures that are built: their tables decide which symbols are explained."""
+"""Captions of built figures: their tables decide which symbols a caption explains."""
 
 from pathlib import Path
 
@@ -9,37 +9,37 @@ from twodiscs_paper.catalogue import STUDY_TABLES
 
 
 def _rows(entry, results, scene):
-    """Return {quantity: rows} of what a figure shows, from the tables that are built."""
-    shown = {}
+    """Return {quantity: rows} of the built tables that a figure shows."""
+    by_quantity = {}
     for name in entry.tables:
         path = Path(results, "" if name in STUDY_TABLES else scene["name"], f"{name}.csv")
         if path.exists():
             for row in (SCENE_TABLES | STUDY_TABLES)[name].read(path):
                 quantity = row.get("quantity") or f"{row.get('event')}_time"
                 if not entry.needs or {quantity, name} & entry.needs:
-                    shown.setdefault(quantity, []).append(row)
-    return shown
+                    by_quantity.setdefault(quantity, []).append(row)
+    return by_quantity
 
 
-def _is_seen(row):
-    """Say whether a row has a value to be drawn."""
+def _has_value(row):
+    """Return whether a row has a value to be drawn."""
     return any(row.get(value) for value in ("exact", "estimate", "bound"))
 
 
 def caption_parts(entry, results, scene):
-    """Return the caption of a figure alone, and what it has in common with other captions.
+    """Return the caption of a figure, and apart from it the sentences that other captions share.
 
-    ``results`` is the folder of all results; ``scene`` has the "name" of the figure's scene, the
-    first one for a figure of none, its "width" and "height", and its "effects" if there are any,
-    among them "discs" if they are more than two.
+    ``results`` is the folder of all results. ``scene`` has the "name" of the figure's scene, its
+    "width" and "height", and its "effects" if there are any, with "discs" if these are more than
+    two. A figure without a scene takes the first scene.
     """
     effects = dict(scene.get("effects", ()))
     discs = effects.pop("discs", 2)
     box = Box(scene["width"], scene["height"], effects, discs)
     rows = _rows(entry, results, scene)
-    seen = frozenset(quantity for quantity, some in rows.items() if any(map(_is_seen, some)))
+    quantities = frozenset(name for name, some in rows.items() if any(map(_has_value, some)))
     return entry.caption_parts(
-        Shown(box, seen or None, [row for some in rows.values() for row in some])
+        Shown(box, quantities or None, [row for some in rows.values() for row in some])
     )
 
 

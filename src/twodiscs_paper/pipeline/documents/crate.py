@@ -1,11 +1,11 @@
-"""Results as an RO-Crate: what each file is, its hash, and which workflow made it of what.
+"""Results as an RO-Crate: each file with its description, its hash and the workflow that made it.
 
     python -m twodiscs_paper.pipeline.documents.crate results/paper.pdf … \\
         --provenance results/provenance.json --citation CITATION.cff \\
         --texts workflow/Snakefile … --output results/ro-crate-metadata.json
 
 The crate is the folder of the output, with a copy of the texts of the workflow in ``_workflow``.
-Its dates and versions are those of ``provenance.json``: the same results give the same bytes.
+Its dates and versions come from ``provenance.json``: the same results give the same bytes.
 """
 
 import json
@@ -16,7 +16,7 @@ from urllib.parse import quote
 import yaml
 
 from twodiscs.arguments import Parser, run
-from twodiscs.comparison.digests import digest
+from twodiscs.points.digests import digest
 from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers
 from twodiscs_paper.pipeline.documents.report import ENTRIES
@@ -29,10 +29,10 @@ PROFILES = {
 }
 TERMS = "https://w3id.org/ro/terms/workflow-run/context"
 
-#: Where the crate has the texts of the workflow. No scene can be called like this.
+#: The folder of the crate with the texts of the workflow. No scene can have this name.
 WORKFLOW = "_workflow"
 
-#: What is neither a table nor a figure.
+#: Descriptions of files that are neither a table nor a figure.
 OTHERS = {
     "check.passed": "The verdict: exact theory, Monte Carlo and molecular dynamics agree",
     "configuration.json": "The configuration that all results were built from",
@@ -56,7 +56,7 @@ def described(name, path):
     return {
         "name": name,
         "description": text,
-        # As Python knows types of files, whatever the machine does.
+        # Python's own list of file types: the machine's list may differ.
         "encodingFormat": MimeTypes().types_map[True].get(kind, "text/plain"),
         "contentSize": str(path.stat().st_size),
         "sha256": digest(path),
@@ -64,10 +64,10 @@ def described(name, path):
 
 
 def crate_of(files, texts, citation, made):
-    """Return the ``ROCrate`` of ``files``, {name in it: path}.
+    """Return the ``ROCrate`` of ``files``, {name in the crate: path}.
 
-    Its workflow are the ``texts``, alike, the Snakefile first. ``citation`` and ``made`` are what
-    CITATION.cff and provenance.json say.
+    Its workflow are the ``texts``, in the same form, the Snakefile first. ``citation`` and ``made``
+    are the contents of CITATION.cff and provenance.json.
     """
     from rocrate.model.contextentity import ContextEntity
     from rocrate.rocrate import ROCrate

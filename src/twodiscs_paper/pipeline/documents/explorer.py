@@ -1,7 +1,7 @@
-"""The explorer: one HTML file in which the discs move and are counted, beside exact mean times.
+"""The explorer: one HTML file that moves the discs and counts events, beside exact mean times.
 
-It brings its own theory, dynamics and plots, in JavaScript, and the points of the scenes without
-effects that are built; it asks for nothing else.
+The file contains its own theory, dynamics and plots, in JavaScript, and the points of all built
+scenes without effects. It loads no other file.
 """
 
 import json
@@ -37,19 +37,20 @@ def by_dynamics(rows):
 
 
 def by_monte_carlo(volumes, areas):
-    """Return the same of rows of volume.csv and areas.csv: volume over area.
+    """Return the same from rows of volume.csv and areas.csv: volume over area.
 
-    What the thickness of a shell adds to an area is known exactly, and taken off. Samples in a
-    shell are free samples, too: as if they were independent, the error is a little too large.
+    The bias of an area by the thickness of its shell is known exactly and subtracted. Errors of
+    volume and area are added as if they were independent. They are not, because samples in a shell
+    are free samples, too; therefore the error is slightly too large.
     """
     volume = {row["radius"]: row for row in volumes if row["stderr"] is not None}
     times = {event: [] for event in COUNTED}
     for row in areas:
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
-            whole, area = volume[radius], row["estimate"] - row["bias"]
-            time = 1.5 * math.pi / DECLARED[event].sides * whole["estimate"] / area
-            error = math.hypot(whole["stderr"] / whole["estimate"], row["stderr"] / area)
+            free, area = volume[radius], row["estimate"] - row["bias"]
+            time = 1.5 * math.pi / DECLARED[event].sides * free["estimate"] / area
+            error = math.hypot(free["stderr"] / free["estimate"], row["stderr"] / area)
             times[event].append([radius, time, time * error])
     return times
 
@@ -70,7 +71,7 @@ def points(tables):
 
 
 def data_of(scenes, seed):
-    """Return what the scripts read: ``scenes`` with their points, looks of events and the seed."""
+    """Return the data of the scripts: ``scenes`` with their points, looks of events, the seed."""
     return {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": seed}
 
 
@@ -81,13 +82,13 @@ def explorer(parts, data, left_out=()):
     """
     from jinja2 import Environment, StrictUndefined
 
-    shown = {
+    values = {
         "data": json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
         "left_out": left_out,
         "scripts": [parts[name] for name in SCRIPTS],
     }
     environment = Environment(undefined=StrictUndefined, trim_blocks=True)
-    return environment.from_string(parts["explorer.html"]).render(shown)
+    return environment.from_string(parts["explorer.html"]).render(values)
 
 
 def main():

@@ -35,7 +35,7 @@ def numbers_of(contents):
     """Return {name: ``Printed``} of every number of the manuscript; see ``typeset``."""
     scenes = contents["scenes"]
     constants = CONSTANTS | {"seed": contents["seed"]}
-    values = printed(read(contents["results"], scenes, contents["long_run"]), scenes)
+    values = printed(read(contents["results"], scenes, contents["long_runs"]), scenes)
     return values | {name: integer(value) for name, value in constants.items()}
 
 
@@ -47,7 +47,7 @@ def typeset(template, output, contents, values):
     ``sys.inputs.contents``: the texts of ``numbers``, the ``captions`` of all figures, the
     ``commit`` of the template, the ``versions``, and ``results``, their folder, as a path from the
     root that results and the project have in common. The same inputs at the same commit give the
-    same bytes on every machine: fonts are those that come with Typst.
+    same bytes on every machine: only the fonts of Typst are used.
     Raises ``InputError`` if the template does not compile.
     """
     import typst
@@ -78,8 +78,8 @@ def contents_of(files, boxes, output):
     """Return the figures and tables for the manuscript ``output``, a path in the folder of results.
 
     ``files`` are the paths of figures and tables. ``boxes`` is {scene: (width, height)}; the
-    manuscript is about the first scene. The result is {"results": folder, "figures": those that
-    belong to no scene, "scenes": [{"name", "width", "height", "figures", "tables"}]}.
+    manuscript is about the first scene. The result is {"results": folder, "figures": [names of
+    shared figures], "scenes": [{"name", "width", "height", "figures", "tables"}]}.
     """
     figures, tables = {None: []}, {None: []}
     for path in map(Path, files):
@@ -113,18 +113,20 @@ def main():
         nargs="+",
         required=True,
         metavar="SCENE=WIDTHxHEIGHT",
-        help="scenes without effects; the first one is what the manuscript is about",
+        help="scenes without effects; the manuscript is about the first one",
     )
     parser.add_argument("--seed", required=True, type=int, help="the seed of the configuration")
     parser.add_argument("--configuration", required=True, help="its hash")
-    parser.add_argument("--long-run", metavar="CSV", help="mean_times.csv of the long run")
+    parser.add_argument(
+        "--long-runs", nargs="*", default=[], metavar="NAME=CSV", help="tables that no build makes"
+    )
     parser.add_argument("--numbers", required=True, metavar="CSV", help="the table of numbers")
     parser.add_argument("--output", required=True, metavar="PDF", help="the manuscript")
     options = parser.parse_args()
     boxes = {scene: box_sides(box) for scene, box in named(options.boxes, "boxes").items()}
     contents = contents_of(options.files, boxes, options.output)
     contents |= {"configuration": options.configuration, "seed": options.seed}
-    contents |= {"long_run": options.long_run}
+    contents |= {"long_runs": named(options.long_runs, "long-runs")}
     values = numbers_of(contents)
     PaperNumbers.write(options.numbers, table_rows(values))
     typeset(options.template, options.output, contents, values)

@@ -1,4 +1,4 @@
-"""The report that is opened first: verdict, agreement, a section a scene; Snakemake's is behind it.
+"""The main report: verdict, agreement, a section for each scene, links to Snakemake's report.
 
 It is one HTML file with its pictures in it; tables, figures as PDF and Snakemake's report are links
 to the files beside it.
@@ -23,8 +23,8 @@ from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
-#: The figures that sections open on, of a scene and of all, and how many those of a scene are;
-#: others stand in for those of a scene that are not there. The rest are thumbnails.
+#: The large figures of a section, of a scene and of all scenes, and how many a scene has; if one is
+#: missing, another figure of the scene replaces it. All other figures are thumbnails.
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
 
@@ -33,18 +33,18 @@ THUMBNAIL = 320
 
 ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
-#: Pixels of a figure for one on the screen.
+#: Pixels of a figure per pixel on the screen.
 DENSITY = 2
 
-#: What is a symbol with a subscript in a caption: r_c.
+#: The form of a symbol with a subscript in a caption: r_c.
 SUBSCRIPT = re.compile(r"\b([A-Za-z])_(\w+)\b")
 
-#: The first sentence of a caption, which says what is drawn: its end is no decimal point.
+#: The first sentence of a caption: its full stop is no decimal point.
 SENTENCE = re.compile(r".*?\.(?= [A-Z(]|$)|.+", re.DOTALL)
 
 
 def agreement(folder, scene):
-    """Return how the estimates of a scene compare with the exact theory, None if none does."""
+    """Return how the estimates of a scene compare with the exact theory, None without check.csv."""
     own = Path(folder, scene["name"])
     if not (own / "check.csv").exists():
         return None
@@ -65,7 +65,7 @@ def agreement(folder, scene):
 def figure(folder, path, scenes):
     """Return title, caption and picture of the figure at ``path``, relative to ``folder``.
 
-    A figure of no scene is about the first of those without effects.
+    A figure without a scene is about the first scene without effects.
     """
     entry = ENTRIES[path.stem]
     scene = scenes.get(path.parts[0])
@@ -101,7 +101,7 @@ def thumbnail(folder, path, scenes):
 
 
 def movie(folder, path, scenes):
-    """Return the animation at ``path`` with the picture that stands still longest, the hop."""
+    """Return the animation at ``path`` with its frame of the longest duration, the hop."""
     with Image.open(Path(folder, path)) as image:
         longest = 0
         for k in range(image.n_frames):
@@ -114,7 +114,7 @@ def movie(folder, path, scenes):
 
 
 def key_figures(paths, of_scene=True):
-    """Return the paths of the key figures among ``paths``, those of one scene or of all scenes."""
+    """Return the paths of the key figures among ``paths``, for one scene or for all scenes."""
     here = {path.stem: path for path in paths}
     if not of_scene:
         return [here[name] for name in KEY_OF_ALL if name in here]
@@ -123,11 +123,11 @@ def key_figures(paths, of_scene=True):
 
 
 def section(folder, paths, scenes, scene=None):
-    """Return what the report shows of the figures and tables at ``paths``, of a scene or of all."""
-    drawn = [path for path in paths if path.suffix == ".png"]
-    movies = [path for path in drawn if path.stem == "animation"]
-    key = key_figures(drawn, scene is not None)
-    others = [path for path in drawn if path not in key and path not in movies]
+    """Return a section of the report: figures and tables at ``paths``, of a scene or of all."""
+    pictures = [path for path in paths if path.suffix == ".png"]
+    movies = [path for path in pictures if path.stem == "animation"]
+    key = key_figures(pictures, scene is not None)
+    others = [path for path in pictures if path not in key and path not in movies]
     effects = [
         f"{value} discs" if name == "discs" else f"{name.replace('_', ' ')} {value}"
         for name, value in ((scene or {}).get("effects") or {}).items()
@@ -144,10 +144,10 @@ def section(folder, paths, scenes, scene=None):
 
 
 def contents(folder, files, scenes, graph):
-    """Return what the template shows of the ``files`` in ``folder``; all paths are relative to it.
+    """Return the values of the template for the ``files`` in ``folder``, relative to ``folder``.
 
-    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}], ``graph`` is a picture
-    of the rules, a text in SVG.
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}]. ``graph`` is a picture of the
+    rules, as SVG text.
     """
     by_name = {scene["name"]: scene for scene in scenes}
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]

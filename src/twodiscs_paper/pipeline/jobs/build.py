@@ -1,6 +1,6 @@
-"""``twodiscs run`` and ``new``: Snakemake's own command line, and what a build ends with.
+"""``twodiscs run`` and ``new``: Snakemake's own command line, and the last lines of a build.
 
-Quick to import: the Snakefile reads this.
+The Snakefile imports this, so it must be quick.
 """
 
 import os
@@ -28,35 +28,35 @@ TARGETS = (
     "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
 )  # fmt: skip
 
-#: Bytes: a disk with less room than this may be what a build failed for.
-ROOM = 10**8
+#: Bytes: if the disk has less space, a build may have failed for that reason.
+SPACE = 10**8
 
-#: Where a wheel puts the workflow, below the folder that is installed to.
+#: The path of the workflow of a wheel, below the folder of the installation.
 SHARED = "share/twodiscs/Snakefile"
 
-#: What ``twodiscs new`` writes: keys that have a default as comments.
+#: The file that ``twodiscs new`` writes: keys with a default are comments.
 NEW = """\
-# What to compute. Every key, its unit and its default: config/README.md of the repository.
+# The configuration. config/README.md of the repository has every key, its unit and its default.
 # Lengths are in any one unit; masses are one and the total energy is 1/2, so times are lengths
 # over a speed of one.
 
 results: results # the folder that everything is built in
 # Another seed repeats every simulation independently.
 # seed: 1908
-# What is built beside the scenes; [paper, report] for the manuscript and all studies.
+# Documents and studies beside the scenes; [paper, report] for the manuscript and all studies.
 # shared: [report]
 
 scenes:
-  - name: mine # that of its folder in results
+  - name: mine # also the name of its folder in results
     box: {width: 1.5, height: 1.0}
     # The relative error of mean times: draft is 1e-2, paper 3e-4, reference 1e-4; or a number.
     accuracy: draft
     monte_carlo: {samples: 1e7}
-    # Without radii there is a grid of them, up to the largest that fits.
+    # Without radii there is a grid of radii up to the largest that fits.
     # radii: [0.1, 0.2, 0.3]
     # Also mass_ratio, periodic: [x], field, moment_of_inertia; a depth in the box makes balls.
     # effects: {radius_ratio: 0.5}
-    # Without watch everything is computed that has a place in the scene.
+    # Without watch, all quantities of the scene are computed.
     # watch: {mean_times: true, trajectory: 0.24}
 """
 
@@ -67,12 +67,12 @@ def new(path):
         with open(path, "x", encoding="utf-8", newline="\n") as file:
             file.write(NEW)
     except FileExistsError:
-        raise InputError(f"{path} is there already, and is not written over") from None
+        raise InputError(f"{path} exists already and is not overwritten") from None
     print(f"{path} is written. To build it: twodiscs run {shlex.quote(str(path))}")
 
 
 def snakefile():
-    """Return the Snakefile of this package: in its checkout, or where its wheel has put it."""
+    """Return the Snakefile of this package: in its checkout, or in the files of its wheel."""
     checkout = Path(twodiscs.__file__).parents[2] / "Snakefile"
     if checkout.is_file():
         return checkout
@@ -87,11 +87,11 @@ def snakefile():
 
 
 def command(path, targets, snakefile, cores=None, dry_run=False):
-    """Return the words that build ``targets`` of the configuration at ``path``, as one types them.
+    """Return the words of the command that builds ``targets`` of the configuration at ``path``.
 
-    They ask for so many ``cores``, or all; with ``dry_run`` they say what would be done, and do
-    nothing. Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores``
-    that are no integer ≥ 1.
+    The command uses ``cores`` cores, or all. With ``dry_run`` it lists the jobs and does nothing.
+    Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
+    no integer ≥ 1.
     """
     cores = "all" if cores is None else check_integer("cores", cores, 1)
     for target in targets:
@@ -110,10 +110,10 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
 
 
 def report_of(words):
-    """Return where Snakemake's own report goes after the command ``words``; None if it has none.
+    """Return the path of Snakemake's own report after the command ``words``, or None without it.
 
-    It is about what is built, so only a build of everything that the configuration at hand asks
-    for has one. Files of configurations are read here as the Snakefile reads them.
+    The report is about all built files, so only a build of all targets of the configuration has
+    one. Configuration files are read here as the Snakefile reads them.
     """
     from snakemake.cli import get_argument_parser
 
@@ -131,36 +131,36 @@ def report_of(words):
 
 
 def check_targets(path, targets, configuration):
-    """Raise ``InputError`` for a target that has nothing to show of a ``Configuration``."""
+    """Raise ``InputError`` for a target without anything to build in a ``Configuration``."""
     files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
     for target in targets:
         about_plain = target == "paper" or (target in STUDIES and STUDIES[target].about_plain)
         if about_plain and configuration.main is None:
             raise InputError(f"{target} is about a scene without effects, and {path} has none")
         if target in FIGURES and not any(target in files.figures(name) for name in files.scenes):
-            raise InputError(f"{target} shows what no scene of {path} watches, or has a place for")
+            raise InputError(f"{target} cannot be drawn: no scene of {path} has its quantities")
 
 
 def build(path, targets, cores=None, dry_run=False):
-    """Run ``command`` of these arguments, with Snakemake; return its exit status."""
+    """Run ``command`` with these arguments in Snakemake; return its exit status."""
     from snakemake.cli import main as snakemake
 
     try:
         configuration = load(read(path))
     except ConfigError as error:
-        # What cannot be read names its file already.
-        told = str(error).split("\n")
-        raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in told)) from None
+        # Errors of reading name their file already.
+        sentences = str(error).split("\n")
+        raise InputError(*(s if str(path) in s else f"{path}: {s}" for s in sentences)) from None
     check_results(configuration.results, ".")
     check_targets(path, targets, configuration)
-    # The Snakefile says how it ended only where there was something to do; here it is always said.
+    # The Snakefile prints the verdict only if it had something to do; here it is always printed.
     words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
-    # In this very process: what ends one of them ends both. Its profile looks at sys.argv.
+    # Snakemake runs in this process, so a signal ends both. Its profile reads sys.argv.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = words
     folders = [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
-    os.environ["PATH"] = os.pathsep.join(folders)  # of the python that jobs start as
+    os.environ["PATH"] = os.pathsep.join(folders)  # jobs find the same python
     try:
         snakemake()
     except SystemExit as end:
@@ -171,15 +171,15 @@ def build(path, targets, cores=None, dry_run=False):
 
 
 def closing(results):
-    """Return the verdict of the check in a folder of ``results``, and where the report is."""
-    said, passed, report = [], Path(results, "check.passed"), Path(results, "report.html")
+    """Return the verdict of the check in a folder of ``results``, and the path of the report."""
+    lines, passed, report = [], Path(results, "check.passed"), Path(results, "report.html")
     if passed.exists():
         when = datetime.fromtimestamp(passed.stat().st_mtime)
-        said += [f"{passed}, of {when:%Y-%m-%d %H:%M}:"]
-        said += [f"  {line}" for line in passed.read_text(encoding="utf-8").splitlines()]
+        lines += [f"{passed}, of {when:%Y-%m-%d %H:%M}:"]
+        lines += [f"  {line}" for line in passed.read_text(encoding="utf-8").splitlines()]
     if report.exists():
-        said += [f"The report is {report.resolve()}"]
-    return "".join(f"{line}\n" for line in said)
+        lines += [f"The report is {report.resolve()}"]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def failing(results, targets):
@@ -190,7 +190,7 @@ def failing(results, targets):
     folder = Path(results)
     if not {*targets} & {"audit", "verify"}:
         (folder / "check.passed").unlink(missing_ok=True)
-    free = shutil.disk_usage(folder).free if folder.is_dir() else ROOM
-    if free >= ROOM:
+    free = shutil.disk_usage(folder).free if folder.is_dir() else SPACE
+    if free >= SPACE:
         return ""
     return f"The disk of {results} has {free / 1e6:.3g} MB left; if it is full, logs are empty\n"

@@ -1,4 +1,4 @@
-"""A figure, of its tables.
+"""Draw a figure from its tables.
 
     python -m twodiscs_paper.pipeline.jobs.figure volume --width 1.5 --height 1 \\
         --tables volume=results/paper/volume.csv --output volume.pdf volume.png
@@ -7,8 +7,8 @@
 from importlib import import_module
 
 from twodiscs.arguments import Parser, add_box, box_of, number, run
-from twodiscs.comparison.digests import digest
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
+from twodiscs.points.digests import digest
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.jobs.study import read_tables
 
@@ -20,8 +20,8 @@ def module_of(name):
     return import_module(ENTRIES[name].module)
 
 
-def drawn(name, tables, box=None, **more):
-    """Return the figure called ``name``, of ``tables`` {name: rows}."""
+def draw_figure(name, tables, box=None, **more):
+    """Return the figure called ``name`` from ``tables``, {name: rows}."""
     draw = module_of(name).draw
     return draw(box=box, tables=tables, **ENTRIES[name].options, **more)
 
@@ -32,7 +32,7 @@ def main():
     add_box(parser, required=False)
     parser.add_argument("--radius", type=number, help="of a trajectory")
     parser.add_argument("--tables", nargs="*", default=[], metavar="NAME=CSV")
-    parser.add_argument("--origin", default="", help="what made it, for its metadata")
+    parser.add_argument("--origin", default="", help="its origin, for its metadata")
     parser.add_argument("--output", nargs="+", required=True, metavar="FILE")
     options = parser.parse_args()
     tables, box = read_tables(options.tables), box_of(options)
@@ -46,7 +46,7 @@ def main():
             animate = module_of(options.figure).animate
             animate(rows=tables["trajectory"], paths=options.output, box=box, **more)
             return
-        figure = drawn(options.figure, tables, box, **more)
+        figure = draw_figure(options.figure, tables, box, **more)
         for path in options.output:
             style.save(figure, path, f"twodiscs: {options.origin}{made_of}")
 

@@ -1,11 +1,10 @@
-"""What is counted at one radius: by Monte Carlo, by dynamics, or of intervals between hops.
+"""Compute a point: the counts at one radius, by Monte Carlo, dynamics or intervals of hops.
 
     python -m twodiscs_paper.pipeline.jobs.point dynamics --width 1.5 --height 1 --radius 0.2 \\
         --target vertical_hop=1e-3 disc_collision=1e-3 --budget 1e9 --seed 1 --output 0.2.json
 
-A point is a JSON object of counts and sums, with a digest of them, and of the processor time that
-they took. Where it is more work than one
-job should do, it is the sum of shards: jobs of their own, with ``--part`` and ``--blocks``.
+A point is a JSON object of counts and sums, with their digest and their processor time. If it is
+too much work for one job, it is the sum of shards: separate jobs, with ``--part`` and ``--blocks``.
 """
 
 import inspect
@@ -21,9 +20,9 @@ from twodiscs.arguments import (
     scene_of,
     whole_number,
 )
-from twodiscs.comparison.digests import read_json, read_seconds, write_json
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.model.checks import InputError
+from twodiscs.points.digests import read_json, read_seconds, write_json
 
 
 def monte_carlo(scene, quantities, samples, shell, seed):
@@ -51,7 +50,7 @@ STAGES = {"monte_carlo": monte_carlo, "dynamics": dynamics, "intervals": interva
 
 
 def work_of(stage, scene, options):
-    """Return the run of a ``stage``, given the ``options`` of the command line."""
+    """Return the run of a ``stage`` with the ``options`` of the command line."""
     _, *names = inspect.signature(STAGES[stage]).parameters
     given = {name: getattr(options, name) for name in names}
     if missing := [name for name, value in given.items() if value is None]:
@@ -60,7 +59,7 @@ def work_of(stage, scene, options):
 
 
 def shard(work, part, first, stop):
-    """Return what a shard holds: the sums of the blocks ``first`` … ``stop`` − 1 of a ``part``."""
+    """Return the content of a shard: sums of the blocks ``first`` … ``stop`` − 1 of a ``part``."""
     if part not in work.parts:
         raise InputError(f"part must be one of {', '.join(work.parts)}, not {part!r}")
     sums = [array.tolist() for array in work.parts[part].work(first, stop)]
@@ -100,17 +99,17 @@ def main():
     parser.add_argument("--seed", type=whole_number, required=True, help="of the random streams")
     parser.add_argument("--part", help="of a shard: all, or a rare hop")
     parser.add_argument("--blocks", nargs=2, type=int, metavar=("FIRST", "STOP"))
-    parser.add_argument("--shards", nargs="*", default=[], metavar="JSON", help="what to add up")
+    parser.add_argument("--shards", nargs="*", default=[], metavar="JSON", help="shards to add up")
     parser.add_argument("--output", required=True, type=Path, metavar="JSON")
     options = parser.parse_args()
     work = work_of(options.stage, scene_of(options), options)
     if options.blocks:
         content = shard(work, options.part, *options.blocks)
     elif options.shards:
-        content = joined(work, options.shards)
+        content = joined(work, options.shards).content()
     else:
         with progress_bar(None, options.stage) as progress:
-            content = work.run(progress)
+            content = work.run(progress).content()
     of_shards = sum(read_seconds(path) or 0.0 for path in options.shards)
     write_json(options.output, content, round(time.process_time() + of_shards, 2))
 

@@ -1,4 +1,4 @@
-"""The table of a study, of its parameters and of other tables.
+"""Make the table of a study from its parameters and other tables.
 
     python -m twodiscs_paper.pipeline.jobs.study tails --parameters '{"box": …, "seed": 1, …}' \\
         --output results/tails.csv
@@ -16,7 +16,7 @@ from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 
 
 class Tables(dict):
-    """The tables of a job, {name: rows}; one that was not given ends it with a sentence."""
+    """The tables of a job, {name: rows}; a missing table ends the job with a sentence."""
 
     def __missing__(self, name):
         fail(f"the table {name} must be given, as --tables {name}=CSV")
@@ -25,7 +25,7 @@ class Tables(dict):
 def read_tables(texts):
     """Return {name: rows} of arguments NAME=CSV.
 
-    The stem of a file says which table it is; of a part of a table, its folder does.
+    The stem of a file names its table; for a part of a table, the folder of the file does.
     """
     tables = Tables()
     for name, path in named(texts, "--tables").items():
@@ -58,8 +58,8 @@ def main():
     try:
         rows = work(*bound.args, **bound.kwargs)
     except InputError as error:
-        # The configuration was accepted, so the mistake is the study's: the traceback says where.
-        raise RuntimeError(f"the study of {options.table} asks for what is not allowed") from error
+        # The configuration was accepted, so the mistake is in the study; the traceback shows it.
+        raise RuntimeError(f"the study of {options.table} uses a value out of range") from error
     table.write(options.output, rows)
 
 

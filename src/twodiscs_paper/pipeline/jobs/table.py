@@ -1,4 +1,4 @@
-"""The tables of a scene, of its points and of the exact values.
+"""Make a table of a scene from its points and the exact values.
 
     python -m twodiscs_paper.pipeline.jobs.table mean_times --width 1.5 --height 1 \\
         --theory results/paper/theory.csv --dynamics results/paper/points/dynamics/*.json \\
@@ -9,20 +9,19 @@ import inspect
 from pathlib import Path
 
 from twodiscs.arguments import Parser, add_box, box_of, number, run, whole_number
-from twodiscs.comparison.digests import read_json, read_seconds
-from twodiscs.comparison.points import checked_point
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs.points.digests import read_seconds
+from twodiscs.points.dynamics import DynamicsPoint
+from twodiscs.points.intervals import IntervalsPoint
+from twodiscs.points.monte_carlo import MonteCarloPoint
 
-
-def read_points(stage, paths):
-    """Return the points of a stage; raise ``InputError`` for a file that holds another thing."""
-    return [checked_point(stage, read_json(path), path) for path in paths]
+#: The points of each stage.
+POINTS = {point.stage: point for point in (MonteCarloPoint, DynamicsPoint, IntervalsPoint)}
 
 
 def forecast(path, scene):
-    """Return {(stage, radius): seconds} of a scene in the forecast at ``path``, if there is one."""
+    """Return {(stage, radius): seconds} of a scene in the forecast at ``path``, {} without one."""
     return {
         (row["stage"], row["radius"]): row["seconds"]
         for row in (Forecast.read(path) if path else [])
@@ -31,7 +30,7 @@ def forecast(path, scene):
 
 
 def rows_of(table, **given):
-    """Return the rows of a ``table``, a class, of those of the arguments that it takes."""
+    """Return the rows of a ``table``, a class, from those arguments that its function takes."""
     taken = inspect.signature(table.rows).parameters
     return table.rows(**{name: value for name, value in given.items() if name in taken})
 
@@ -40,24 +39,24 @@ def main():
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
     parser.add_argument("table", choices=SCENE_TABLES)
     add_box(parser)
-    parser.add_argument("--radii", nargs="*", type=number, default=[], help="grid, theory: which")
+    parser.add_argument("--radii", nargs="*", type=number, default=[], help="grid, theory: radii")
     parser.add_argument("--radius", type=number, help="trajectory: the radius")
     parser.add_argument("--seed", type=whole_number, help="trajectory: of the random numbers")
-    parser.add_argument("--areas", nargs="*", default=[], help="areas, check: of which events")
+    parser.add_argument("--areas", nargs="*", default=[], help="areas, check: their events")
     parser.add_argument("--theory", metavar="CSV", help="the exact values")
-    for stage in STAGES:
+    for stage in POINTS:
         parser.add_argument(f"--{stage}", nargs="*", default=[], metavar="JSON", help="points")
-    parser.add_argument("--forecast", nargs="?", metavar="CSV", help="cost: what was forecast")
+    parser.add_argument("--forecast", nargs="?", metavar="CSV", help="cost: the forecast")
     parser.add_argument("--output", required=True, type=Path, metavar="CSV")
     options = parser.parse_args()
     given = {name: getattr(options, name) for name in ("radii", "radius", "seed", "areas")}
     given["box"] = box_of(options)
     given["theory"] = options.theory and SCENE_TABLES["theory"].read(options.theory)
-    paths = {stage: getattr(options, stage) for stage in STAGES}
-    given["points"] = {stage: read_points(stage, some) for stage, some in paths.items()}
+    paths = {stage: getattr(options, stage) for stage in POINTS}
+    given["points"] = {stage: [*map(POINTS[stage].read, some)] for stage, some in paths.items()}
     if options.table == "cost":
         given["seconds"] = {
-            (stage, point["radius"]): read_seconds(path)
+            (stage, point.radius): read_seconds(path)
             for stage, some in given["points"].items()
             for point, path in zip(some, paths[stage], strict=True)
         }

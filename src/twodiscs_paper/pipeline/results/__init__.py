@@ -1,1 +1,1 @@
-"""What stands in the folder of results: fingerprints, and the comparison with what is expected."""
+"""The folder of results: its manifest, its verdict, and its comparison with expected results."""

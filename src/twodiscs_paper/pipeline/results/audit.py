@@ -1,27 +1,27 @@
-"""Which results are not what their jobs wrote.
+"""Find results that differ from the output of their jobs.
 
     python -m twodiscs_paper.pipeline.results.audit --configuration results/configuration.json
 
-Files are held against ``manifest.sha256``, points and shards against the digests that they carry,
-and the tables of a scene are made again from its points: so an edited table is named even where a
-later build has taken it for good. Files with run times in them are in no manifest.
+Files are compared with ``manifest.sha256``, points and shards with their own digests, and the
+tables of a scene are made again from its points. An edited table is therefore found even if a later
+build has accepted it. Files with run times are not in the manifest.
 """
 
 from pathlib import Path
 
 from twodiscs.arguments import Parser, parameters, run
-from twodiscs.comparison.digests import digest, read_json
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
+from twodiscs.points.digests import digest, read_json
 from twodiscs_paper.pipeline.configuration.files import GATHERED
 from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.jobs.table import read_points, rows_of
+from twodiscs_paper.pipeline.jobs.table import POINTS, rows_of
 
 EDITED, MISSING = "is not what its job wrote", "is missing"
 
 
 def of_manifest(path):
-    """Yield (file, what is wrong with it or None) of the files in the manifest at ``path``.
+    """Yield (file, its fault or None) of the files in the manifest at ``path``.
 
     Raises ``InputError`` for a file that is no manifest.
     """
@@ -35,11 +35,12 @@ def of_manifest(path):
 
 
 def of_points(folder):
-    """Yield (file, what is wrong with it or None) of all points and shards below ``folder``."""
+    """Yield (file, its fault or None) of all points and shards below ``folder``."""
     for kind in ("points", "shards"):
         for file in sorted(folder.glob(f"**/{kind}/**/*.json")):
             try:
-                read_json(file)
+                read = read_json if kind == "shards" else POINTS[file.parent.name].read
+                read(file)
             except (InputError, OSError):
                 yield file, EDITED
             else:
@@ -47,10 +48,10 @@ def of_points(folder):
 
 
 def of_tables(folder, scenes):
-    """Yield (file, what is wrong with it or None) of the tables that are made of points.
+    """Yield (file, its fault or None) of the tables that are made of points.
 
-    ``scenes`` are ``SceneRequest``s. Points that are missing while a table of theirs is there are
-    yielded too: tables cannot be made again without them.
+    ``scenes`` are ``SceneRequest``s. If a table exists but its points do not, the missing points
+    are yielded, too: the table cannot be made again without them.
     """
     for scene in scenes:
         own = folder / scene.name
@@ -64,7 +65,7 @@ def of_tables(folder, scenes):
         gone = [file for some in files.values() for file in some if not file.exists()]
         yield from ((file, MISSING) for file in gone)
         try:
-            points = {stage: read_points(stage, some) for stage, some in files.items()}
+            points = {stage: [*map(POINTS[stage].read, some)] for stage, some in files.items()}
         except (OSError, InputError):
             continue
         exact = SCENE_TABLES["theory"].rows(scene.box, scene.exact_radii("theory"))
@@ -84,28 +85,28 @@ def of_tables(folder, scenes):
 
 
 def audit(folder, configuration):
-    """Return (sentences on what is wrong below ``folder``, how many files were read)."""
+    """Return (sentences on faults below ``folder``, the number of files that were read)."""
     differences = [*of_manifest(folder / "manifest.sha256"), *of_points(folder)]
     differences += of_tables(folder, configuration.scenes)
-    wrong = dict.fromkeys(f"{file} {what}" for file, what in differences if what)
+    wrong = dict.fromkeys(f"{file} {fault}" for file, fault in differences if fault)
     return [*wrong], len({file for file, _ in differences})
 
 
 def main():
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
     parser.add_argument(
-        "--configuration", required=True, type=Path, help="that in the folder of the results"
+        "--configuration", required=True, type=Path, help="the file in the folder of results"
     )
     path = parser.parse_args().configuration
     results = path.parent
     if not (results / "manifest.sha256").exists():
         raise InputError(f"{results} has no manifest.sha256: results are built by make")
     wrong, files = audit(results.resolve(), load(parameters(f"@{path}")))
-    said = f"all {files} files are what their jobs wrote"
+    summary = f"all {files} files are what their jobs wrote"
     if wrong:
-        said = f"{len(wrong)} of {files} files are not what their jobs wrote; "
-        said += "delete them, and they are made again"
-    print(*wrong, said, sep="\n")
+        summary = f"{len(wrong)} of {files} files are not what their jobs wrote; "
+        summary += "delete them, and they are made again"
+    print(*wrong, summary, sep="\n")
     return bool(wrong)
 
 

@@ -1,4 +1,4 @@
-"""Where and when results came to be: commit, versions, machine, times.
+"""The origin of results: commit, versions, machine, times.
 
     python -m twodiscs_paper.pipeline.results.provenance results/paper.pdf … --sources . \\
         --output results/provenance.json
@@ -14,12 +14,12 @@ from pathlib import Path
 
 from twodiscs.arguments import Parser, run
 
-#: The packages whose versions are told, beside Python.
+#: The packages whose versions are recorded, beside Python.
 PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
 
 def commit(folder):
-    """Return the commit that ``folder`` is at, marked where files differ from it, or "unknown"."""
+    """Return the commit of ``folder``, marked if files differ from it, or "unknown"."""
     words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
     try:
         run = subprocess.run(
@@ -36,7 +36,7 @@ def versions():
 
 
 def provenance(sources, paths):
-    """Return a dict of what is known of the files at ``paths``, made by the ``sources``."""
+    """Return a dict on the origin of the files at ``paths``, made by the ``sources``."""
     times = sorted(Path(path).stat().st_mtime for path in paths)
     first, last = (
         datetime.fromtimestamp(moment, UTC).isoformat(timespec="seconds")

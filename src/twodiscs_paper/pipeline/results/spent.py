@@ -1,4 +1,4 @@
-"""Where the time of a build goes: what Snakemake measured of every job, by kind of job.
+"""The time of a build by kind of job, as Snakemake measured it.
 
     python -m twodiscs_paper.pipeline.results.spent results
 
@@ -10,17 +10,17 @@ from pathlib import Path
 from twodiscs.arguments import Parser, run
 from twodiscs.model.checks import InputError
 
-#: The columns that are shown, and what Snakemake calls them; memory is in MiB.
+#: The columns of the table, and their names in Snakemake's files; memory is in MiB.
 COLUMNS = {"seconds": "s", "processor": "cpu_time", "memory": "max_rss"}
 
 
 def spent(folder):
-    """Return a DataFrame of the jobs whose files are in ``folder``/benchmarks, a row each kind.
+    """Return a DataFrame of the jobs whose files are in ``folder``/benchmarks, a row for each kind.
 
-    The kind of a radius is the folder, that of all else the name up to the first hyphen.
-    Columns are the number of jobs, their seconds of wall-clock and of processor time in all, and
-    the largest memory of one in MiB; what takes longest comes first. Raises ``InputError`` for a
-    folder in which no job was measured.
+    The kind of a job at one radius is the name of its folder; the kind of another job is its name
+    up to the first hyphen. Columns are the number of jobs, their total wall-clock and processor
+    time in seconds, and the largest memory of a job in MiB. The kind with the longest time comes
+    first. Raises ``InputError`` for a folder without measured jobs.
     """
     import pandas
 
@@ -28,7 +28,7 @@ def spent(folder):
     if not paths:
         raise InputError(f"{folder} must be a folder of results, with benchmarks/*.tsv in it")
     kinds = [p.parent.name if p.stem[0].isdigit() else p.stem.split("-")[0] for p in paths]
-    # A job that is over before anything is measured has "NA" there.
+    # A job that ends before it is measured has "NA" there.
     spent = pandas.concat(
         [
             pandas.read_csv(path, sep="\t").assign(kind=kind)

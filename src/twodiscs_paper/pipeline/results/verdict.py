@@ -4,9 +4,9 @@
         --studies results/passages.csv … --configuration @results/configuration.json \\
         --output check.passed
 
-The verdict does not believe a table. It counts the comparisons and computes the bound from their
+The verdict checks each table again. It counts the comparisons and computes the bound from their
 number, compares z with the bound and with the deviation of the estimate in standard errors,
-computes the statements on all radii, and asks for every comparison of the configuration. Without an
+computes the rows on all radii again, and requires every comparison of the configuration. Without an
 error bar (few events, or none) z is taken from the table; so are the rows of a study.
 """
 
@@ -21,36 +21,39 @@ from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 
-#: What names a row of a study, as far as its table has these columns.
+#: The columns that identify a row of a study, as far as its table has them.
 NAMES = (
     "scene", "discs", "event", "quantity", "method", "moment_of_inertia", "swap", "radius", "time",
 )  # fmt: skip
 
-#: The columns of an estimate and its error, and those of what it is compared with: the first pair
-#: that a row has.
+#: The columns of an estimate and its error, and of its reference and its error: the first pair that
+#: a row has.
 ESTIMATES = ("estimate", "stderr"), ("dynamics", "dynamics_stderr")
 REFERENCES = ("exact", ""), ("reference", "reference_stderr"), ("monte_carlo", "monte_carlo_stderr")
 
-#: What the column ``passed`` says.
+#: The values of the column ``passed`` in words.
 ANSWERS = {True: "passed", False: "not passed", None: "not compared"}
 
-#: The comparisons that are made of the scores of others.
+#: The comparisons that combine the scores of others.
 OF_SCORES = ("z_mean", "z_spread")
 
 
 def named(row):
-    """Return what a comparison of a scene is called in a sentence."""
+    """Return the name of a comparison of a scene for a sentence."""
     where = "over all radii" if row["radius"] is None else f"at radius {row['radius']!r}"
     return f"{row['comparison']} of {row['quantity']} {where} by {row['method']}"
 
 
 def named_of_study(row):
-    """Return what a row of a study is called in a sentence."""
+    """Return the name of a row of a study for a sentence."""
     return ", ".join(f"{name} {row[name]}" for name in NAMES if row.get(name) is not None)
 
 
 def summary(scene, rows):
-    """Return the sentence on a scene that passed, with how much of it says little."""
+    """Return the sentence on a scene that passed, with the number of weak comparisons.
+
+    These are comparisons with too few events for an error bar, and rows that are not compared.
+    """
     tested = [row for row in rows if row["z"] is not None]
     tests = sum(bool(row["independent"]) for row in tested)
     few = sum(row["status"] in ("too-few", "none-seen") for row in tested)
@@ -69,7 +72,7 @@ def study_summary(study, rows):
 
 
 def deviation(row):
-    """Return how many standard errors the estimate of a row is off; None without an error bar."""
+    """Return the deviation of the estimate of a row in standard errors; None without error bar."""
     (value, error), (reference, spread) = (
         next(
             ((row[value], row.get(error)) for value, error in pairs if row.get(value) is not None),
@@ -83,29 +86,29 @@ def deviation(row):
 
 
 def agrees(z, off, test):
-    """Say whether a score z can be that of an estimate that is ``off`` by so many errors.
+    """Return whether a score z is consistent with an estimate that is ``off`` standard errors off.
 
-    z has the error of the exact value, not of the estimate, and Student's law. With the 100 events
-    that an error bar needs, and the 1000 of a normal test, they differ by less than this. A z by
-    Chernoff's bound is on the safe side, which may be far below.
+    z uses the error of the exact value, not of the estimate, and Student's law. With the 100 events
+    that an error bar needs, and the 1000 events of a normal test, the two differ by less than the
+    margin here. A z by Chernoff's bound is conservative and may be much smaller.
     """
     least = min(abs(z), abs(off))
-    room = 0.2 + least**2 / 10 + least**3 / 300
+    margin = 0.2 + least**2 / 10 + least**3 / 300
     if test == "cluster-bound":
-        return abs(z) <= abs(off) + room and (z == 0 or (z > 0) == (off > 0))
-    return abs(z - off) <= room
+        return abs(z) <= abs(off) + margin and (z == 0 or (z > 0) == (off > 0))
+    return abs(z - off) <= margin
 
 
 def _of_parts(row):
-    """Say whether z is that of the parts of an area, two shells that overlap, each with a tail."""
+    """Return whether z combines the parts of an area, two shells that overlap, each with a tail."""
     return row.get("quantity") == "any_wall_area" and row.get("test") == "exact-tail"
 
 
 def judged(rows, alarm, name):
-    """Yield a sentence on each of the comparisons ``rows`` that fails, or is not as it should be.
+    """Yield a sentence on each of the comparisons ``rows`` that fails or contradicts itself.
 
-    By Bonferroni's bound one of them fails with the probability ``alarm`` at most if all is right.
-    ``name`` is a function: what a row is called.
+    If nothing is wrong, a comparison fails with the probability ``alarm`` at most, by Bonferroni's
+    bound. ``name`` is a function that returns the name of a row.
     """
     from twodiscs.comparison import scores  # which needs numpy and scipy
 
@@ -120,22 +123,23 @@ def judged(rows, alarm, name):
         elif None not in (z, off) and not _of_parts(row) and not agrees(z, off, row.get("test")):
             yield f"{name(row)} has z = {z:.3g}, but its estimate is {off:.3g} standard errors off"
         if row.get("passed", passed) is not passed:
-            said, true = ANSWERS[row["passed"]], ANSWERS[passed]
-            answers.append(f"{name(row)} is {true}, but the table says {said}")
+            printed, true = ANSWERS[row["passed"]], ANSWERS[passed]
+            answers.append(f"{name(row)} is {true}, but the table says {printed}")
         if not _is_near(row.get("bound", bound), bound):
-            few = f"of {len(tested)} comparisons it is {bound}"
-            bounds.append(f"{name(row)} has the bound {row['bound']}, but {few}")
-    for told in filter(None, (answers, bounds)):
-        yield told[0] + (f"; so it is with {len(told) - 1} more" if len(told) > 1 else "")
+            correct = f"the bound of {len(tested)} comparisons is {bound}"
+            bounds.append(f"{name(row)} has the bound {row['bound']}, but {correct}")
+    for sentences in filter(None, (answers, bounds)):
+        more = len(sentences) - 1
+        yield sentences[0] + (f"; the same holds for {more} more" if more else "")
 
 
 def _is_near(value, other):
-    """Say whether two numbers, or None, are the same up to the last digits."""
+    """Return whether two numbers, or None, are the same up to the last digits."""
     return value == other or (None not in (value, other) and math.isclose(value, other))
 
 
 def due(scene):
-    """Yield (comparison, quantity, radius) of all that a ``SceneRequest`` asks to be compared."""
+    """Yield (comparison, quantity, radius) of all comparisons of a ``SceneRequest``."""
     from twodiscs.comparison.check import SUM_RULE
     from twodiscs.theory import virial
 
@@ -152,20 +156,20 @@ def due(scene):
 
 
 def scene_failures(rows, scene=None):
-    """Yield a sentence on all that is wrong with the ``rows`` of check.csv of a ``SceneRequest``.
+    """Yield a sentence on each fault in the ``rows`` of check.csv of a ``SceneRequest``.
 
-    Without a ``scene`` nothing is known of the rows that there must be.
+    Without a ``scene`` no row is required.
     """
     from twodiscs.comparison import check, scores
 
     found = Counter((r["comparison"], r["quantity"], r["radius"], r["method"]) for r in rows)
-    yield from _some("is there twice", (key for key, n in found.items() if n > 1))
+    yield from _some("is duplicated", (key for key, n in found.items() if n > 1))
     there = {key[:3] for key in found if key[0] not in (*OF_SCORES, "flux")}
     asked = {*due(scene)} if scene else there
-    # A hop with a strip is compared with and without it.
-    seen = {(*key[:3], "dynamics") for key in found if key[3] == "strip" and key[2] is not None}
-    yield from _some("is missing", [*(asked - there), *(seen - found.keys())])
-    yield from _some("is not asked for", there - asked)
+    # A hop that is measured in a strip is also counted from ordinary initial states.
+    counted = {(*key[:3], "dynamics") for key in found if key[3] == "strip" and key[2] is not None}
+    yield from _some("is missing", [*(asked - there), *(counted - found.keys())])
+    yield from _some("is not requested", there - asked)
 
     local = [row for row in rows if row["comparison"] not in OF_SCORES]
     tested = [row for row in local if row["z"] is not None]
@@ -183,7 +187,7 @@ def scene_failures(rows, scene=None):
 
 
 def _some(what, keys):
-    """Yield one sentence on ``keys`` of rows, none if there are none: the first, and how many."""
+    """Yield one sentence on the first of the ``keys`` and their number, if there is any."""
     if keys := sorted(keys, key=str):
         comparison, quantity, radius, *methods = keys[0]
         by = "".join(f" by {method}" for method in methods)
@@ -192,7 +196,7 @@ def _some(what, keys):
 
 
 def study_failures(rows):
-    """Yield a sentence on all that is wrong with the scores in the ``rows`` of a study."""
+    """Yield a sentence on each fault of the scores in the ``rows`` of a study."""
     from twodiscs.comparison import scores
 
     found = Counter(tuple(row.items()) for row in rows if row["z"] is not None)
@@ -200,16 +204,16 @@ def study_failures(rows):
         yield "nothing is compared"
     for row, n in found.items():
         if n > 1:
-            yield f"{named_of_study(dict(row))} is there twice"
+            yield f"{named_of_study(dict(row))} is duplicated"
     yield from judged(rows, scores.FALSE_ALARM, named_of_study)
 
 
 def verdict(tables, studies, scenes=None):
-    """Return (failures, text that sums up) of tables, each {name: rows}.
+    """Return (failures, summary) of tables, each {name: rows}.
 
     ``tables`` are the check tables of scenes, and ``scenes`` the ``SceneRequest`` of each by its
-    name. ``studies`` have scores z without verdicts: each study fails by chance as seldom as a
-    scene does, by Bonferroni's bound.
+    name. ``studies`` have scores z without verdicts: by Bonferroni's bound, the probability of a
+    false alarm is the same for each study as for a scene.
     """
     failures = [
         f"{name}: {sentence}"
@@ -223,7 +227,7 @@ def verdict(tables, studies, scenes=None):
         return failures, ""
     lines = [summary(scene, rows) for scene, rows in tables.items()]
     lines += [study_summary(study, rows) for study, rows in studies.items()]
-    lines = lines or ["nothing is compared, for the configuration asks for no measurement"]
+    lines = lines or ["nothing is compared, because the configuration asks for no measurement"]
     return [], "".join(f"{line}\n" for line in lines)
 
 
@@ -236,7 +240,7 @@ def main():
     parser.add_argument("--configuration", required=True, metavar="JSON", help="JSON or @path")
     parser.add_argument("--output", required=True, type=Path, metavar="FILE")
     options = parser.parse_args()
-    options.output.unlink(missing_ok=True)  # whatever happens, an old one says nothing of these
+    options.output.unlink(missing_ok=True)  # an old verdict is not about these tables
     configuration = load(parameters(options.configuration))
     scenes = {scene.name: scene for scene in configuration.scenes if "check" in scene.tables}
     tables = {path.parent.name: SCENE_TABLES["check"].read(path) for path in options.tables}
@@ -244,7 +248,8 @@ def main():
     wanted = [name for name in configuration.shared if name in STUDIES and STUDIES[name].checked]
     wanted = {*scenes, *(STUDIES[name].tables[0].name() for name in wanted)}
     if odd := sorted(wanted ^ {*tables, *studies}):
-        raise InputError(f"tables must be given of {sorted(wanted)}, but see {', '.join(odd)}")
+        names = ", ".join(odd)
+        raise InputError(f"tables must be given of {sorted(wanted)}; missing or surplus: {names}")
     failures, text = verdict(tables, studies, scenes)
     if failures:
         print("\n".join(failures), file=sys.stderr)

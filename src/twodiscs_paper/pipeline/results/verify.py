@@ -1,10 +1,10 @@
-"""Is what was computed here what is committed? Counts and tables, compared point by point.
+"""Compare the results of this machine with the committed ones: counts and tables, point by point.
 
-What was counted, by Monte Carlo and by dynamics, depends on + − × / and √ alone: its integers must
-be the same on every processor. Exact values, scores and whatever follows from them go through math
-libraries, whose last digits differ between processors: these floats must agree to ``RELATIVE``.
+Counts by Monte Carlo and dynamics depend only on + − × / and √: their integers must be the same on
+every processor. Exact values, scores and all that follows from them use math libraries, whose last
+digits differ between processors: these floats must agree to ``RELATIVE``.
 
-The folder of what is expected mirrors that of the results: ``S/points/<method>.json`` holds the
+The folder of expected results mirrors the folder of results: ``S/points/<method>.json`` holds the
 points of a scene S, one line per radius, and ``S/<table>.csv`` a table. Nothing is built here.
 """
 
@@ -16,35 +16,36 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twodiscs.arguments import Parser, parameters, run
-from twodiscs.comparison.digests import digest, read_json
 from twodiscs.model.checks import InputError
+from twodiscs.points.digests import digest
 from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.pipeline.jobs.table import POINTS
 
-#: How far floats may differ, relative to their size.
+#: The largest difference of floats, relative to their size.
 RELATIVE = 1e-12
 
-#: How far scores may differ. A score is a difference of two numbers in units of its standard error,
-#: which is 1e-4 of them at best: there this is as strict. For χ², a sum of their squares, it is
-#: relative from 1 on.
+#: The largest difference of scores. A score is a difference of two numbers over its standard error,
+#: which is 1e-4 of the numbers at best: then this is as strict as ``RELATIVE``. For χ², a sum of
+#: squares of scores, it is relative from 1 on.
 SCORE = RELATIVE / 1e-4
 
-#: The columns whose text names a row; every other one holds a result.
+#: The columns whose text identifies a row; all other columns hold results.
 NAMING = ("comparison", "part", "quantity", "event", "bins", "method", "case", "label", "place")
 
 #: The rows of check.csv and of agreement.csv whose estimates are made of scores.
 OF_SCORES = {"z_mean", "z_spread", "mean_square", "correlation", "effects"}
 
-#: The parts of stability.csv whose values are rounding errors; there the verdicts are compared.
+#: The parts of stability.csv whose values are rounding errors; there only verdicts are compared.
 OF_ROUNDINGS = ("theory", "times")
 
-#: A trajectory is compared at one row in so many: no difference stays small until the next one.
+#: A trajectory is compared at every 64th row: no difference stays small until the next one.
 STRIDE = 64
 
 
 class Cell(NamedTuple):
-    """A value, and by how much a number may differ from it."""
+    """A value, and the largest difference of a number from it."""
 
     value: object
     tolerance: float
@@ -54,7 +55,7 @@ class Cell(NamedTuple):
 
 
 def point_cells(point):
-    """Return {name: Cell} of all that a point holds, at any depth; integers must be equal."""
+    """Return {name: Cell} of all values of a point, at any depth; integers must be equal."""
     cells = {}
     for name, value in point.items():
         if isinstance(value, list):
@@ -67,10 +68,10 @@ def point_cells(point):
 
 
 def thinned(table, rows):
-    """Return the rows of a ``table`` that are compared: all but those of two long ones.
+    """Return the rows of a ``table`` that are compared: all rows, except for two long tables.
 
-    Of a histogram that is the first bin, for the counts of all of them are among the points; of a
-    trajectory the first and the last row, and one in ``STRIDE``.
+    For a histogram it is the first bin, because the points have the counts of all bins. For a
+    trajectory it is the first row, the last row, and every ``STRIDE``-th row.
     """
     if table == "hop_histogram":
         return [row for row in rows if row["left"] == 0]
@@ -80,7 +81,7 @@ def thinned(table, rows):
 
 
 def _tolerance(column, row):
-    """Return by how much a cell of a table may differ."""
+    """Return the tolerance of a cell of a table."""
     if not isinstance(row[column], float):
         return 0.0
     if column == "value" and row.get("part") in OF_ROUNDINGS:
@@ -91,22 +92,22 @@ def _tolerance(column, row):
         return SCORE
     if column == "chi2":
         return SCORE * max(1.0, row[column])
-    if column == "bias" and "expectation" in row:  # what that is above the exact value
+    if column == "bias" and "expectation" in row:  # the expectation minus the exact value
         return RELATIVE * abs(row["expectation"])
     return RELATIVE * abs(row[column])
 
 
 def table_cells(table, rows):
-    """Return {place: {name: Cell}} of the ``rows`` of a ``table``; a name says row and column."""
+    """Return {place: {name: Cell}} of the ``rows`` of a ``table``; a name has row and column."""
     naming = () if table == "trajectory" else NAMING  # there events are results
-    sheet, seen = {}, Counter()
+    sheet, numbers = {}, Counter()
     for row in rows:
         radius = row.get("radius")
         part = "" if radius is None else f"radius {radius!r}"
         words = [row[column] for column in naming if row.get(column)]
-        seen[part, *words] += 1
-        if not words or seen[part, *words] > 1:
-            words.append(f"row {seen[part, *words]}")
+        numbers[part, *words] += 1
+        if not words or numbers[part, *words] > 1:
+            words.append(f"row {numbers[part, *words]}")
         cells = sheet.setdefault(part, {})
         for column, value in row.items():
             if column != "radius" and column not in naming:
@@ -120,15 +121,15 @@ def _points_sheet(points):
 
 
 def read_points(folder):
-    """Return {key: point} of the files of a ``folder`` of points, by radius.
+    """Return {key: dict of a point} of the files in a ``folder`` of a stage, by radius.
 
-    Raises ``InputError`` for a file that holds no point.
+    Raises ``InputError`` for a file without a point of this stage.
     """
     try:
         paths = sorted(Path(folder).glob("*.json"), key=lambda path: float(path.stem))
     except ValueError as error:
         raise InputError(f"{folder} must hold points alone: {error}") from None
-    return {path.stem: read_json(path) for path in paths}
+    return {path.stem: POINTS[path.parent.name].read(path).content() for path in paths}
 
 
 # Comparison -----------------------------------------------------------------------------------
@@ -142,7 +143,7 @@ def _same(observed, expected):
 
 
 def _difference(name, observed, expected):
-    """Return what is to be said of one cell, None where there is nothing."""
+    """Return a sentence on the difference of one cell, None without a difference."""
     if observed is None:
         return f"{name} is missing"
     if expected is None:
@@ -153,10 +154,10 @@ def _difference(name, observed, expected):
 
 
 def compare(where, observed, expected):
-    """Return a sentence for each place at which the sheet ``observed`` is not the ``expected`` one.
+    """Return a sentence for each place at which the sheet ``observed`` differs from ``expected``.
 
-    ``where`` is the name of the sheet. A sentence tells the first difference and how many more
-    there are. Missing and additional places and cells are differences.
+    ``where`` is the name of the sheet. A sentence names the first difference and the number of
+    further ones. Missing and additional places and cells are differences.
     """
     sentences = []
     for part in {**expected, **observed}:
@@ -167,19 +168,19 @@ def compare(where, observed, expected):
             sentences.append(f"{here}: not expected")
         else:
             names = {**expected[part], **observed[part]}
-            told = (_difference(n, observed[part].get(n), expected[part].get(n)) for n in names)
-            told = list(filter(None, told))
-            if told:
-                more = f", and {len(told) - 1} more" if len(told) > 1 else ""
-                sentences.append(f"{here}: {told[0]}{more}")
+            found = (_difference(n, observed[part].get(n), expected[part].get(n)) for n in names)
+            found = list(filter(None, found))
+            if found:
+                more = f", and {len(found) - 1} more" if len(found) > 1 else ""
+                sentences.append(f"{here}: {found[0]}{more}")
     return sentences
 
 
 def other_configuration(observed, expected):
-    """Return what distinguishes the mapping ``observed`` from the ``expected`` one, "" if nothing.
+    """Return how the mapping ``observed`` differs from ``expected``, "" if it does not.
 
-    Both are configurations as ``load`` takes them, and compared after all defaults are
-    filled in; only what the compared results depend on counts.
+    Both are configurations as ``load`` takes them, compared after all defaults are filled in. Only
+    keys that change the compared results count.
     """
     here, there = load(observed), load(expected)
     for name in ("results", "seed"):
@@ -189,20 +190,20 @@ def other_configuration(observed, expected):
     if names[0] != names[1]:
         return f"the scenes are {', '.join(names[0])}, not {', '.join(names[1])}"
     other = [a.name for a, b in zip(here.scenes, there.scenes, strict=True) if a != b]
-    return f"the scene {other[0]} is another one" if other else ""
+    return f"the scene {other[0]} differs" if other else ""
 
 
 def verify(results, expected):
     """Compare the folder ``results`` with the folder ``expected``.
 
-    Returns (sentences, Counter of what was compared: points, counts, tables, floats). Raises
-    ``InputError`` where one of them holds nothing to compare, or a file is not what its name says.
+    Returns (sentences, Counter of compared points, integers, tables and floats). Raises
+    ``InputError`` if a folder holds nothing to compare, or if a file is not what its name says.
     """
     results, expected = Path(results), Path(expected)
     paths = sorted(p for p in expected.rglob("*.*") if p.suffix in (".csv", ".json"))
     names = [p.relative_to(expected) for p in paths if p.name != "configuration.json"]
     if not names:
-        raise InputError(f"{expected} must hold what is expected, but holds no table or point")
+        raise InputError(f"{expected} must hold expected results, but holds no table or point")
     sentences, compared = [], Counter()
     for name in names:
         here, there = results / name, expected / name
@@ -229,10 +230,11 @@ def verify(results, expected):
 
 
 def write(results, expected, configuration):
-    """Make the folder ``expected`` that of these ``results`` of a ``configuration``, a mapping.
+    """Replace the folder ``expected`` by these ``results`` of a ``configuration``, a mapping.
 
-    Takes the points that the configuration asks for and the tables of ``manifest.sha256``. Raises
-    ``InputError`` if a table has changed since that was written, ``OSError`` for what is missing.
+    It takes all points of the configuration and the tables of ``manifest.sha256``. Raises
+    ``InputError`` if a table has changed since the manifest was written, ``OSError`` for a missing
+    file.
     """
     results, expected = Path(results), Path(expected)
     rows, points = {}, {}
@@ -280,9 +282,9 @@ def main():
         "--configuration",
         type=Path,
         default=Path("results/configuration.json"),
-        help="that in the folder of the results",
+        help="the file in the folder of results",
     )
-    parser.add_argument("--write", action="store_true", help="renew what is expected instead")
+    parser.add_argument("--write", action="store_true", help="renew the expected results instead")
     options = parser.parse_args()
 
     results, expected = options.configuration.parent, options.expected
@@ -291,7 +293,7 @@ def main():
     configuration = parameters(f"@{options.configuration}")
     if options.write:
         write(results, expected, configuration)
-        print(f"{expected} is now what {results} is")
+        print(f"{expected} now holds the results of {results}")
         return 0
 
     if not (expected / "configuration.json").exists():
@@ -299,8 +301,8 @@ def main():
     other = other_configuration(configuration, parameters(f"@{expected / 'configuration.json'}"))
     if other:
         raise InputError(
-            f"{expected} holds the results of the default configuration, and this is another one: "
-            f"{other}"
+            f"{expected} holds the results of the default configuration, which differs from this "
+            f"one: {other}"
         )
     differences, compared = verify(results, expected)
     print(

@@ -1,1 +1,1 @@
-"""What a digit costs by each method."""
+"""The processor time that a digit costs by each method."""

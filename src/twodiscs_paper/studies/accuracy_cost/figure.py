@@ -1,4 +1,4 @@
-"""What a digit costs: error against processor time, for every method."""
+"""The cost of a digit: error against processor time, for every method."""
 
 import math
 
@@ -27,7 +27,7 @@ LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.4, 0.55, 0.62
 
 LEGEND = {"fontsize": 6.8, "handlelength": 1.8, "borderaxespad": 0.3, "labelspacing": 0.2}
 
-#: No error below this one can be told from rounding.
+#: Smaller errors cannot be distinguished from rounding.
 ROUNDING = 2.0**-53
 
 #: Colour and marker of each method.
@@ -55,17 +55,17 @@ def draw(box=None, *, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
     figure = new_figure(BOTTOM + 2 * HEIGHT + BETWEEN + TOP, WIDTH)
-    for i, drawn in enumerate((_volume, _area, _times, _quadrature)):
+    for i, draw_panel in enumerate((_volume, _area, _times, _quadrature)):
         width = (WIDTH - LEFT - RIGHT - ACROSS) / 2
         left, bottom = LEFT + i % 2 * (width + ACROSS), BOTTOM + (1 - i // 2) * (HEIGHT + BETWEEN)
-        axes = add_panel(figure, bottom, HEIGHT, left, width, drawn.__name__.strip("_"))
+        axes = add_panel(figure, bottom, HEIGHT, left, width, draw_panel.__name__.strip("_"))
         axes.set(yscale="log", ylabel="relative error")
         drawing.label(axes, f"({'abcd'[i]})", (0, 1), (-28, 7), xycoords="axes fraction")
-        if drawn is not _quadrature:
+        if draw_panel is not _quadrature:
             axes.set(xscale="log", xlabel="processor time (s)")
             axes.xaxis.set_major_locator(LogLocator(numticks=12))
             axes.xaxis.set_minor_formatter(NullFormatter())
-        drawn(axes, rows)
+        draw_panel(axes, rows)
         axes.yaxis.set_minor_formatter(NullFormatter())
     name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=14)
     return figure
@@ -74,15 +74,15 @@ def draw(box=None, *, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    What a digit costs: true relative error against processor time on one core, root mean square
+    The cost of a digit: true relative error against processor time on one core, root mean square
     over repeated runs. Error bars are one standard error. Numbers in the legends are fitted powers
     of the time. (a) Volume by rejection sampling, by the conditioned sampler and by scrambled Sobol
     points. (b) Area of disc collisions by shells of thickness ε, whose bias (dotted) no work
-    removes, and of the ε at which bias and noise balance; by samples on the surface itself and by
-    Sobol points there. (c) Mean time between vertical hops by event-driven dynamics: one trajectory
-    at a time, many in lock step, and these in single precision; and by a search for overlaps every
-    Δt, whose error ∝ Δt (dotted) does not fall with time. The dashed line is the smallest error
-    of time steps with any Δt. The arrow shows how much sooner the lock step has the mean to 1e-3.
+    removes, and by shells with the ε at which bias and noise balance; by samples on the surface
+    itself and by Sobol points there. (c) Mean time between vertical hops by event-driven dynamics:
+    one trajectory at a time, many in lock step, and many in single precision; and by a search for
+    overlaps every Δt, whose error ∝ Δt (dotted) does not fall with time. The dashed line is the
+    smallest error of time steps with any Δt. The arrow compares the times to an error of 1e-3.
     (d) Gauss quadrature along the arc against the number of its nodes, and exact evaluation; the
     legend has their processor times.
     """
@@ -117,7 +117,7 @@ def _points(axes, rows, look, label=None, style="-", full=False):
         mfc=colour if filled else "white", mew=0.0 if marker == "*" else 0.6,
     )  # fmt: skip
     if rows[0]["repetitions"] and len(rows) > 1:
-        # The mean over R runs is known √R times better than one of them.
+        # The error of a mean over R runs is √R times smaller than the error of one run.
         bars = [row["spread"] / math.sqrt(row["repetitions"]) for row in rows]
         axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, lw=0.6)
 
@@ -201,7 +201,7 @@ def _times(axes, rows):
 
 
 def _gain(axes, rows, quantity):
-    """Draw the least error of time steps at any Δt, and how far from it the lock step is."""
+    """Draw the least error of time steps at any Δt, and the factor that lock step gains."""
     step, (floor,) = next(iter(_of(rows, "floor", "time_step", quantity=quantity).items()))
     bias = floor["error"] / step
     # The noise of a run falls like the root of the time simulated, ∝ seconds × Δt.

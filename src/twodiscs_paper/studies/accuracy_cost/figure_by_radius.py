@@ -1,4 +1,4 @@
-"""What a relative error of 1e-3 costs at every radius, and where single precision fails."""
+"""The cost of a relative error of 1e-3 at every radius, and the failure of single precision."""
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SIZES, SKY, new_figure
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 
-#: Inches: the figure; heights of the panels of the times and of their ratios to those of a Poisson
-#: process; the widths of these and of single precision.
+#: Inches: the width of the figure; heights of the panels of the times and of their ratios to a
+#: Poisson process; widths of these panels and of the panel of single precision.
 WIDTH, TIMES, RATIOS, ACROSS, SINGLE = 7.0, 2.1, 1.0, 3.72, 2.1
 
-#: The least distance of a curve from where its event ends, relatively.
+#: The smallest relative distance of a curve from the radius where its event ends.
 CLOSEST = 1e-3
 
 
@@ -41,19 +41,19 @@ def caption(shown):
     speed and the errors of a pilot (open symbols), by a run to that error (full symbols), and
     predicted from the exact rates and one speed for a Poisson process (lines). Hops near the radius
     where they are blocked are counted from initial states in a strip next to their surface (grey),
-    at a price that stays flat, here up to a relative distance of 1e-6. (b) The times of pilots
-    divided by those of a Poisson process. This ratio is the variance of the number of events
-    divided by its mean, up to the speed at that radius: below one events come at more regular
+    at a cost that stays constant, here up to a relative distance of 1e-6. (b) The times of pilots
+    divided by the times of a Poisson process. This ratio is the variance of the number of events
+    divided by its mean, up to the speed at that radius: below one, events come at more regular
     times than in a Poisson process, as hits of any wall do, and above one in clusters. (c) Error of
-    the mean time between disc collisions if there is little room left, in double and in single
-    precision: lengths rounded to 24 bits make another room (dashed).
+    the mean time between disc collisions near the largest radius, in double and in single
+    precision: rounding lengths to 24 bits changes the distance to the largest radius (dashed).
     """
 
 
 def _times(axes, ratios, rows):
-    """Draw measured times (symbols) and those of a Poisson process (lines), and their ratios.
+    """Draw measured times (symbols), times of a Poisson process (lines), and their ratios.
 
-    Times of strips are grey inside. Ratios are those of pilots, which use no strips.
+    Symbols of strips are filled with grey. Ratios are of pilots, which use no strips.
     """
     box = Box(rows[0]["width"], rows[0]["height"])
     ends = limits(box)
@@ -90,14 +90,14 @@ def _times(axes, ratios, rows):
 
 
 def _radii(box, event):
-    """Return radii that are dense where the event ends."""
+    """Return radii that are dense near the radius where the event ends."""
     last = box.threshold(event)
     near = last * (1 - np.geomspace(CLOSEST, 0.1, 40))
     return np.sort([*np.linspace(0.01, 0.9 * last, 60), *near])
 
 
 def _prediction(box, event, radii, counts):
-    """Return the seconds at ``radii``; ``counts`` is the events a second, over error⁻²."""
+    """Return the seconds at ``radii``; ``counts`` is events per second times error²."""
     scenes = [box.scene(float(radius)) for radius in radii]
     total = [event_rate(scene) for scene in scenes]
     times = [mean_times(scene)[event] / scene.multiplicity(event) for scene in scenes]
@@ -105,28 +105,30 @@ def _prediction(box, event, radii, counts):
 
 
 def _single(axes, rows):
-    """Draw the error of the mean time between collisions where there is little room."""
+    """Draw the error of the mean time between collisions near the largest radius."""
     looks = {
         "lockstep": ("double precision", BLUE, "o"),
         "single_precision": ("single precision", SKY, "D"),
     }
     for method, (name, colour, marker) in looks.items():
-        shown = [
+        points = [
             row
             for row in rows
             if (row["part"], row["quantity"]) == ("precision", "disc_collision_time")
             and row["method"] == method
         ]
-        rooms, errors = ([row[key] for row in shown] for key in ("setting", "error"))
-        noise = [row["spread"] for row in shown]
+        distances, errors = ([row[key] for row in points] for key in ("setting", "error"))
+        noise = [row["spread"] for row in points]
         axes.plot(
-            rooms, errors, marker=marker, ms=SIZES[marker], mfc="white", color=colour, label=name
-        )
-    axes.fill_between(rooms, noise, 1e-9, color=GREY, alpha=0.2, lw=0, label="statistical error")
-    # Lengths are known to 2⁻²⁴, the room is this part of them.
-    rooms = np.geomspace(1e-7, 1)
+            distances, errors, marker=marker, ms=SIZES[marker], mfc="white", color=colour,
+            label=name,
+        )  # fmt: skip
+    style = {"color": GREY, "alpha": 0.2, "lw": 0, "label": "statistical error"}
+    axes.fill_between(distances, noise, 1e-9, **style)
+    # Lengths have the relative error 2⁻²⁴; the distance is a small part of them.
+    distances = np.geomspace(1e-7, 1)
     axes.plot(
-        rooms, 2.0**-24 / rooms, color=BLACK, lw=0.6, ls=(0, (4, 2)),
+        distances, 2.0**-24 / distances, color=BLACK, lw=0.6, ls=(0, (4, 2)),
         label=r"$2^{-24}/(1-r/r_{\mathrm{max}})$",
     )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlim=(5e-7, 0.2), ylim=(1e-5, 1))

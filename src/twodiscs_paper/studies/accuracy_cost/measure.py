@@ -1,9 +1,9 @@
-"""What a digit costs: the true error of every method against the processor time that it takes.
+"""The cost of a digit: the true error of every method against the processor time that it takes.
 
-Work and precision, after the diagrams by which solvers of differential equations are compared: each
-method runs at several amounts of work, again and again with other random numbers, and its relative
-error against the exact value is averaged over the repetitions. All methods take turns in one run
-on one core, so that a machine that slows down slows them all.
+The results are work-precision diagrams, as for solvers of differential equations. Each method runs
+at several amounts of work, repeatedly with other random numbers, and its relative error against the
+exact value is averaged over the repetitions. All methods take turns in one run on one core, so if
+the machine slows down, all methods slow down.
 
 The rows of accuracy_cost.csv have six parts:
 
@@ -11,7 +11,7 @@ The rows of accuracy_cost.csv have six parts:
     time           mean times of all events by dynamics
     floor          the error that no amount of work removes, against ε or Δt
     radius         time to a relative error of 1e-3 in each mean time, radius by radius
-    precision      where single precision goes wrong
+    precision      the errors of single precision
 """
 
 import math
@@ -24,7 +24,6 @@ import numpy as np
 from mpmath import mp
 from tqdm import tqdm
 
-from twodiscs.comparison.estimates import LinearFit
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics import counting
@@ -35,6 +34,7 @@ from twodiscs.model.checks import check_integer, check_length
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import radii
 from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import LinearFit
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
@@ -44,36 +44,36 @@ from twodiscs.theory.numerics.quadrature import gauss_legendre
 from twodiscs.theory.numerics.reference import DIGITS, MpScene, disc_collision_area, volume
 from twodiscs_paper.studies.accuracy_cost import precision, scalar, timestepping
 
-#: The box of all measurements, a radius in the middle, and one where the discs hardly fit.
+#: The box of all measurements, with a medium radius and with one near the largest radius.
 SCENE = Scene(1.5, 1.0, 0.2)
 TIGHT = SCENE.with_radius(0.38)
 
 AREA = "disc_collision_area"
 
-#: Thicknesses of the shell, as fractions of the room; blocks of replicas for each time step.
+#: Fractions for ``montecarlo.shell_thickness``; blocks of replicas for each time step.
 SHELLS = (0.3, 0.1, 0.03, 0.01)
 STEPS = {2.0**-4: 8, 2.0**-6: 8, 2.0**-8: 4, 2.0**-10: 0.5, 2.0**-12: 0.125}
 
-#: Repetitions with other random numbers, and calls of what takes microseconds and no chance.
+#: Repetitions with other random numbers; calls of deterministic methods, which take microseconds.
 REPETITIONS = 16
 CALLS = 100
 
 #: Processor seconds that the amounts of work below take.
 USUAL_SECONDS = 30.0
 
-#: The relative error whose price is asked radius by radius, the number of radii, the blocks of a
-#: pilot, relative distances from where a hop is blocked, and where the price is paid.
+#: The relative error whose cost is measured radius by radius, the number of radii, the blocks of a
+#: pilot, relative distances from a threshold, and the radii of runs to this error.
 TARGET = 1e-3
 RADII = 28
 PILOT_BLOCKS = 32
 CLOSE = (1e-3, 1e-4, 1e-6)
 PAID = {"vertical_hop": (0.05, 0.2, 0.3), "horizontal_hop": (0.05, 0.15, 0.2, 0.245)}
 
-#: A law of counts needs so many of them for an error bar.
+#: The fewest counts whose error is taken from a pilot.
 FEWEST = 1000
 
-#: Where single precision is followed: the room left below the largest radius, relatively, at some
-#: radii near that one; and how many times longer than usual a trajectory lasts.
+#: Single precision is measured at these relative distances below the largest radius, at radii near
+#: each of them, and for trajectories longer than usual by these factors.
 ROOMS = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 NEAR = (1.0, 1.1, 1.2, 1.3)
 LONGER = (1, 8, 64)
@@ -98,25 +98,24 @@ class Series(NamedTuple):
 
 
 def rejected(quantity, fraction, scene, samples, seed):
-    """Estimate by rejection from the prism; ``fraction(samples)`` is the shell's, over the room."""
+    """Estimate by rejection from the prism; ``fraction(samples)`` sets the shell's thickness."""
     shell = fraction(samples) or 0.5
     point = montecarlo.sample_point(scene, [quantity], samples, shell, seed)
-    part = point["quantities"][quantity]
-    return {quantity: part["measure"] * part["hits"] / samples}, samples, 1
+    part = point.quantities[quantity]
+    return {quantity: part.measure * part.hits / samples}, samples, 1
 
 
 def conditioned(scene, samples, seed):
     """Estimate the volume by the conditioned sampler."""
-    part = montecarlo.conditioned_point(scene, ["volume"], samples, 0.5, seed)
-    part = part["quantities"]["volume"]
-    return {"volume": part["measure"] * part["hits"] / samples}, samples, 1
+    part = montecarlo.conditioned_point(scene, ["volume"], samples, 0.5, seed).quantities["volume"]
+    return {"volume": part.measure * part.hits / samples}, samples, 1
 
 
 @cache
 def balanced_fraction(scene, samples):
-    """Return the thickness of the collision shell, over the room, that is best for ``samples``.
+    """Return the best fraction for the thickness of the collision shell with ``samples``.
 
-    It minimizes bias² + variance, both exact: thin shells are seldom hit, thick ones are wrong.
+    It minimizes bias² + variance, both exact: thin shells are rarely hit, thick shells have a bias.
     """
     area = exact.areas(scene)["disc_collision"]
     prism = (scene.range_x * scene.range_y) ** 2
@@ -133,7 +132,7 @@ def balanced_fraction(scene, samples):
 
 @compiled
 def surface_hits(seed, samples, half_x, half_y, sigma):
-    """Throw disc 1 anywhere, disc 2 at contact in a random direction; count what fits the box."""
+    """Place disc 1 anywhere and disc 2 at contact in a random direction; count pairs that fit."""
     state = open_stream(seed, 0)
     hits = 0
     for _ in range(samples):
@@ -149,7 +148,7 @@ def surface_hits(seed, samples, half_x, half_y, sigma):
 
 
 def surface_measure(scene):
-    """Return the area of the surface of contact, box or not: (A B) times 2πσ, times √2."""
+    """Return the area of contact with disc 1 in the box and disc 2 anywhere: A B · 2πσ · √2."""
     return 2 * math.pi * scene.contact_distance * scene.range_x * scene.range_y * math.sqrt(2)
 
 
@@ -184,7 +183,7 @@ def contact_hits(points, range_x, range_y, sigma):
 
 
 def scrambled_sobol(quantity, scene, points, seed):
-    """Estimate by scrambled Sobol points in the place of random ones, a power of two of them."""
+    """Estimate by scrambled Sobol points instead of random points; ``points`` is a power of two."""
     from scipy.stats import qmc
 
     dimensions = 4 if quantity == "volume" else 3
@@ -221,7 +220,7 @@ def rule(order):
 
 
 def quadrature(quantity, scene, nodes, seed):
-    """Integrate along the arc with a Gauss rule; ``seed`` is for nothing."""
+    """Integrate along the arc with a Gauss rule; ``seed`` is not used."""
     sides = scene.range_x, scene.range_y, scene.contact_distance
     for _ in range(CALLS):
         volume, area = along_arc(*sides, *rule(nodes))
@@ -229,9 +228,9 @@ def quadrature(quantity, scene, nodes, seed):
 
 
 def exactly(quantity, scene, work, seed):
-    """Evaluate the exact theory, afresh; ``work`` and ``seed`` are for nothing."""
+    """Evaluate the exact theory without its cache; ``work`` and ``seed`` are not used."""
     for _ in range(CALLS):
-        # A scene of its own, for the last ones are remembered.
+        # Results of recent scenes are cached.
         exact.measures.cache_clear()
         volume, areas = exact.volume(scene), exact.areas(scene)
     return {quantity: volume if quantity == "volume" else areas["disc_collision"]}, 1, CALLS
@@ -340,7 +339,7 @@ def series(scale):
     add("time", "single_precision", by_single_precision, doubling(1, 128 * scale))
     add("time", "scalar", by_scalar, doubling(1 << 8, (1 << 13) * scale))
     for step, most in STEPS.items():
-        # The coarse ones always: they show the law.
+        # Coarse steps are always run: they show the law.
         if most * scale >= 2 or step > 2.0**-8:
             run, blocks = partial(by_steps, step), doubling(1, most * scale)
             add("time", "time_step", run, blocks, setting=lambda _, step=step: step)
@@ -362,14 +361,14 @@ def measure(all_series, repetitions):
     for curve in all_series:
         curve.run(curve.works[0], 0)
     results = {(i, work): [] for i, curve in enumerate(all_series) for work in curve.works}
-    # In a terminal alone: logs stay clean.
+    # The bar appears in a terminal only: logs stay clean.
     for repetition in tqdm(range(repetitions), "repetitions", leave=False, disable=None):
         for i, curve in enumerate(all_series):
             true = exact_values(curve.scene, curve.part)
-            # Nothing of the series before is left in the processor's memory.
+            # This call fills the processor's caches again after the series before.
             curve.run(curve.works[0], 0)
             for k, work in enumerate(curve.works):
-                # Random numbers of its own for every run.
+                # Every run has its own random numbers.
                 seed = 1 + repetition + repetitions * (i + len(all_series) * k)
                 start = time.process_time()
                 estimates, units, calls = curve.run(work, seed)
@@ -403,7 +402,7 @@ def summary(curve, quantity, work, results):
 
 
 def fitted(x, y, error=None):
-    """Return (slope, its standard error) of a ``LinearFit``, None where two points tell none."""
+    """Return (slope, standard error) of a ``LinearFit``; None if the points are too few for it."""
     if len(x) < 2:
         return None, None
     slope = LinearFit(x, y, error).slope
@@ -413,9 +412,9 @@ def fitted(x, y, error=None):
 def with_slope(rows):
     """Return the rows of a series with the power of the work by which its error falls.
 
-    Time is proportional to work but for what a start takes. Amounts of work whose error is not at
-    least thrice the floor have no say. Quadrature, which has no such power, is given digits per
-    node instead, until the error is that of rounding.
+    Time is proportional to work, except for the time to start. The fit leaves out amounts of work
+    whose error is not above three times the floor. Quadrature has no such power; its slope is
+    digits per node, until rounding limits the error.
     """
     if rows[0]["method"] == "quadrature":
         fair = [row for row in rows if row["error"] > 1e-14]
@@ -424,7 +423,7 @@ def with_slope(rows):
         fair = [row for row in rows if 0.5 > row["error"] > 3 * (row.get("floor", 0.0))]
         x = [math.log(row["work"]) for row in fair]
         y = [math.log(row["error"]) for row in fair]
-        # The root mean square of R normal deviates is known to 1/√(2R).
+        # The root mean square of R normal deviates has the relative error 1/√(2R).
         fit = fitted(x, y, 1 / math.sqrt(2 * rows[0]["repetitions"]))
     return [row | {"slope": fit[0], "slope_stderr": fit[1]} for row in rows]
 
@@ -439,7 +438,7 @@ def work_precision(all_series, results):
             if curve.method in ("shell", "time_step"):
                 floor = lasting_error(curve, quantity, results, i)
                 floors.setdefault((curve.method, quantity), []).append((settings.pop(), *floor))
-                # A floor that is lost in the noise is not one that holds the error up.
+                # A floor within the noise counts as none.
                 lasting = floor[0] if abs(floor[0]) > 3 * floor[1] else 0.0
                 summaries = [part | {"floor": abs(lasting)} for part in summaries]
             rows += with_slope(summaries) if len(summaries) > 1 else summaries
@@ -461,7 +460,7 @@ def work_precision(all_series, results):
 def lasting_error(curve, quantity, results, i):
     """Return (relative error that no work removes, its standard error).
 
-    That of a shell is exact, that of time steps the mean over all runs, weighted by length.
+    For a shell it is exact; for time steps it is the mean over all runs, weighted by length.
     """
     if curve.method == "shell":
         epsilon = curve.setting(curve.works[0])
@@ -470,7 +469,7 @@ def lasting_error(curve, quantity, results, i):
     runs = [(errors[quantity], work) for work in curve.works for errors, _, _ in results[i, work]]
     errors, weights = map(np.array, zip(*runs, strict=True))
     mean = float(errors @ weights / weights.sum())
-    # The variance of a run is inverse to its length.
+    # The variance of a run is inversely proportional to its length.
     variance = float(weights @ (errors - mean) ** 2 / (errors.size - 1))
     return mean, math.sqrt(variance / weights.sum())
 
@@ -481,14 +480,14 @@ def lasting_error(curve, quantity, results, i):
 def predicted_events(scene, event, error=TARGET):
     """Return how many wall and disc events a relative ``error`` of one mean time takes.
 
-    If ``event`` came as by a Poisson process, error⁻² of them would be needed; all else is exact.
+    For a Poisson process, error⁻² of these events are needed; the rates are exact.
     """
     time = exact.mean_times(scene)[event] / scene.multiplicity(event)
     return exact.event_rate(scene) * time / error**2
 
 
 def strip_rows(scene, blocks):
-    """Yield the rows of pilots of ``blocks`` from starts next to the hops that are rare."""
+    """Yield the rows of pilots of ``blocks`` from strips next to the surfaces of rare hops."""
     for hop in strip.rare_hops(scene):
         near = strip.strip_of(scene, hop)
         strip.run_blocks(scene, hop, near, 0, 0, 1)
@@ -504,11 +503,11 @@ def strip_rows(scene, blocks):
 
 
 def by_radius(scale):
-    """Yield the rows of the part radius: what a relative error of ``TARGET`` takes, four ways.
+    """Yield the rows of the part radius: the cost of a relative error of ``TARGET``, in four ways.
 
-    ``lockstep`` measures speed and error of a pilot at the radius, ``strip`` those of starts next
-    to a rare hop, also close to where it is blocked; ``poisson`` is predicted from the exact rates
-    and one speed, the median over all radii; ``paid`` is a run to that very error.
+    ``lockstep`` measures speed and error of a pilot at the radius; ``strip`` does so from starts
+    next to a rare hop, also close to its threshold; ``poisson`` is predicted from the exact rates
+    and one speed, the median over all radii; ``paid`` is a run to this error.
     """
     speeds, scenes = [], []
     for radius in radii(SCENE.width, SCENE.height, 0.01, RADII):
@@ -556,7 +555,7 @@ def by_radius(scale):
             bias = mean["estimate"] / mean["exact"] - 1
             yield row(
                 "radius", f"{event}_time", radius, "paid",
-                work=point["events"], seconds=seconds, error=TARGET, bias=bias, repetitions=1,
+                work=point.events, seconds=seconds, error=TARGET, bias=bias, repetitions=1,
             )  # fmt: skip
 
 
@@ -566,10 +565,10 @@ def by_radius(scale):
 def where_single_fails(scale):
     """Yield the rows of the part precision.
 
-    For the mean time between disc collisions ``setting`` is the room left, 1 − r/r_max; ``error``
-    is averaged over ``NEAR`` radii, and ``spread`` is the standard error that chance alone would
-    give each. For the energy ``setting`` is the number of events of a trajectory and ``error`` the
-    root mean square of its relative change.
+    For the mean time between disc collisions ``setting`` is the distance 1 − r/r_max. ``error`` is
+    averaged over ``NEAR`` radii, and ``spread`` is the statistical standard error at one radius.
+    For the energy ``setting`` is the number of events of a trajectory and ``error`` the root mean
+    square of its relative change.
     """
     blocks = math.ceil(PILOT_BLOCKS * scale / 2)
     for room in ROOMS:
@@ -581,8 +580,8 @@ def where_single_fails(scale):
             expected = blocks * REPLICAS * duration / mean
             double, products = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
             single = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
-            seen = double[counting.COLLISIONS], single[scalar.COLLISIONS]
-            for method, count in zip(errors, seen, strict=True):
+            counts = double[counting.COLLISIONS], single[scalar.COLLISIONS]
+            for method, count in zip(errors, counts, strict=True):
                 errors[method].append(float(expected / count - 1))
             events += counting.simulated_events(double)
             noise = relative_errors(double, products, blocks * REPLICAS)[counting.COLLISIONS]
@@ -605,7 +604,7 @@ def where_single_fails(scale):
 def speeds(rows):
     """Yield the rows of the part speed: how much faster an engine is than another one.
 
-    ``rows`` are those of the part time. The speed of an engine is that of its median run.
+    Only ``rows`` of the part time count. The speed of an engine is the speed of its median run.
     """
     runs = {}
     for run in rows:
@@ -622,7 +621,7 @@ def speeds(rows):
 def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time.
 
-    Of the least work every method does its share, so a few seconds are spent whatever is asked.
+    Every method runs its minimum work, so this takes a few seconds whatever ``seconds`` is.
     ``repetitions`` ≥ 2. Raises ``InputError`` for a number out of range.
     """
     scale = check_length("seconds", seconds) / USUAL_SECONDS

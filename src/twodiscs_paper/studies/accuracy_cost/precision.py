@@ -1,10 +1,11 @@
-"""The lock-step ensemble in another precision: what single precision buys, and where it fails.
+"""The lock-step ensemble in another precision: the gain of single precision, and its failure.
 
-The law of ``dynamics.law`` is not written again: its source is read a second time, with every
-constant rounded to the precision asked for. So the law in double precision
-stays as it is, bit for bit, and the two cannot drift apart.
+The law of ``dynamics.law`` is not written again: its source is compiled a second time, with every
+constant rounded to the wanted precision. The law in double precision therefore stays as it is, bit
+for bit, and the two always agree.
 
-For comparisons only. Where discs have little room, a number of 24 bits cannot even hold the room.
+This engine serves comparisons only: near the largest radius, a number of 24 bits cannot resolve the
+distance to it.
 """
 
 import ast
@@ -26,7 +27,7 @@ from twodiscs_paper.studies.accuracy_cost.scalar import ANY_WALLS, COLLISIONS, N
 
 
 class _Rounded(ast.NodeTransformer):
-    """Puts a name in the place of every floating-point constant of a source: {name: constant}."""
+    """Replace every floating-point constant of a source by a name: {name: constant}."""
 
     def __init__(self):
         self.constants = {}
@@ -63,7 +64,7 @@ def kernel(dtype):
     next_event, after_event = names["next_event"], names["after_event"]
     crosses, end_of_time, disc = names["crosses"], names["END_OF_TIME"], names["DISC"]
     wall_x1, wall_y1, wall_x2, wall_y2 = (names[f"WALL_{w}"] for w in ("X1", "Y1", "X2", "Y2"))
-    # Three counts of eight bits are all that the 24 bits of a single-precision number hold.
+    # The 24 bits of a single-precision number hold three counts of eight bits.
     low, middle, high, zero = dtype(1), dtype(256), dtype(65536), dtype(0)
 
     @numba.njit(**OPTIONS)
@@ -135,8 +136,8 @@ def run_blocks(scene, seed, first, stop, duration, dtype=np.float32):
     """Count all events as ``counting.run_blocks`` does, but with states of ``dtype``.
 
     Returns (Σ N_e in the order of ``COUNTED``, mean and root mean square of the relative error of
-    the energy at the end of a replica). Raises ``InputError`` for a scene, a seed or a duration
-    that is none, a range without blocks, and a ``dtype`` other than numpy's float32 and float64.
+    the energy at the end of a replica). Raises ``InputError`` for an invalid scene, seed or
+    duration, a range without blocks, and a ``dtype`` other than numpy's float32 and float64.
     """
     check_scene(scene)
     seed, first = check_integer("seed", seed, 0), check_integer("first", first, 0)

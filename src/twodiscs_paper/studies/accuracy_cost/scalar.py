@@ -1,8 +1,8 @@
 """The usual engine, for comparison: one trajectory at a time, with branches and divisions.
 
-It does the same experiment as ``counting.count_blocks``, from the same starts, with the same law
-written the way one writes it first, and serves as second opinion and as the baseline of the
-benchmarks. Called through ``count_blocks.py_func`` it is the plain Python program.
+It does the same experiment as ``counting.count_blocks``, from the same starts, with the same law in
+its most direct form. It serves as an independent check and as the baseline of the benchmarks.
+``count_blocks.py_func`` is the plain Python program.
 """
 
 import math
@@ -14,7 +14,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_starts
 from twodiscs.sampling.streams import open_stream
 
-#: What the engines for comparison count, in this order; other events are none of their business.
+#: The events that the engines for comparison count, in this order.
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "right_wall", "top_wall", "any_wall")
 N = len(COUNTED)
 COLLISIONS, ANY_WALLS = COUNTED.index("disc_collision"), COUNTED.index("any_wall")

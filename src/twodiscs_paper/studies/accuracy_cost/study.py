@@ -1,4 +1,4 @@
-"""What a digit costs, by each method."""
+"""The processor time that a digit costs, by each method."""
 
 from twodiscs.figures.catalogue import Entry
 from twodiscs_paper.studies.accuracy_cost.table import AccuracyCost
@@ -6,7 +6,7 @@ from twodiscs_paper.study import Study
 
 STUDY = Study(
     "accuracy_cost",
-    builds="what a digit costs by each method",
+    builds="the cost of a digit by each method",
     tables=(AccuracyCost,),
     seconds=lambda configuration: 10.0 + configuration.accuracy_cost["seconds"],
     order=2,

@@ -1,4 +1,4 @@
-"""The table of what accuracy costs."""
+"""The table of the cost of accuracy."""
 
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Column, Table
 
@@ -11,8 +11,8 @@ class AccuracyCost(Table):
 
     part: TEXT
     """
-    volume, area, time: work and precision; floor: the error that no work removes; radius: the price
-    of a relative error, radius by radius; precision: where single precision fails; speed: of the
+    volume, area, time: work and precision; floor: the error that no work removes; radius: the cost
+    of a relative error, radius by radius; precision: the errors of single precision; speed: of the
     engines, by their median runs of the part time
     """
     quantity: TEXT
@@ -25,13 +25,13 @@ class AccuracyCost(Table):
     rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), surface,
     quadrature, closed_form, exact; lockstep, scalar, single_precision, time_step. radius: lockstep
     (speed and error of a pilot), strip (the same from starts next to a rare hop), poisson (exact
-    rates, one speed, the noise of a Poisson process), paid (run to the end)
+    rates, one speed, the noise of a Poisson process), paid (a run to this error)
     """
     setting: Column(float, "see method")
     """
     ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, and for the
-    energy the events of a trajectory. speed: events a second over those of scalar, for
-    single_precision over those of lockstep
+    energy the events of a trajectory. speed: events per second, divided by the same number for
+    scalar, for single_precision by the number for lockstep
     """
     work: COUNT
     """samples, points, nodes, wall and disc events, or time steps"""
@@ -40,7 +40,7 @@ class AccuracyCost(Table):
     error: NUMBER
     """
     root mean square over the repetitions of the relative error against the exact value; radius: the
-    one asked for
+    wanted error
     """
     spread: NUMBER
     """
@@ -50,7 +50,7 @@ class AccuracyCost(Table):
     bias: NUMBER
     """mean relative error with its sign"""
     floor: NUMBER
-    """part of the error that no work removes; 0 where none was found"""
+    """part of the error that no work removes; 0 if it is within the noise"""
     repetitions: COUNT
     """runs with other random numbers"""
     slope: NUMBER

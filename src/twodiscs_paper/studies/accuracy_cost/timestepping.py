@@ -1,11 +1,11 @@
-"""The same experiment as a general physics engine does it: look for overlaps every Δt.
+"""The same experiment by time steps, as in general physics engines: look for overlaps every Δt.
 
-All discs move for Δt; then whatever overlaps and still approaches collides as it stands: a disc
-beyond a wall is reflected, discs that overlap exchange velocities along the line of centres. Events
-come late by some Δt/2, grazing ones not at all, so every rate is wrong by an amount ∝ Δt.
+All discs move for Δt. Then each overlap whose bodies still approach is a collision: a disc beyond a
+wall is reflected, and overlapping discs exchange velocities along the line of centres. Events come
+late by about Δt/2 and grazing collisions are missed, so every rate has an error ∝ Δt.
 
-This is the comparison's straw man made of good wood: it is compiled, runs in lock step and in
-vector instructions like the ensemble, and treats discs, not polygons.
+The comparison is fair: this engine is compiled, runs in lock step and in vector instructions like
+the ensemble, and treats discs, not polygons.
 """
 
 import numpy as np
@@ -40,7 +40,7 @@ def unpack(packed, counts, lane):
 
 @compiled
 def bounced(position, velocity, limit):
-    """Say whether a disc is beyond ±``limit`` and moves on outwards."""
+    """Return whether a disc is beyond ±``limit`` and still moves outwards."""
     return (abs(position) > limit) & (position * velocity > 0.0)
 
 
@@ -100,7 +100,7 @@ def run_blocks(scene, seed, first, stop, duration, step):
     """Count all events as ``counting.run_blocks`` does, but by steps of ``step``.
 
     The ``duration`` is rounded to whole steps. Returns Σ N_e, in the order of ``COUNTED``. Raises
-    ``InputError`` for a scene, seed, duration or step that is none, or a range without blocks.
+    ``InputError`` for an invalid scene, seed, duration or step, or a range without blocks.
     """
     check_scene(scene)
     seed, first = check_integer("seed", seed, 0), check_integer("first", first, 0)

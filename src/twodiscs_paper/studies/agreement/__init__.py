@@ -1,1 +1,1 @@
-"""How all scenes agree with the exact theory, beyond the scores of check.csv."""
+"""How well all scenes together agree with the exact theory, beyond the scores of check.csv."""

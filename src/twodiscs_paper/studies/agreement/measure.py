@@ -1,20 +1,25 @@
-"""What the comparisons of all scenes have in common: correlations, and errors of chains."""
+"""Statistics over the comparisons of all scenes: correlations, and errors of chains."""
 
 import math
 import statistics
 from itertools import groupby
 
-from twodiscs.comparison.estimates import density_of_chains_at_zero, sums_of_others
+import numpy as np
+
+from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import density_of_chains_at_zero, sums_of_others
+from twodiscs.theory import exact
+from twodiscs.theory.many import exact as many
 
 #: The pairs of events whose scores are correlated.
 PAIRS = (("right_wall", "top_wall"), ("vertical_hop", "disc_collision"))
 
-#: A bin with fewer intervals does not show how errors of chains differ from those of counts.
+#: Bins with fewer intervals do not show how errors of chains differ from errors of counts.
 WELL_FILLED = 1000
 
 
 def normal_tests(check):
-    """Return the independent tests of mean times by dynamics that have a normal law."""
+    """Return the independent tests of mean times by dynamics with a normal distribution."""
     wanted = {"comparison": "mean_time", "method": "dynamics", "test": "normal"}
     return [
         row
@@ -46,7 +51,7 @@ def scores(tests):
 
 
 def error_ratio(bins):
-    """Return the row on how much errors of chains exceed those of independent counts.
+    """Return the row on how much errors of chains exceed errors of independent counts.
 
     ``bins`` are rows of hop_histogram.csv.
     """
@@ -60,7 +65,7 @@ def error_ratio(bins):
 
 
 def densities(scene, bins):
-    """Yield the rows on the density at zero of a ``scene``, by the first two of its equal bins."""
+    """Yield the rows on the density at zero of a ``scene``, from the first two equal bins."""
     equal = [row for row in bins if row["bins"] == "equal"]
     for (event, radius), found in groupby(equal, key=lambda row: (row["event"], row["radius"])):
         first = [*found][:2]
@@ -73,9 +78,9 @@ def densities(scene, bins):
 
 
 def tests_of_effects(rows):
-    """Return the row on the tests among the ``rows`` of effects.csv; None if there are none.
+    """Return the row on the tests among the ``rows`` of effects.csv, or None without tests.
 
-    If a count is the sum of other counts, its mean time is no test of its own.
+    If a count is the sum of other counts, its mean time is not an independent test.
     """
     judged = [row for row in rows if row["z"] is not None]
     tests = []
@@ -92,10 +97,33 @@ def tests_of_effects(rows):
     return {"quantity": "effects", "count": possible, "estimate": largest}
 
 
+#: Ranges A × B of the centres in units of σ, in which three discs in a row have room.
+RANGES = ((2.5, 2.5), (2.5, 3.0), (3.0, 3.0))
+
+
+def third_virial():
+    """Return the row on B₃/B₂² of hard discs, from the exact volumes of two and three discs.
+
+    The cluster integral β = V₃/6 − V₁V₂/2 + V₁³/3 is bulk, edges and corners:
+    (2B₂² − B₃/2) AB + e (A + B) + c, if three discs in a row have room, so three boxes give it.
+    """
+    equations, clusters = [], []
+    for across, up in RANGES:
+        sides = across + 1, up + 1  # of a box of discs with the diameter 1
+        two = exact.volume(Scene(*sides, 0.5))
+        three = math.exp(many.measures(Scene(*sides, 0.5, discs=3)).log_volume)
+        one = across * up
+        equations.append((one, across + up, 1))
+        clusters.append(three / 6 - one * two / 2 + one**3 / 3)
+    bulk = np.linalg.solve(equations, clusters)[0]
+    second = math.pi / 2
+    return {"quantity": "third_virial", "estimate": float(2 * (2 - bulk / second**2))}
+
+
 def rows(tables):
     """Yield the rows of agreement.csv, without their empty cells.
 
-    ``tables`` has the rows of <scene>/check and <scene>/hop_histogram, and those of effects.
+    ``tables`` has the rows of <scene>/check, <scene>/hop_histogram and effects.
     """
     by_name = {"check": {}, "hop_histogram": {}}
     for path, found in tables.items():
@@ -112,3 +140,4 @@ def rows(tables):
         yield from densities(scene, found)
     if row := tests_of_effects(tables["effects"]):
         yield row
+    yield third_virial()

@@ -1,4 +1,4 @@
-"""What the comparisons of all scenes have in common."""
+"""Statistics over the comparisons of all scenes."""
 
 from twodiscs_paper.studies.agreement.table import Agreement
 from twodiscs_paper.study import Study

@@ -9,13 +9,13 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs.theory import tails
 
-#: Inches: the panel of the rates, that of the first passages, the gap, the room above.
+#: Inches: heights of the panels of the rates and of the first passages, the gap, the margin above.
 RATES, PASSAGES, GAP, TOP = 2.0, 1.25, 0.42, 0.22
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST, LARGEST_ERROR = 12, 0.15
 
-#: Rates are shown for radii below so much of that at which the hop becomes blocked.
+#: Rates are shown for radii below this fraction of the radius at which the hop becomes blocked.
 FARTHEST = 0.83
 
 #: Ends of the dashes that mark exact densities at 0, in mean times.
@@ -26,7 +26,7 @@ SMALLEST_P = 1e-3
 
 
 def draw(box, tables):
-    """Draw the rows of distributions.csv on its first scene; without any, name ``box`` alone."""
+    """Draw the rows of distributions.csv on its first scene; without rows only name ``box``."""
     rows = tables["distributions"]
     rows = [row for row in rows if row["scene"] == rows[0]["scene"]]
     figure = new_figure(panels.BOTTOM + PASSAGES + GAP + RATES + TOP)
@@ -52,12 +52,12 @@ def caption(shown):
     return """
     (a) Rate of hops at a time t after the last hop, in units of the exact mean time τ; for an
     exponential distribution it would be the dashed line. It starts from the exact density at 0
-    (thick dashes), of a hop that is undone after one bounce. It jumps at the time from which both
-    discs may have bounced, t = √2 (h − 2r) for vertical hops. Bars are constant rates fitted to all
-    intervals after four mean times; they are dotted if the rate is not constant there (by χ² or by
-    a trend, at the level of 1e-3). The rates of small discs fall on, towards the rate of a cubic
-    tail, 3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open symbols), and
-    what follows from the intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of variation.
+    (thick dashes), of hops that one bounce undoes. It jumps at the time from which both discs may
+    have bounced, t = √2 (h − 2r) for vertical hops. Bars are constant rates fitted to all intervals
+    after four mean times; they are dotted if the rate is not constant there (by χ² or by a trend,
+    at the level of 1e-3). The rates of small discs go on falling, towards the rate of a cubic tail,
+    3τ/t (dash-dotted). (b) Mean time from a random moment to the next hop (open symbols), and
+    its value from the intervals, τ(1 + CV²)/2 (dots), with CV their coefficient of variation.
     Error bars are one standard error.
     """
 
@@ -72,14 +72,14 @@ def _rates(axes, rows):
     for radius, (colour, marker) in zip(radii, SERIES, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
         mean = own[0]["exact_mean"]
-        shown = [
+        points = [
             (row["first"] / mean, row["last"] / mean, row["estimate"] * mean, row["stderr"] * mean)
             for row in own
             if row["quantity"] == "hazard" and row["stderr"] < LARGEST_ERROR * row["estimate"]
         ]
-        if not shown:
+        if not points:
             continue
-        first, last, value, error = np.array(shown).T
+        first, last, value, error = np.array(points).T
         middle = (first + last) / 2
         style = panels.open_symbol(colour, marker, 0.8) | {"lw": 0.4, "elinewidth": 0.6}
         name = f"$r={panels.number(radius)}$"
@@ -103,7 +103,7 @@ def _rates(axes, rows):
 
 
 def _passages(axes, rows):
-    """Draw mean first passages, over the mean interval, and what intervals make of them."""
+    """Draw mean first passages, measured and from the intervals, over the mean interval."""
     for (colour, marker), hop in zip(SERIES, HOPS, strict=False):
         own = [
             row

@@ -1,13 +1,13 @@
 """How the times to the next hop are distributed, from a hop and from a random moment.
 
-Every interval T here has a start of its own, on the surface of the hop and weighted by the flux
-through it, so that intervals are independent draws of the time between hops, and counts of them
-are binomial without reserve. Every first passage F has a start of the invariant measure. Palm's
-relation P(F > t) = (1/τ) ∫_t^∞ P(T > s) ds joins the two: for every c
+Every interval T has its own start, on the surface of the hop and weighted by the flux through it.
+Intervals are therefore independent draws of the time between hops, and their counts are exactly
+binomial. Every first passage F has a start of the invariant measure. Palm's relation
+P(F > t) = (1/τ) ∫_t^∞ P(T > s) ds connects the two: for every c
 
     ⟨min(F, c)⟩ = ⟨T² − (T − c)₊²⟩/(2τ),    hence    ⟨F⟩ = ⟨T²⟩/(2τ) = τ (1 + CV²)/2.
 
-Where the tail of T is cubic (see ``theory.tails.tail_constant``) the variances of F and T² are
+If the tail of T is cubic (see ``theory.tails.tail_constant``), the variances of F and T² are
 infinite, and only the first form can be tested.
 """
 
@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.comparison.scores import chi2_p, student_deviate, two_sided_p
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
@@ -25,6 +24,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.points.estimates import Estimate, density_at_zero, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import (
     draw_configuration,
@@ -38,17 +38,17 @@ from twodiscs.theory import exact, tails
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
 BLOCKS, BINS = 128, 512
 
-#: Wall and disc events that intervals, and as many that first passages, of one radius may take; and
-#: no more of them than so many: counts of 4e6 intervals know the density at 0 to half a per cent.
+#: The most wall and disc events for the intervals of one radius, and again for its first passages;
+#: the most intervals and first passages: 4e6 intervals give the density at 0 to half a per cent.
 EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**23, 2**22, 2**19
 
-#: First passages are cut at this many mean times, where they are tested.
+#: For a test, first passages are cut at this many mean times.
 CUT = 20
 
-#: The hazard is tested for constancy from so many mean times on, to its last bin.
+#: The hazard is tested for constancy from this many mean times to its last bin.
 FIRST = 4
 
-#: A test of constancy needs so many intervals that end.
+#: The fewest intervals that must end for a test of constancy.
 FEWEST = 1000
 
 #: Relative distances below the radius at which a hop becomes blocked.
@@ -62,10 +62,10 @@ GROWTH, FEWEST_IN_BIN = 0.08, 100
 def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width, histogram):
     """Return means of T, T², T² − (T − c)₊², F and min(F, c) in blocks ``first`` … ``stop`` − 1.
 
-    T is the time between vertical hops and F the time to the next one, c is ``cut``; a block has
-    ``intervals`` of the one and ``passages`` of the other. The result has the shape (stop − first,
+    T is the time between vertical hops and F the time to the next one, c is ``cut``. A block has
+    ``intervals`` values of T and ``passages`` values of F. The result has the shape (stop − first,
     5). Intervals are added to ``histogram`` (int64, bins of ``width``, a power of two, from 0; the
-    last entry takes what is longer).
+    last entry counts all longer intervals).
     """
     rows = np.zeros((stop - first, 5))
     half_x, half_y = draw.half_x, draw.half_y
@@ -94,19 +94,19 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
     return rows
 
 
-# What counts tell ------------------------------------------------------------------------------
+# Hazards from counts ---------------------------------------------------------------------------
 
 
 def constant_hazard(bins):
-    """Fit one hazard rate to ``bins`` and test whether it is one, and whether it has a trend.
+    """Fit a constant hazard rate to ``bins``, and test whether it is constant or has a trend.
 
-    ``bins`` are successive ones as ``hazard`` yields them. With n intervals alive at the beginning
-    of a bin of width w, the number that end in it is binomial, n (1 − e^{−λw}), given what came
-    before: so bins are as good as independent, and what outlasts the last one is censored. Returns
-    (rate, trend, chi2, degrees): λ of the largest likelihood as an ``Estimate`` with the error from
-    Fisher's information, β of a rate ∝ t^β as one step of Newton's from β = 0 finds it, Pearson's
-    χ² of a constant rate and its degrees of freedom. Raises ``InputError`` for fewer than three
-    bins or ``FEWEST`` ends.
+    ``bins`` are successive bins from ``hazard``. If n intervals are alive at the beginning of a bin
+    of width w, the number that end in it is binomial with the mean n (1 − e^{−λw}), given all bins
+    before. Bins can therefore be treated as independent; intervals that outlast the last bin are
+    censored. Returns (rate, trend, chi2, degrees): λ of the largest likelihood as an ``Estimate``
+    with the error from Fisher's information, β of a rate ∝ t^β by one Newton step from β = 0,
+    Pearson's χ² of a constant rate and its degrees of freedom. Raises ``InputError`` for fewer than
+    three bins or ``FEWEST`` ends.
     """
     bins = list(bins)
     ends = sum(part.count for part in bins)
@@ -137,7 +137,7 @@ def constant_hazard(bins):
 
 
 class Bin(NamedTuple):
-    """How often a hop comes between ``first`` and ``last``: ``count`` of those ``alive`` before."""
+    """The rate of hops between ``first`` and ``last``: ``count`` of the intervals ``alive`` end."""
 
     first: float
     last: float
@@ -148,11 +148,12 @@ class Bin(NamedTuple):
 
 
 def hazard(counts, intervals, width):
-    """Yield a ``Bin`` each: how often the hop comes after a time without it.
+    """Yield the rate of hops as a function of the time since the last hop, as ``Bin`` objects.
 
     The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with S the share of
-    ``intervals`` that last longer, and a binomial error. Bins are joined until as wide as
-    ``GROWTH`` times their place; the first one with fewer than ``FEWEST_IN_BIN`` counts ends it.
+    ``intervals`` that last longer, and a binomial error. ``counts`` are joined until a bin is as
+    wide as ``GROWTH`` times its first time; the first bin with fewer than ``FEWEST_IN_BIN`` counts
+    is left out, with all later ones.
     """
     left, alive, waiting = 0, intervals, 0
     for i, n in enumerate(counts):
@@ -173,10 +174,10 @@ def hazard(counts, intervals, width):
 
 
 def near_threshold(box, hop):
-    """Return radii that approach the one at which ``hop`` becomes blocked; none if it stays open.
+    """Return radii that approach the threshold of ``hop``, or [] if it stays open at all radii.
 
-    They are ``DISTANCES`` below it, relative to it. Where the hop is too rare even for the fewest
-    intervals, in very long boxes, they are left out.
+    They are ``DISTANCES`` below it, relative to it. Radii at which the hop is too rare even for the
+    fewest intervals, in very long boxes, are left out.
     """
     limit = box.threshold(check_choice("hop", hop, HOPS))
     if limit not in box.thresholds:
@@ -186,18 +187,17 @@ def near_threshold(box, hop):
 
 
 def _affordable(scene, hop):
-    """Say whether the fewest intervals there can be take a few times ``EVENTS`` at most."""
+    """Return whether the fewest possible intervals take a few times ``EVENTS`` at most."""
     events = exact.event_rate(scene) * exact.mean_times(scene)[hop]
     return BLOCKS * events < 4 * EVENTS
 
 
 def measured(scene, hop, seed, events=EVENTS):
-    """Yield what is measured of the times to the next ``hop`` of a ``Scene``, as dicts.
+    """Yield the rows of distributions.csv on the times to the next ``hop`` of a ``Scene``.
 
-    These are rows of distributions.csv; the columns that name scene and hop are empty. ``events``
-    is how many wall and disc events the intervals, and the first passages, take at most. Raises
-    ``InputError`` for a scene with effects, a hop that is unknown or blocked, and numbers out of
-    range.
+    The columns that name scene and hop are missing. ``events`` is the most wall and disc events
+    that the intervals may take, and the first passages as well. Raises ``InputError`` for a scene
+    with effects, a hop that is unknown or blocked, and numbers out of range.
     """
     check_choice("hop", hop, HOPS)
     constant = tails.tail_constant(scene, hop)
@@ -210,12 +210,12 @@ def measured(scene, hop, seed, events=EVENTS):
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
     passages = min(block, MOST_PASSAGES // BLOCKS)
     width, cut = nearest_power_of_two(mean / 16), CUT * mean
-    upright = scene
+    oriented = scene
     if hop == "horizontal_hop":
-        upright = Box.of(scene).turned().scene(scene.radius)
-    draw, histogram = draw_constants(upright), np.zeros(BINS + 1, np.int64)
+        oriented = Box.of(scene).turned().scene(scene.radius)
+    draw, histogram = draw_constants(oriented), np.zeros(BINS + 1, np.int64)
     means = draw_passages(
-        np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(upright), draw, width, histogram,
+        np.uint64(seed), 0, BLOCKS, block, passages, cut, law_of(oriented), draw, width, histogram,
     )  # fmt: skip
     intervals, passages = BLOCKS * block, BLOCKS * passages
     time, square, cut_square, passage, cut_passage = mean_of(means)
@@ -245,7 +245,7 @@ def measured(scene, hop, seed, events=EVENTS):
 
 
 def _constancy(bins, mean):
-    """Yield the rows on whether the hazard is constant over ``bins``, if they are enough."""
+    """Yield the rows that test whether the hazard is constant over ``bins``, if these suffice."""
     if len(bins) < 3 or sum(part.count for part in bins) < FEWEST:
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
@@ -259,10 +259,9 @@ def _constancy(bins, mean):
 def rows(scenes, seed, events=EVENTS):
     """Yield the rows of distributions.csv.
 
-    ``scenes`` are dicts of name, box, and event and radii of hops; of the first one the radii that
-    approach the blocking of its hops are added (``near_threshold``). Every case has a stream of its
-    own, from the root ``seed``, its scene, hop and radius. Raises ``InputError`` as ``measured``
-    does.
+    ``scenes`` are dicts of name, box, event and radii of hops. For the first scene, the radii near
+    the thresholds of its hops are added (``near_threshold``). Every case has its own stream, from
+    the root ``seed``, its scene, hop and radius. Raises ``InputError`` as ``measured`` does.
     """
     for i, case in enumerate(scenes):
         box = Box(**case["box"])
@@ -283,7 +282,7 @@ def _z(deviation, error):
 
 
 def _row(quantity, count, estimate, reference, first=None, last=None, z=None, **more):
-    """Return a row; ``more`` are other columns, which are empty otherwise."""
+    """Return a row; ``more`` are columns that other rows leave empty."""
     return {
         "quantity": quantity,
         "first": first,

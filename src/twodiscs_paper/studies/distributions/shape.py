@@ -1,4 +1,4 @@
-"""The shape of a hazard: constant for all that the data show, or falling, and how far."""
+"""The shape of a hazard: constant within the errors, or falling, and how far."""
 
 import math
 
@@ -11,18 +11,18 @@ FALLEN = 0.75
 #: Late bins begin beyond this fraction of the time that the data reach.
 LATE = 0.6
 
-#: Rows of one hop at one radius.
+#: The columns that identify one hop at one radius.
 CASE = ("scene", "width", "height", "radius", "event", "exact_mean")
 
 
 def is_drifted(row):
-    """Return whether discs that drift past each other avoid the hop of a ``row``."""
+    """Return whether discs can avoid the hop of a ``row`` by a drift past each other."""
     side = row["height"] if row["event"] == "vertical_hop" else row["width"]
     return row["radius"] <= side / 4
 
 
 def late_bins(rate, hazards):
-    """Return the ``hazards`` with a hop in the last two fifths of the time of a fitted ``rate``."""
+    """Return the ``hazards`` with hops in the last two fifths of the time of a fitted ``rate``."""
     return [row for row in hazards if row["first"] >= LATE * rate["last"] and row["count"] > 0]
 
 
@@ -34,7 +34,7 @@ def late_hazard(late):
 
 
 def over_cubic(late):
-    """Return the hops in the bins ``late`` over those of the hazard 3/t of a cubic tail."""
+    """Return the hops in the bins ``late`` over those expected from 3/t, as for a cubic tail."""
     expected = sum(
         6 * row["count"] / row["estimate"] / (row["first"] + row["last"]) for row in late
     )

@@ -9,8 +9,8 @@ AS_ESTIMATE = Column(float, "as estimate")
 class Distributions(Table):
     """
     One row per scene, radius and quantity: how the times to the next hop are distributed, from a
-    hop (intervals T) and from a random moment (first passages F). Every T and every F has a start
-    of its own.
+    hop (intervals T) and from a random moment (first passages F). Every T and every F has its own
+    initial state.
     """
 
     scene: TEXT
@@ -23,47 +23,47 @@ class Distributions(Table):
     """exact mean interval τ"""
     quantity: TEXT
     """
-    mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ where last is c;
-    density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: rate of hops when there
-    was none since the last one, ln[P(T > first)/P(T > last)]/(last − first); rate: one hazard
-    fitted by maximum likelihood to all bins from four mean times on, what is longer censored;
-    trend: β of a hazard ∝ t^β there; plateau: the rate again, where it is constant for all that the
-    data show; falling, falling_without_drift: where it is not, the hazard in the last two fifths of
-    the time that the data reach, if discs that drift past each other avoid the hop and if not;
-    over_cubic: hops there over those of the hazard 3/t of a cubic tail, where the hazard has fallen
-    below three quarters of the rate
+    mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ if last is c;
+    density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: rate of hops at a time
+    since the last hop, ln[P(T > first)/P(T > last)]/(last − first); rate: one hazard fitted by
+    maximum likelihood to all bins from four mean times on, with longer intervals censored; trend: β
+    of a hazard ∝ t^β in these bins; plateau: the rate again, if the hazard is constant within the
+    errors; falling, falling_without_drift: if it is not constant, the hazard in the last two fifths
+    of the time that the data reach, for hops that drifting discs avoid and for other hops;
+    over_cubic: hops in this time over those expected from the hazard 3/t of a cubic tail, if the
+    hazard falls below three quarters of the rate
     """
     first: TIME
     """where the bin or the fit begins"""
     last: TIME
     """where it ends; for first_passage the cut c"""
     count: COUNT
-    """intervals or first passages; those within the fit or bin"""
+    """intervals or first passages; for a fit or bin, the intervals that end in it"""
     estimate: SEE_QUANTITY
-    """estimate, a time, 1/time or number"""
+    """estimate: a time, 1/time or a number"""
     stderr: AS_ESTIMATE
     """its standard error"""
     reference: AS_ESTIMATE
     """
-    mean: τ; squared_cv: 1, that of an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + CV²)/2, or
-    ⟨T² − (T − c)₊²⟩/(2τ) where cut, as measured; density_at_zero: exact; rate: 1/τ, which it would
-    be if intervals were exponential; trend: 0
+    mean: τ; squared_cv: 1, as for an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + CV²)/2, or
+    with a cut ⟨T² − (T − c)₊²⟩/(2τ), as measured; density_at_zero: exact; rate: 1/τ, as for
+    exponential intervals; trend: 0
     """
     reference_stderr: AS_ESTIMATE
-    """its standard error where it is measured"""
+    """its standard error, if the reference is measured"""
     z: NUMBER
     """
-    (estimate − reference)/error; of a rate, how far intervals are from exponential at all times;
-    empty where a cubic tail leaves F and T² without a variance: see the row with the cut
+    (estimate − reference)/error; for a rate, how far intervals are from exponential at all times;
+    empty if a cubic tail gives F and T² an infinite variance: see the row with the cut
     """
     chi2: NUMBER
     """Pearson's χ² of a constant hazard"""
     degrees: COUNT
-    """its degrees of freedom"""
+    """degrees of freedom of chi2"""
     p: NUMBER
     """
-    rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. There is a
-    plateau for all that is seen where neither is small
+    rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. If neither
+    is small, the data show a plateau
     """
 
     @classmethod

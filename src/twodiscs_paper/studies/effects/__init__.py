@@ -1,1 +1,1 @@
-"""What each effect does to the mean times, and what it costs."""
+"""How each effect changes the mean times, and its cost."""

@@ -1,4 +1,4 @@
-"""The exact curves of scenes with effects, over those of plain discs in the same box."""
+"""Exact mean times of scenes with effects over exact mean times of plain discs in the same box."""
 
 import math
 
@@ -14,7 +14,7 @@ SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
 def rows(scenes):
     """Yield the rows of effects_curves.csv.
 
-    ``scenes`` is {name: parameters of a box}; plain discs have the sides of the first one.
+    ``scenes`` is {name: parameters of a box}; plain discs are in a box with the first one's sides.
     """
     boxes = {name: Box(**parameters) for name, parameters in scenes.items()}
     first = next(iter(boxes.values()))

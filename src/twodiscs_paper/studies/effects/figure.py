@@ -1,4 +1,4 @@
-"""How each effect moves the mean times, and what it costs to simulate."""
+"""How each effect changes the mean times, and how much its simulation costs."""
 
 import ast
 
@@ -20,24 +20,24 @@ from twodiscs.figures.kit.style import (
 from twodiscs.model.box import Box
 from twodiscs_paper.studies.effects.curves import SHOWN_EVENTS
 
-#: Inches: the width of two columns, that of a panel of times, of the panel of costs and of the room
-#: for its names; margins, gaps, the panels of the curves and of the residuals, the legend.
+#: Inches: widths of the figure, of a panel of times, of the panel of costs and of its names;
+#: margins and gaps; heights of the panels of curves and of residuals, and of the legend.
 WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
 MAIN, LOWER, LEGEND = 1.95, 0.75, 0.5
 
-#: What is called otherwise here.
+#: Names of events in this figure, if they differ from those in other figures.
 NAMES_OF = {"any_wall": "wall hits"}
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 
-#: Ratios that are shown; beyond are the ends of the ranges of radii.
+#: The range of the ratios; curves leave it only near the ends of the radii.
 SHOWN = (0.22, 22)
 
 
 def draw(box=None, *, tables):
-    """Draw the rows of effects.csv, which name their boxes, and the curves; not ``box``."""
+    """Draw the rows of effects.csv and the curves; ``box`` is not used: the rows name theirs."""
     rows = [row for row in tables["effects"] if row["quantity"] != "never_met_share"]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
@@ -75,14 +75,15 @@ def draw(box=None, *, tables):
 def caption(shown):
     """Return the caption."""
     text = """
-    Mean times of scenes with one effect or two, divided by those of plain discs in the same box at
-    the same radius (of disc 1) and total energy, up to the largest radius of plain discs: exact
+    Mean times of scenes with one effect or two, divided by the mean times of plain discs in the
+    same box at the same radius (of disc 1) and total energy, up to the largest radius of plain
+    discs: exact
     (lines) and by event-driven molecular dynamics (symbols), for (a) vertical hops, (b) disc
     collisions and (c) hits of any disc on any wall. Error bars are one standard error; they are
     hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of
     plain discs become blocked, and their largest radius. The torus has neither hops nor walls.
     Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor time
-    per wall hit or disc collision at r = 0.2, divided by that of plain discs with all events
+    per wall hit or disc collision at r = 0.2, divided by the time for plain discs with all events
     counted. To leave a periodic cell takes as much time as an event, but is not counted.
     """
     return text + shown.if_any(
@@ -92,7 +93,7 @@ def caption(shown):
 
 
 def _look(i):
-    """Return the colour and marker of scene ``i``, others for each."""
+    """Return the colour and marker of scene ``i``, a different pair for each."""
     n = len(COLOURS)
     return COLOURS[i % n], MARKERS[(i + i // n) % n]
 
@@ -103,7 +104,7 @@ def _box(row):
 
 
 def _curve(rows, scene, event):
-    """Return the radii and ratios of the curve of an event, NaN where it is broken."""
+    """Return the radii and ratios of the curve of an event, with NaN at its gaps."""
     own = [row for row in rows if (row["scene"], row["event"]) == (scene, event)]
     return np.array([[row["radius"], row["ratio"]] for row in own], float).reshape(-1, 2).T
 
@@ -123,19 +124,20 @@ def _title(axes, letter, text):
 
 
 def _costs(figure, rows, looks):
-    """Draw the time per event of each scene in units of that of the plain one."""
+    """Draw the time per event of each scene, over the time per event of the plain scene."""
     left = LEFT + len(SHOWN_EVENTS) * (ACROSS + GAP) + NAMES
     axes = panels.add_panel(figure, BOTTOM, LOWER + JOINT + MAIN, left, COST)
-    shown = [row for row in rows if row["variant"] != "plain"]
-    for i, row in enumerate(shown):
+    others = [row for row in rows if row["variant"] != "plain"]
+    for i, row in enumerate(others):
         colour, marker = looks.get(row["variant"], (GREY, "o"))
         axes.plot([1, 1 / row["ratio"]], [i, i], color=colour)
         axes.plot(1 / row["ratio"], i, **panels.open_symbol(colour, marker))
     axes.axvline(1, color=GREY, lw=0.5, zorder=0)
-    names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in shown]
-    axes.set_yticks(range(len(shown)), names)
+    names = ["plain,\nno hops" if r["variant"] == "plain_walls" else r["variant"] for r in others]
+    axes.set_yticks(range(len(others)), names)
     longest = max(1 / row["ratio"] for row in rows)
-    axes.set(ylim=(len(shown) - 0.5, -0.5), xlim=(0, 1.12 * longest), xlabel="time / that of plain")
+    axes.set(ylim=(len(others) - 0.5, -0.5), xlim=(0, 1.12 * longest))
+    axes.set_xlabel("time / that of plain")
     axes.tick_params(axis="y", length=0)
     _title(axes, "d", "time per event")
 

@@ -1,14 +1,13 @@
-"""What each effect does to the mean times, and rough discs that never meet.
+"""How each effect changes the mean times, and rough discs that never meet.
 
-The scenes are those of the files in ``config/scenes``. Their mean times, counted as those of any
-scene, are set beside those of plain discs in the same box.
+The scenes are in the files of ``config/scenes``. Their mean times, measured as for any scene, are
+compared with the exact mean times of plain discs in the same box.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
-from twodiscs.comparison import estimates
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
@@ -16,21 +15,22 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
+from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
 
-#: Blocks of starts, of ``REPLICAS`` each, that are followed until their discs meet, and the times
-#: at which those are counted that have not.
+#: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
+#: the starts without a meeting are counted.
 BLOCKS = 1024
 TIMES = (1e2, 1e3, 1e4)
 
-#: Discs that meet by chance do so within so many mean times: only e^−20 of them have not.
-BY_CHANCE = 20
+#: Discs with chaotic motion meet within this many mean times, except for a fraction e^−20.
+MEAN_TIMES = 20
 
 
-# What is counted ----------------------------------------------------------------------------------
+# Counts -------------------------------------------------------------------------------------------
 
 
 @compiled
@@ -53,11 +53,11 @@ def follow_survivors(seed, first, stop, replicas, times, law, draw, prism):
 
 
 def survivors(scene, times, blocks, seed):
-    """Return for how many starts of a ``Scene`` the discs have not met by each of ``times``.
+    """Return how many starts of a ``Scene`` have no meeting of the discs by each of ``times``.
 
-    Of ``blocks`` × ``REPLICAS`` starts of the invariant measure, a list of integers. Raises
-    ``InputError`` for anything that is not a ``Scene``, for ``times`` that do not ascend, and for a
-    number out of range.
+    The result is a list of integers, from ``blocks`` × ``REPLICAS`` starts of the invariant
+    measure. Raises ``InputError`` for anything that is not a ``Scene``, for ``times`` that do not
+    ascend, and for a number out of range.
     """
     law, (draw, prism) = law_of(check_scene(scene)), origins(scene)
     values = check_ascending("times", times)
@@ -68,7 +68,7 @@ def survivors(scene, times, blocks, seed):
 
 # The table ----------------------------------------------------------------------------------------
 
-#: What effects.csv has of a row of mean_times.csv.
+#: The columns that effects.csv takes from mean_times.csv.
 KEPT = (
     "radius", "exact", "estimate", "stderr", "z", "count", "replicas", "duration", "status", "test",
     "starts", "share", "copies",
@@ -79,7 +79,7 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
     """Yield the rows of effects.csv.
 
     ``scenes`` is {name: parameters of its box}, ``tables`` has the rows of <name>/mean_times of
-    each. Rough discs are followed besides until they meet, from ``blocks`` × ``REPLICAS`` starts at
+    each. Rough discs are also followed until they meet, from ``blocks`` × ``REPLICAS`` starts at
     each radius of their table, with random streams of the root ``seed``.
     """
     for name, parameters in scenes.items():
@@ -94,12 +94,12 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
 
 
 def _survivors_rows(name, rough, seed, blocks):
-    """Yield the rows on starts that have not met, of rough discs and of smooth ones.
+    """Yield the rows on starts without a meeting, for rough discs and for smooth discs.
 
-    There are none at a radius where meeting by chance does not take much less time.
+    A scene has no rows unless chaotic discs meet well before the first of ``TIMES``.
     """
     for scene in (rough, replace(rough, moment_of_inertia=None)):
-        if BY_CHANCE * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
+        if MEAN_TIMES * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
             stream = stream_seed(seed, name, "unmet", key(scene.radius))
             counts = survivors(scene, TIMES, blocks, stream)
             for time, count in zip(TIMES, counts, strict=True):
@@ -107,7 +107,7 @@ def _survivors_rows(name, rough, seed, blocks):
 
 
 def _plain(box, radius):
-    """Return the plain ``Scene`` in the same sides, or None if its discs do not fit."""
+    """Return the plain ``Scene`` in a box with the same sides, or None if its discs do not fit."""
     plain = Box(box.width, box.height)
     return plain.scene(radius) if plain.fits(radius) else None
 
@@ -122,16 +122,17 @@ def _mean_time_row(box, row):
 
 
 def _law(plain, time):
-    """Return the share of smooth starts that have not met by a long ``time``.
+    """Return the fraction of starts of smooth discs without a meeting by a long ``time`` t.
 
-    Palm's relation makes it C/(2τt²) of the tail C/t³ of the times between collisions, of mean τ.
+    By Palm's relation it is C/(2τt²), if times between collisions have the mean τ and the tail
+    C/t³.
     """
     mean = exact.mean_times(plain)["disc_collision"]
     return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
 def _survivors_row(scene, starts, time, count):
-    """Return the row of the fraction of ``starts`` that have not met by a ``time``."""
+    """Return the row on the fraction of ``starts`` without a meeting by ``time``."""
     plain = _plain(Box.of(scene), scene.radius)
     fraction = estimates.binomial_estimate(count, starts, 1.0)
     enough = count >= estimates.MIN_EVENTS

@@ -1,4 +1,4 @@
-"""What each effect does to the mean times, and what it costs."""
+"""How each effect changes the mean times, and its cost."""
 
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.studies.effects.table import Effects, EffectsCost, EffectsCurves
@@ -26,13 +26,13 @@ def _reads(configuration):
 
 STUDY = Study(
     "effects",
-    builds="what each effect does to the mean times, and what it costs",
+    builds="how each effect changes the mean times, and its cost",
     tables=(Effects, EffectsCost, EffectsCurves),
     seconds=80.0,
     order=7,
     figures={
         "effects": Entry(
-            "What each effect does",
+            "Mean times with effects",
             DYNAMICS,
             "twodiscs_paper.studies.effects.figure",
             tables=("effects", "effects_cost", "effects_curves"),

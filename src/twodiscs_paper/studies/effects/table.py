@@ -1,4 +1,4 @@
-"""The tables of what each effect does and what it costs."""
+"""The tables of how each effect changes the mean times, and of its cost."""
 
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
 
@@ -9,34 +9,33 @@ class Effects(Table):
     """One row per scene with effects, radius and quantity, beside discs without effects."""
 
     scene: TEXT
-    """its name; that of its file in config/scenes"""
+    """its name, which is the name of its file in config/scenes"""
     width: LENGTH
     height: LENGTH
     effects: TEXT
     """
-    all that makes it another scene than the plain one in this box, as a Python dict;
-    never_met_share has rows of smooth discs, too
+    the effects of the scene, as a Python dict; never_met_share also has rows of smooth discs
     """
     radius: LENGTH
     """radius of disc 1"""
     quantity: TEXT
-    """<event>_time; never_met_share: of starts whose discs have not met within duration"""
+    """<event>_time; never_met_share: share of starts whose discs do not meet within duration"""
     exact: TIME
-    """exact mean time; empty where the event is impossible"""
+    """exact mean time; empty if the event is impossible"""
     plain: AS_EXACT
     """
-    exact mean time of plain discs of this radius, empty where it does not exist; for
-    never_met_share 2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), to which that of plain discs tends
+    exact mean time of plain discs of this radius, empty if it does not exist; for never_met_share
+    2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), the long-time limit for plain discs
     """
     estimate: AS_EXACT
     """as in mean_times.csv; for never_met_share count/replicas"""
     stderr: AS_EXACT
-    """its standard error; empty when too few to be honest"""
+    """its standard error; empty if events are too few for an error bar"""
     z: NUMBER
     count: COUNT
     """events counted, or starts that have not met"""
     replicas: COUNT
-    """independent trajectories that can see the event"""
+    """independent trajectories in which the event can occur"""
     duration: TIME
     """length T of a replica"""
     status: TEXT
@@ -46,9 +45,9 @@ class Effects(Table):
     """
     test: TEXT
     starts: TEXT
-    """where they come from, as in mean_times.csv"""
+    """where initial states come from, as in mean_times.csv"""
     share: NUMBER
-    """share of configuration space that starts come from"""
+    """share of configuration space from which initial states are drawn"""
     copies: COUNT
     """events that count as one, as in mean_times.csv"""
 
@@ -63,19 +62,19 @@ class Effects(Table):
 class EffectsCurves(Table):
     """One row per scene with effects, radius and event: the exact curves that the figure shows.
 
-    A row without a radius stands between two regimes, where a curve is broken.
+    A row without a radius stands between two regimes, where a curve has a gap.
     """
 
     scene: TEXT
-    """its name; that of its file in config/scenes"""
+    """its name, which is the name of its file in config/scenes"""
     radius: LENGTH
     """radius of disc 1"""
     event: TEXT
     """the event"""
     ratio: NUMBER
     """
-    exact mean time over that of plain discs of this radius in the same sides; empty where one of
-    them does not exist
+    exact mean time over the exact mean time of plain discs of this radius in the same box; empty if
+    one of them does not exist
     """
 
     @staticmethod
@@ -87,14 +86,14 @@ class EffectsCurves(Table):
 
 
 class EffectsCost(Table):
-    """As benchmark.csv, the rows on effects alone, from a short run."""
+    """The rows of benchmark.csv on effects, from a short run."""
 
     benchmark: TEXT
-    """what is measured"""
+    """the name of the measurement"""
     variant: TEXT
     """
-    which engine or method; in effects, which scene of config/scenes, and plain: the scene without
-    effects, or plain_walls: with no hops detected
+    the engine or method; in effects, the scene of config/scenes, or plain: the scene without
+    effects, or plain_walls: the same without detection of hops
     """
     value: Column(float, "see unit")
     """median over the repetitions"""

@@ -1,1 +1,1 @@
-"""More than two discs: mean times by theory, Monte Carlo and dynamics at the same room per disc."""
+"""More than two discs: mean times by theory, Monte Carlo and dynamics at the same area per disc."""

@@ -4,10 +4,10 @@ from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
 from twodiscs.figures.kit.style import BLACK, GREY, new_figure
 
-#: Inches: a panel for each radius, the residuals, the gap between them, the room above.
+#: Inches: heights of a panel of one radius and of the residuals, the gap, the margin above.
 PANEL, RESIDUALS, GAP, TOP = 1.4, 0.8, 0.1, 0.12
 
-#: Times longer than this are not drawn: hops that all but never happen.
+#: Times longer than this are not drawn: hops that almost never happen.
 LONGEST = 1e3
 
 #: Residuals of one number of discs stand side by side, from radius to radius.
@@ -17,7 +17,7 @@ DOTTED = (0, (1, 1.5))
 
 
 def draw(box, tables):
-    """Draw more_discs.csv: exact values are lines and full, others dotted through Monte Carlo.
+    """Draw more_discs.csv: full lines are exact values, dotted lines Monte Carlo without them.
 
     Open symbols are dynamics, with their standard errors. Residuals are beneath.
     """
@@ -53,8 +53,8 @@ def caption(shown):
     Mean times of N discs in a box of 0.75 N × 1, at the energy per disc of two discs: exact if a
     theory is known (lines), by Monte Carlo (dotted) and by event-driven molecular dynamics
     (symbols). Error bars are one standard error; they are hidden if they are smaller than the
-    symbols. Collisions and hops are those of any pair of discs, wall hits those of one disc at one
-    wall. Two discs have the theory of the box, three discs an exact quadrature; at r = 0.28 only
+    symbols. Collisions and hops count for any pair of discs, wall hits for one disc at one wall.
+    Two discs have the theory of the box, three discs an exact quadrature; at r = 0.28 only
     neighbours touch, and a transfer operator gives every N. Times beyond 1000 are not shown. (d)
     Residuals z of the dynamics in standard errors, from exact values, or from Monte Carlo if no
     exact value is known; radii stand side by side.
@@ -83,7 +83,7 @@ def _times(axes, rows):
 def _legend(axes):
     axes.plot([], [], color=GREY, label="exact")
     axes.plot([], [], color=GREY, lw=0.7, ls=DOTTED, label="Monte Carlo")
-    # Room for the names above all symbols.
+    # The legend stands above all symbols.
     axes.set_ylim(top=100 * axes.get_ylim()[1])
     axes.legend(loc="upper right", ncols=2)
 

@@ -1,7 +1,7 @@
-"""Mean times of N discs at the same room and the same energy for each disc, by all methods.
+"""Mean times of N discs at the same area and the same energy per disc, by all methods.
 
-Rates of theory and of the engines are at total energy 1/2. At the energy that each of two discs has
-then, velocities are √(N/2) times as large, and times as much shorter.
+Theory and engines give rates at total energy 1/2. At the energy per disc of two discs, velocities
+are √(N/2) times as large, and times are shorter by the same factor.
 """
 
 import math
@@ -18,15 +18,15 @@ from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
-#: A room per disc of 0.75 × 1: two of them have the box 1.5 × 1.
+#: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
 WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
 
-#: Numbers of discs, and radii: open, both hops but one dense, an ordered channel.
+#: Numbers of discs, and radii: dilute, dense with both hops, and a channel of ordered discs.
 DISCS, RADII = (2, 3, 4, 8), (0.1, 0.2, 0.28)
 
 
 def dynamics_rates(scene, events, seed):
-    """Return ({class: rate}, {class: error}, error of the virial sum) of about so many events."""
+    """Return ({class: rate}, {class: error}, error of the virial sum) from about ``events``."""
     duration = many.replica_duration(scene)
     each = many.simulated_events(kernels.run_blocks(scene, seed, 0, 1, duration)[0])
     blocks = max(2, math.ceil(events / each))
@@ -41,7 +41,7 @@ def dynamics_rates(scene, events, seed):
 
 
 def _time(scene, event, rate, error=0.0):
-    """Return (mean time, its error) of events that share a rate; None where there are none."""
+    """Return (mean time, its error) of events that share a rate, or (None, None) without rate."""
     if not rate:
         return None, None
     time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
@@ -54,7 +54,7 @@ def _deviate(value, error, other, spread=0.0):
 
 
 def rows(events, samples, seed, discs=DISCS, radii=RADII):
-    """Yield the rows of more_discs.csv, of so many ``events`` and ``samples`` for each scene."""
+    """Yield the rows of more_discs.csv, from about ``events`` and ``samples`` for each scene."""
     for radius in radii:
         for number in discs:
             scene = Scene(WIDTH_PER_DISC * number, HEIGHT, radius, discs=number)
@@ -73,21 +73,22 @@ def _of_scene(scene, events, samples, seed):
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))
         estimate, estimate_error = _time(scene, event, sampled[event], spread[event])
-        seen, error = _time(scene, event, counted[event], errors[event])
+        simulated, error = _time(scene, event, counted[event], errors[event])
         reference, uncertain = (time, 0.0) if known else (estimate, estimate_error)
         z = (
             None
-            if seen is None or reference is None
-            else _deviate(seen, error, reference, uncertain)
+            if simulated is None or reference is None
+            else _deviate(simulated, error, reference, uncertain)
         )
+        sampled_z = _deviate(estimate, estimate_error, time) if time else None
         yield start | {
             "event": event, "exact": time, "monte_carlo": estimate,
-            "monte_carlo_stderr": estimate_error, "dynamics": seen, "dynamics_stderr": error,
-            "z": z,
+            "monte_carlo_stderr": estimate_error, "monte_carlo_z": sampled_z, "dynamics": simulated,
+            "dynamics_stderr": error, "z": z,
         }  # fmt: skip
     total = virial_sum(scene, counted)
     yield start | {
         "event": "virial", "exact": 1.0, "monte_carlo": virial_sum(scene, sampled),
-        "monte_carlo_stderr": None, "dynamics": total, "dynamics_stderr": virial_error,
-        "z": _deviate(total, virial_error, 1.0),
+        "monte_carlo_stderr": None, "monte_carlo_z": None, "dynamics": total,
+        "dynamics_stderr": virial_error, "z": _deviate(total, virial_error, 1.0),
     }  # fmt: skip

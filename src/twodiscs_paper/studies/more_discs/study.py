@@ -1,4 +1,4 @@
-"""More than two discs: mean times against exact ones where they are known, and the virial sum."""
+"""More than two discs: mean times against exact values if these are known, and the virial sum."""
 
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.studies.more_discs.table import MoreDiscs

@@ -1,1 +1,1 @@
-"""Which hops are passages, and what they make of diffusion along a channel."""
+"""Which hops are passages, and how fast discs diffuse by hops along a channel."""

@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from twodiscs.comparison.estimates import mean_of
 from twodiscs.model.checks import InputError, check_ascending, check_integer
+from twodiscs.points.estimates import mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 
@@ -20,11 +20,11 @@ from twodiscs.sampling.streams import next_bits, open_stream, uniform
 DENSITY = 0.5
 SINGLE_FILE = (1 - DENSITY) / DENSITY * 2 / math.sqrt(math.pi)
 
-#: Sites of a ring, a power of two: much longer than what is diffused in the longest time.
+#: Sites of a ring, a power of two: many more than a particle diffuses in the longest time.
 SITES = 1024
 
-#: The end of a run, in times at which √t and t count the same, at least so much time, and the ends
-#: of runs without swaps.
+#: The length of a run, in units of the time at which √t and t contribute equally; the shortest run;
+#: the length of runs without swaps.
 CROSSOVERS, SHORTEST, WITHOUT = 16, 64.0, 1024.0
 
 
@@ -32,14 +32,14 @@ CROSSOVERS, SHORTEST, WITHOUT = 16, 64.0, 1024.0
 def exchange(seed, first, stop, sites, swap, times):
     """Return the mean square displacement on each of the rings ``first`` … ``stop`` − 1.
 
-    It is that of all particles at the ascending ``times``, (stop − first, times). ``sites`` is a
-    power of two.
+    The mean is over all particles of a ring. The result has the shape (stop − first, times);
+    ``times`` ascend and ``sites`` is a power of two.
     """
     squares = np.zeros((stop - first, times.size))
     mask = np.uint64(sites - 1)
     for ring in range(first, stop):
         state = open_stream(seed, ring)
-        # The particle on a site, −1 for none: places are drawn by a shuffle.
+        # The particle on a site, −1 for none: a shuffle draws the places.
         site = np.full(sites, -1)
         for i in range(sites // 2):
             site[i] = i
@@ -49,7 +49,7 @@ def exchange(seed, first, stop, sites, swap, times):
         moved = np.zeros(sites // 2, np.int64)
         done = 0
         for k in range(times.size):
-            # The number of exchanges by then is their mean one: fluctuations are 1/√(sites t).
+            # The number of exchanges is fixed at its mean: it would fluctuate by 1/√(sites t).
             for _ in range(np.int64(times[k] * sites) - done):
                 bits = next_bits(state)
                 i = np.int64(bits & mask)
@@ -70,8 +70,8 @@ def exchange(seed, first, stop, sites, swap, times):
 def displacements(swap, times, rings, seed):
     """Return the mean square displacements (rings, times) of tagged particles, in sites².
 
-    ``swap`` is the probability p in [0, 1] that neighbours swap, ``times`` are over the mean time
-    between exchanges of a bond. Raises ``InputError`` for numbers out of range.
+    ``swap`` is the probability p in [0, 1] that neighbours swap. ``times`` are in units of the mean
+    time between exchanges of a bond. Raises ``InputError`` for numbers out of range.
     """
     if not 0 <= swap <= 1:
         raise InputError(f"swap must be a probability from 0 to 1, not {swap!r}")
@@ -80,19 +80,19 @@ def displacements(swap, times, rings, seed):
 
 
 def run_time(swap):
-    """Return how long a run with ``swap`` > 0 lasts, a power of two.
+    """Return the length of a run with ``swap`` > 0, a power of two.
 
-    It is ``CROSSOVERS`` times t× = (F/2D)², where F √t = 2 D t, with D = ν ℓ².
+    It is at least ``CROSSOVERS`` times t× = (F/2D)², where F √t = 2 D t, with D = ν ℓ².
     """
     crossover = (SINGLE_FILE / (2 * swap / DENSITY)) ** 2
     return 2.0 ** math.ceil(math.log2(max(SHORTEST, CROSSOVERS * crossover)))
 
 
 def diffusion(swap, rings, seed):
-    """Return D/(ν ℓ²) as an ``Estimate``, without what is left of the single file.
+    """Return D/(ν ℓ²) as an ``Estimate``, without the term ∝ √t of the single file.
 
-    From the mean square displacement F √t + 2 D t at T and T/4, whose √t cancel. Raises
-    ``InputError`` unless 0 < ``swap`` ≤ 1, and for numbers out of range.
+    The mean square displacement is F √t + 2 D t. Its values at T and T/4 are combined so that √t
+    cancels. Raises ``InputError`` unless 0 < ``swap`` ≤ 1, and for numbers out of range.
     """
     if not 0 < swap <= 1:
         raise InputError(f"swap must be a probability above 0, not {swap!r}")

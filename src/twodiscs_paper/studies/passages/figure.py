@@ -23,37 +23,37 @@ from twodiscs.model.events import AXIS
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 
-#: Inches: the figure across, heights of the three rows of panels, gaps, room above.
+#: Inches: the width of the figure, heights of the three rows of panels, the gap, the margin above.
 WIDTH, CURVES, POWERS, RESIDUALS, GAP, TOP = 7.0, 1.7, 1.9, 0.8, 0.4, 0.24
 
-#: Halvings of the distance whose κ(t) is shown: of smooth discs, and of rough ones.
+#: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
 
-#: How smooth discs, and rough ones of each moment of inertia, look.
+#: Colour and marker of smooth discs, and of rough discs of each moment of inertia.
 LOOKS = {
     None: (BLUE, "o"), 0.1: (ORANGE, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
-#: Boxes and hops of smooth discs after the first one.
+#: Colour and marker of further boxes and hops of smooth discs.
 OTHERS = ((SKY, "P"), (BLACK, "D"))
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv; those of κ(t) are in the first scene."""
+    """Draw the rows of passages.csv; κ(t) is drawn for the first scene."""
     rows = tables["passages"]
-    whole = WIDTH - panels.LEFT - panels.RIGHT
+    full_width = WIDTH - panels.LEFT - panels.RIGHT
     third = (WIDTH - 3 * (panels.LEFT + panels.RIGHT)) / 3
     middle = panels.BOTTOM + RESIDUALS + GAP
     upper = middle + POWERS + GAP
     figure = new_figure(upper + CURVES + TOP, WIDTH)
-    curves = panels.add_panel(figure, upper, CURVES, width=whole, name="curves")
+    curves = panels.add_panel(figure, upper, CURVES, width=full_width, name="curves")
     across = [panels.LEFT + i * WIDTH / 3 for i in range(3)]
     smooth, rough, times = (
         panels.add_panel(figure, middle, POWERS, left, third, name)
         for left, name in zip(across, ("smooth", "rough", "times"), strict=True)
     )
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=whole, name="residuals")
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=full_width, name="residuals")
     for axes, name in zip(figure.axes, "abcde", strict=True):
         panels.letter(axes, name)
     if not rows:
@@ -63,7 +63,7 @@ def draw(box, tables):
         return figure
     main, own = first_scene(rows, box)
     hop, limit = [*thresholds(main).items()][-1]
-    ours = of(own, event=hop, periodic=None)
+    ours = select(own, event=hop, periodic=None)
     _curves(curves, main, hop, limit, ours)
     _smooth(smooth, rows, ours)
     _rough(rough, ours)
@@ -82,24 +82,25 @@ def caption(shown):
     averaged over states on the surface of the hop, for smooth discs (circles) and rough ones
     (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare
     it has a plateau, which falls as passages follow one another (lines): κ is the fraction of odd
-    clusters among all hops, from independent runs. (b) Smooth discs: 1 − κ falls about as ∛δ, so
-    that transition state theory becomes exact at the threshold. (c) Rough discs: κ vanishes, and
-    the power depends on their moment of inertia I, in units of mr². (d) Exact mean time τ between
-    hops (lines, ∝ δ⁻² close to the threshold) and mean time τ/κ between passages (symbols). The
-    legend has the powers of δ that are fitted to all points shown. (e) Residuals z in standard
+    clusters among all hops, from independent runs. (b) Smooth discs: 1 − κ, multiplied by the range
+    A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the discs leave in the
+    neck. It would be constant if 1 − κ fell as ∛ε. (c) Rough discs: κ falls, and its slope depends
+    on their moment of inertia I, in units of mr². The grey line is for a separation that diffuses
+    in the neck. (d) Exact mean time τ between hops (lines, ∝ δ⁻² close to the threshold) and mean
+    time τ/κ between passages (symbols). (e) Residuals z in standard
     errors, from exact values or between two estimators. Error bars are one standard error.
     """
 
 
 def first_scene(rows, box):
-    """Return (box of the first scene, its rows); the ``box`` that is given if there are none."""
+    """Return (box of the first scene, its rows); without such rows (``box``, [])."""
     first = next((row["scene"] for row in rows if row["scene"]), None)
     own = [row for row in rows if first and row["scene"] == first]
     return (Box(own[0]["width"], own[0]["height"]) if own else box), own
 
 
-def of(rows, **wanted):
-    """Return those of ``rows`` that have these values."""
+def select(rows, **wanted):
+    """Return the ``rows`` that have these values."""
     return [row for row in rows if all(row[k] == v for k, v in wanted.items())]
 
 
@@ -121,17 +122,17 @@ def points(axes, x, y, error, look, label=None, filled=False):
 
 
 def _curves(axes, box, hop, limit, rows):
-    """Draw κ(t), how it starts by the exact law, and what is left by the passages."""
+    """Draw κ(t), its exact slope at 0, and its decay by later passages."""
     for inertia, halvings in SHOWN.items():
         colour, marker = LOOKS[inertia]
         for n in halvings:
-            here = of(rows, moment_of_inertia=inertia, distance=2.0**-n)
-            seen = of(here, quantity="correlation")
-            if not seen:
+            here = select(rows, moment_of_inertia=inertia, distance=2.0**-n)
+            curve = select(here, quantity="correlation")
+            if not curve:
                 continue
-            scene = box.scene(seen[0]["radius"])
+            scene = box.scene(curve[0]["radius"])
             unit = box_time(scene, hop)
-            time, value, error = columns(seen, "time", "estimate", "stderr")
+            time, value, error = columns(curve, "time", "estimate", "stderr")
             axes.errorbar(
                 time / unit, value, error, color=colour, marker=marker, markersize=1.6, lw=0.5,
                 elinewidth=0.5, zorder=3,
@@ -140,7 +141,7 @@ def _curves(axes, box, hop, limit, rows):
                 axes, rf"$\delta=2^{{-{n}}}$", (time[-1] / unit, value[-1]), (3, 1.5 * (n == 12)),
                 ha="left", color=colour, fontsize=6.5,
             )  # fmt: skip
-            for row in of(here, quantity="coefficient"):
+            for row in select(here, quantity="coefficient"):
                 late = np.geomspace(0.5, 10, 30)
                 fall = np.exp(-2 * row["estimate"] * late * unit / row["exact_mean"])
                 axes.plot(late, row["estimate"] * fall, color=BLACK, lw=0.7, zorder=5)
@@ -161,25 +162,32 @@ def _curves(axes, box, hop, limit, rows):
 
 
 def _smooth(axes, rows, ours):
-    """Draw 1 − κ of smooth discs at every threshold of every scene."""
+    """Draw 1 − κ of smooth discs over ∛(σ²ε)/A, at every threshold of every scene."""
     others = iter(OTHERS)
-    seen = of(rows, quantity="coefficient", moment_of_inertia=None)
-    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in seen):
-        own = of(seen, scene=scene, event=event)
+    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None)
+    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in coefficients):
+        own = select(coefficients, scene=scene, event=event)
         distance, value, error = columns(own, "distance", "estimate", "stderr")
         where = (
             f"${panels.sides(Box(own[0]['width'], own[0]['height']))}$, ${QUARTERS[AXIS[event]]}$"
         )
         look = LOOKS[None] if own[0] in ours else next(others)
-        points(axes, distance, 1 - value, error, look, where)
-    _power(axes, 1 / 3, r"$\delta^{1/3}$", 1e-3, 0.015)
-    _scaling(axes, (4e-5, 0.25), (0.005, 4), r"$1-\kappa$, smooth discs")
+        unit = np.array([cube_root(row) for row in own])
+        points(axes, distance, (1 - value) / unit, error / unit, look, where)
+    label = r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$"
+    _scaling(axes, (4e-5, 0.25), (0, 2.4), label, yscale="linear")
+
+
+def cube_root(row):
+    """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
+    scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
+    return (scene.contact_distance**2 * scene.room(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
 
 
 def _rough(axes, ours):
     """Draw κ of rough discs."""
     for inertia, look in LOOKS.items():
-        own = of(ours, quantity="coefficient", moment_of_inertia=inertia)
+        own = select(ours, quantity="coefficient", moment_of_inertia=inertia)
         if own and inertia is not None:
             distance, value, error = columns(own, "distance", "estimate", "stderr")
             points(axes, distance, value, error, look, rf"$I={inertia:g}$")
@@ -194,16 +202,16 @@ def _power(axes, power, name, start, height):
     drawing.label(axes, name, (x[1], height * 20**power), (3, 0), ha="left", color=GREY)
 
 
-def _scaling(axes, xlim, ylim, label):
-    """Make both scales logarithmic between the limits, over the distance δ."""
-    axes.set(xscale="log", yscale="log", xlim=xlim, ylim=ylim, ylabel=label)
+def _scaling(axes, xlim, ylim, label, yscale="log"):
+    """Make the scales logarithmic, or one of them, between the limits, over the distance δ."""
+    axes.set(xscale="log", yscale=yscale, xlim=xlim, ylim=ylim, ylabel=label)
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     if axes.get_legend_handles_labels()[1]:
         axes.legend(loc="upper left")
 
 
 def _times(axes, box, hop, limit, rows):
-    """Draw the exact time between hops and the time between passages, with its fitted power."""
+    """Draw the exact time between hops and the time between passages."""
     distances = np.geomspace(4e-5, 0.2, 60)
     for inertia, style in ((None, "-"), (ONE_INERTIA, (0, (4, 2)))):
         effects = {} if inertia is None else {"moment_of_inertia": inertia}
@@ -213,13 +221,10 @@ def _times(axes, box, hop, limit, rows):
         axes.plot(distances, tau, color=BLACK, lw=0.8, ls=style, zorder=5,
                   label=rf"$\tau$, {name}")  # fmt: skip
     for inertia, look in LOOKS.items():
-        own = of(rows, moment_of_inertia=inertia, quantity="passage_time")
-        fit = of(rows, moment_of_inertia=inertia, quantity="passage_exponent")
+        own = select(rows, moment_of_inertia=inertia, quantity="passage_time")
         if not own:
             continue
         name = "smooth" if inertia is None else f"$I={inertia:g}$"
-        if fit:
-            name += rf": ${fit[0]['estimate']:.2f}$"
         distance, value, error = columns(own, "distance", "estimate", "stderr")
         points(axes, distance, value, error, look, rf"$\tau/\kappa$, {name}")
     _scaling(axes, (4e-5, 0.25), (0.3, None), r"times $\tau$ and $\tau/\kappa$")
@@ -234,9 +239,11 @@ RESIDUAL_LOOKS = {
 
 
 def residuals(axes, rows, looks):
-    """Draw z of all quantities in ``looks`` that have an exact value, or another estimate."""
+    """Draw z of each quantity in ``looks`` that has an exact value or a second estimate."""
     for quantity, (colour, marker, name) in looks.items():
-        judged = [r for r in of(rows, quantity=quantity) if r["z"] is not None and r["distance"]]
+        judged = [
+            r for r in select(rows, quantity=quantity) if r["z"] is not None and r["distance"]
+        ]
         if judged:
             x, z = columns(judged, "distance", "z")
             axes.plot(x, z, ls="", label=name, **panels.open_symbol(colour, marker, 0.75))

@@ -6,19 +6,19 @@ from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,
     first_scene,
-    of,
     points,
     residuals,
+    select,
 )
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
 
-#: Inches: heights of the panel of the ring, of its residuals and of that of the lattice, the gap.
+#: Inches: heights of the panels of the ring, its residuals and the lattice; the gap, the margin.
 RING, RESIDUALS, LATTICE, GAP, TOP = 1.9, 0.75, 1.2, 0.42, 0.22
 
 #: Files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
 
-#: What is drawn from z = 1 on.
+#: The line of a random walk, at 1.
 RANDOM_WALK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2))}
 
 #: {quantity: colour, marker, name} of residuals.
@@ -29,7 +29,7 @@ RESIDUAL_LOOKS = {
 
 
 def draw(box, tables):
-    """Draw the rows of passages.csv on diffusion; those on a ring are in the first scene."""
+    """Draw the rows of passages.csv on diffusion; the ring has the box of the first scene."""
     rows = tables["passages"]
     middle = panels.BOTTOM + LATTICE + GAP
     upper = middle + RESIDUALS + panels.GAP
@@ -47,7 +47,7 @@ def draw(box, tables):
     panels.name_box(ring, first_scene(rows, box)[0])
     _ring(ring, rows)
     residuals(lower, rows, RESIDUAL_LOOKS)
-    swaps = of(rows, quantity="diffusion", method="lattice")
+    swaps = select(rows, quantity="diffusion", method="lattice")
     x, y, error = columns(swaps, "swap", "estimate", "stderr")
     points(lattice, x, y, error, (GREEN, "^"), "single file on a lattice")
     lattice.axhline(1, **RANDOM_WALK)
@@ -66,10 +66,11 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    Diffusion by hops. (a) Coefficient D of diffusion of two discs on a ring, divided by that of a
-    random walk with ν hops per time in either direction, each by ℓ (dashed): by correlations of
-    hops (open symbols) and by displacements (dots), and of discs in a file of four and of eight, by
-    displacements; at distances δ = (r_c − r)/r_c from the radius r_c at which hops become blocked.
+    Diffusion by hops. (a) Coefficient D of diffusion of two discs on a ring, divided by its value
+    for a random walk with ν hops per time in either direction, each by ℓ (dashed): by correlations
+    of hops (open symbols) and by displacements (dots); and the same for discs in a file of four and
+    of eight, by displacements; at distances δ = (r_c − r)/r_c from the radius r_c at which hops
+    become blocked.
     (b) Residuals z in standard errors, from the exact rate or between two estimators. (c) The same
     ratio for a tagged particle of a single file on a lattice, whose neighbours swap with the
     probability p. Error bars are one standard error.
@@ -77,19 +78,19 @@ def caption(shown):
 
 
 def _ring(axes, rows):
-    """Draw D/(ν ℓ²) on the ring, by either method."""
-    seen = of(rows, quantity="diffusion", discs=2)
+    """Draw D/(ν ℓ²) on the ring, by both methods."""
+    of_two = select(rows, quantity="diffusion", discs=2)
     for inertia, name in (
         (None, "2 smooth discs"),
         (ONE_INERTIA, f"2 rough discs, $I={ONE_INERTIA:g}$"),
     ):
         for method, filled in (("hops", False), ("states", True)):
-            own = of(seen, method=method, moment_of_inertia=inertia)
+            own = select(of_two, method=method, moment_of_inertia=inertia)
             if own:
                 x, y, error = columns(own, "distance", "estimate", "stderr")
                 points(axes, x, y, error, LOOKS[inertia], None if filled else name, filled)
     for discs, look in FILES.items():
-        own = of(rows, quantity="diffusion", discs=discs)
+        own = select(rows, quantity="diffusion", discs=discs)
         if own:
             x, y, error = columns(own, "distance", "estimate", "stderr")
             points(axes, x, y, error, look, f"{discs} smooth discs", True)

@@ -1,18 +1,18 @@
 """A file of N smooth discs on a ring: how far a tagged disc goes, and how often discs hop.
 
-The ring has the same length for each disc as that of two. In its frame, whose momentum is zero, a
-disc goes round only by hops: by ℓ, the length for a disc, at each of them. If they were
-uncorrelated, and ν the rate of its hops in either direction, it would have D = ν ℓ².
+The ring has the same length per disc, ℓ, as the ring of two discs. In the frame of zero momentum a
+disc moves along the ring by hops alone, by ℓ at each hop. If hops were uncorrelated, a disc with ν
+hops per time in either direction would have D = ν ℓ².
 """
 
 import math
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.many.lockstep import N, advance, find_events, law_of, nearest
 from twodiscs.model.checks import check_ascending, check_integer
+from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many.rates import rates
@@ -22,8 +22,8 @@ from twodiscs.theory.many.rates import rates
 def follow(states, lanes, times, law, squares, crossings):
     """Follow initial ``states`` (4 N, replicas) on a ring to the ascending ``times``.
 
-    Fills ``squares`` (replicas, times), the mean over the discs of their squared displacement along
-    x, and ``crossings`` (replicas), how often two discs came to be level up to the last time.
+    Fills ``squares`` (replicas, times) with the mean over the discs of the squared displacement
+    along x, and ``crossings`` (replicas) with the number of hops of all pairs up to the last time.
     ``replicas`` is a multiple of ``lanes``.
     """
     discs, replicas = states.shape[0] // 4, states.shape[1]
@@ -66,9 +66,9 @@ def follow(states, lanes, times, law, squares, crossings):
 def diffusion(scene, time, replicas, seed):
     """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
 
-    D is from what is displaced between ``time`` and twice that, ν from all hops until then, of
-    ``replicas`` independent initial states (rounded up to whole lanes). Raises ``InputError`` for
-    numbers out of range.
+    D follows from the displacements between ``time`` and twice ``time``, ν from all hops until
+    then. There are ``replicas`` independent initial states (rounded up to whole lanes). Raises
+    ``InputError`` for numbers out of range.
     """
     (time,) = check_ascending("time", [time])
     replicas = -(-check_integer("replicas", replicas, 2) // LANES) * LANES
@@ -88,5 +88,5 @@ def sampled_rate(scene, samples, seed):
     found, error = (
         rates(scene, part)["horizontal_hop"] for part in measures.sample(scene, samples, seed)
     )
-    share = 2 / scene.discs  # a hop is that of both
+    share = 2 / scene.discs  # two discs take part in a hop
     return Estimate(share * found, share * error, check_integer("samples", samples))

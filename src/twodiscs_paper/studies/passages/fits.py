@@ -1,22 +1,22 @@
-"""Powers of the distance that κ, or 1 − κ, has over the last octaves before the threshold."""
+"""Fit κ, or 1 − κ, by a power of the distance over the last octaves before the threshold."""
 
 import math
 
-from twodiscs.comparison.estimates import LinearFit
+from twodiscs.points.estimates import LinearFit
 
-#: A power is fitted to this many distances, each half of the one before: four octaves.
+#: The number of distances in a fit, each half of the one before: four octaves.
 LAST = 5
 
-#: Rows of one hop, near one threshold, of discs with one moment of inertia.
+#: The columns that identify one hop, near one threshold, of discs with one moment of inertia.
 HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
 
 
 def fits(rows):
     """Yield the fitted powers of ``rows`` of passages.csv, as rows without their empty cells.
 
-    For smooth discs the power is that of 1 − κ, for rough ones that of κ. A fit takes the last
-    ``LAST`` distances of a hop. A hop with fewer than two distances has no fit, and so has one
-    where κ is not between 0 and 1.
+    The power is fitted to 1 − κ for smooth discs, and to κ for rough discs. A fit takes the last
+    ``LAST`` distances of a hop. A hop has no fit if it has fewer than two distances, or if a value
+    is not positive.
     """
     hops = {}
     for row in rows:

@@ -1,14 +1,13 @@
-"""Which hops are passages near the radius where they become blocked, and what diffuses by them.
+"""Which hops are passages near the radius where they become blocked, and how discs diffuse by them.
 
-Distances below that radius are halved again and again. Two quantities have two estimators each that
-share nothing but the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.passages``), and
-the coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
+The distance below that radius is halved from step to step. Two quantities have two estimators each,
+which share only the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.passages``), and the
+coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
 """
 
 import math
 from itertools import pairwise
 
-from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
 from twodiscs.comparison.measured.transmission import (
     TIMES,
     are_rare,
@@ -27,43 +26,49 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages import exclusion, file
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
 
-#: The moment of inertia of rough discs, where there is one.
+#: The moment of inertia of rough discs, if only one is measured.
 ONE_INERTIA = 0.5
 
-#: No more hops are followed for one estimate, and no fewer.
+#: The most hops and the fewest that are followed for one estimate.
 MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 
-#: Replicas that record κ(t), over those for κ, which may take so many times the events of others:
-#: most of them are in pauses, where events cost least.
+#: Replicas for κ over replicas for κ(t), and events for κ over events for other estimates: most
+#: events for κ are in pauses, where they cost least.
 RECORDED, IN_PAUSES = 4, 4
 
-#: Wall and disc events of a hop, about: in a neck of the relative length √distance smooth discs
-#: meet 2/√distance times, rough ones, which diffuse there, 24/distance.
+#: {rough: (factor, power)}: about factor/distance^power wall and disc events belong to a hop. In a
+#: neck of the relative length √distance, smooth discs fly and rough discs diffuse.
 MET = {False: (2, 0.5), True: (24, 1.0)}
 
-#: The density at 0 is taken from two times, the first of which sees so many hops per hop.
+#: The density at 0 is taken from κ at two times; this is about 1 − κ at the first.
 FIRST = 0.01
 
-#: A ring: correlations of hops are summed up for so many times that a disc takes around it, and
-#: displacements for twice that time, or two mean times between hops, in so many replicas or more.
+#: On a ring, correlations of hops are summed up for ``AROUND`` times the time that a disc takes
+#: around it. Displacements take twice that time, or two mean times between hops if these are
+#: longer, in ``FEWEST`` replicas or more.
 AROUND, FEWEST = 16, 2**11
 
-#: Discs in a file on a ring; times, in mean times between the hops of a disc either way, that they
-#: are followed for; no more replicas and no fewer; samples of the rate of their hops.
+#: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
+#: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
 FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**20
 
-#: Probabilities of swaps on the lattice; rings of it where it takes long, and where it does not.
+#: Probabilities of swaps on the lattice; numbers of rings for runs longer than ``LONG`` and for
+#: shorter runs.
 SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
 
 
 def thresholds(box):
-    """Return {hop: radius} at which hops of a plain ``Box`` become blocked before it is full."""
+    """Return {hop: radius where it becomes blocked} of a plain ``Box``.
+
+    Hops that stay possible up to the largest radius are left out.
+    """
     limits = {hop: box.threshold(hop) for hop in HOPS}
     return {hop: radius for hop, radius in limits.items() if radius in box.thresholds}
 
@@ -74,14 +79,14 @@ def radius_at(limit, halvings):
 
 
 def blocks_for(scene, distance, time, events):
-    """Return how many blocks of hops, followed for a ``time``, take about so many ``events``."""
+    """Return how many blocks of hops take about ``events``, if hops are followed for ``time``."""
     factor, power = MET[scene.moment_of_inertia is not None]
     price = time * exact.event_rate(scene) + factor / distance**power
     return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
 
 
-class _Hop:
-    """One kind of hops at one radius: what is measured, and the rows that say so."""
+class NearThreshold:
+    """One kind of hop at one radius: its measurements and their rows."""
 
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
@@ -104,10 +109,10 @@ class _Hop:
         kind = f"{self.scene.periodic} {inertia}" if not self.scene.is_plain else ""
         return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
-    def said(self, quantity, method, estimate, time=None, reference=None, events=None):
+    def make_row(self, quantity, method, estimate, time=None, reference=None, events=None):
         """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method.
 
-        The error of what comes from ``states`` is that of as many independent blocks.
+        If the method is ``states``, the error comes from ``estimate.n`` independent blocks.
         """
         row = self.row | {"quantity": quantity, "method": method, "time": time, "events": events}
         row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
@@ -124,22 +129,31 @@ class _Hop:
         }
 
     def clusters(self, blocks):
-        """Return (κ or None, the rows of it)."""
+        """Return (κ or None, its rows)."""
         gap = quiet_time(self.scene, self.hop)
         if not are_rare(self.scene, self.hop):
             return None, []
-        sizes, events = cluster_sizes(self.scene, self.hop, gap, blocks, self._seed("clusters"))
+        found = cluster_sizes(self.scene, self.hop, gap, blocks, self.cluster_seed)
+        return self.of_sizes(*found, gap)
+
+    @property
+    def cluster_seed(self):
+        """The seed of the streams that clusters are drawn from."""
+        return self._seed("clusters")
+
+    def of_sizes(self, sizes, events, gap):
+        """Return (κ or None, the rows of it) from what ``cluster_sizes`` returns for a ``gap``."""
         kappa = plateau(by_clusters(sizes), gap, self.mean, of_clusters)
         if kappa is None:
             return None, []
         time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
         return kappa, [
-            self.said("coefficient", "clusters", kappa, gap, events=events),
-            self.said("passage_time", "clusters", time, gap),
+            self.make_row("coefficient", "clusters", kappa, gap, events=events),
+            self.make_row("passage_time", "clusters", time, gap),
         ]
 
     def curve(self, blocks, kappa):
-        """Yield the rows of κ(t), and of its plateau against ``kappa`` if that is known."""
+        """Yield the rows of κ(t), and of its plateau against ``kappa`` if ``kappa`` is known."""
         gap = quiet_time(self.scene, self.hop)
         box, own = box_time(self.scene, self.hop), []
         times = sorted({*([gap] if kappa else []), *(box * time for time in TIMES)})
@@ -148,15 +162,16 @@ class _Hop:
             if time == gap:
                 own.append(estimate)
             else:
-                yield self.said("correlation", "hops", estimate, time)
+                yield self.make_row("correlation", "hops", estimate, time)
         flat = plateau(own[0], gap, self.mean, of_order) if kappa else None
         if flat:
-            yield self.said("plateau", "hops", flat, gap, kappa, events)
+            yield self.make_row("plateau", "hops", flat, gap, kappa, events)
 
     def slope(self, blocks):
         """Yield the row of −dκ/dt at 0⁺ against its exact value 2 p(0⁺), for plain scenes.
 
-        κ is 1 − 2 p t + a t² in all that counts at short times t and 2t, of independent replicas.
+        At short times κ(t) = 1 − 2 p t + a t². Its values at t and 2t, from independent replicas,
+        give p.
         """
         density = tails.density_at_zero(self.scene, self.hop)
         time = FIRST / (2 * density)
@@ -166,11 +181,11 @@ class _Hop:
         for n in (1, 2):
             sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
             parts.append(by_time(sums)[0])
-        half, whole = parts
-        value = (4 * (1 - half.value) - (1 - whole.value)) / (2 * time)
-        error = math.hypot(4 * half.stderr, whole.stderr) / (2 * time)
-        curvature = Estimate(value, error, half.n + whole.n)
-        yield self.said("slope", "hops", curvature, time, 2 * density)
+        early, late = parts
+        value = (4 * (1 - early.value) - (1 - late.value)) / (2 * time)
+        error = math.hypot(4 * early.stderr, late.stderr) / (2 * time)
+        estimate = Estimate(value, error, early.n + late.n)
+        yield self.make_row("slope", "hops", estimate, time, 2 * density)
 
     def diffusion(self, events):
         """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
@@ -179,7 +194,7 @@ class _Hop:
         blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
         sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
         (correlated,) = by_time(sums)
-        yield self.said("diffusion", "hops", correlated, around, events=simulated)
+        yield self.make_row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
         blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // REPLICAS
         sums, simulated = hop_sums(
@@ -187,23 +202,23 @@ class _Hop:
         )
         per_time = sums / (REPLICAS * time)
         counted = mean_of(per_time[:, 2, 1] / 2)
-        yield self.said("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
-        # What is displaced in the second half of the time has forgotten the start.
+        yield self.make_row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
+        # Displacements in the second half of the time no longer depend on the start.
         moved = mean_of((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
-        yield self.said("diffusion", "states", moved, 2 * time, correlated)
+        yield self.make_row("diffusion", "states", moved, 2 * time, correlated)
 
 
 def one_hop(name, box, hop, halvings, inertia, events, seed):
     """Yield the rows of one hop of a plain ``Box`` at distances that are halved.
 
-    ``inertia`` is that of rough discs, None for smooth ones; ``events`` are about how many wall and
-    disc events an estimate of κ may take.
+    ``inertia`` is the moment of inertia of rough discs, None for smooth discs. An estimate may take
+    about ``events`` wall and disc events, κ ``IN_PAUSES`` times as many.
     """
     limit, measured = thresholds(box)[hop], []
     effects = {} if inertia is None else {"moment_of_inertia": inertia}
     for n in halvings:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
-        near, both = _Hop(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
+        near, both = NearThreshold(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
         blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
         kappa, rows = near.clusters(blocks)
         yield from rows
@@ -212,13 +227,13 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
             yield from near.slope(MOST_HOPS // REPLICAS)
         if kappa:
             measured.append((near, kappa))
-    yield from _exponents(measured)
+    yield from exponents(measured)
 
 
-def _exponents(measured):
-    """Yield the rows of exponents: of κ or 1 − κ between distances, of the time between passages.
+def exponents(measured):
+    """Yield the exponents of κ or 1 − κ between distances, and of the time between passages.
 
-    ``measured`` are pairs (``_Hop``, κ), the distance halved from one to the next.
+    ``measured`` are pairs (``NearThreshold``, κ), the distance halved from one to the next.
     """
     for (_, before), (near, kappa) in pairwise(measured):
         rough = near.scene.moment_of_inertia is not None
@@ -227,12 +242,12 @@ def _exponents(measured):
             continue
         errors = [k.stderr / v for k, v in zip((before, kappa), values, strict=True)]
         slope = Estimate(math.log2(values[0] / values[1]), math.hypot(*errors) / math.log(2), 2)
-        yield near.said("exponent", "fit", slope)
+        yield near.make_row("exponent", "fit", slope)
     if len(measured) > 2:
         x = [-near.halvings * math.log(2) for near, _ in measured]
         y = [math.log(near.mean / kappa.value) for near, kappa in measured]
         errors = [kappa.stderr / kappa.value for _, kappa in measured]
-        yield measured[-1][0].said("passage_exponent", "fit", LinearFit(x, y, errors).slope)
+        yield measured[-1][0].make_row("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
 def one_ring(name, box, inertia, events, seed):
@@ -241,11 +256,11 @@ def one_ring(name, box, inertia, events, seed):
     limit = box.height / 4
     for n in RING:
         scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
-        yield from _Hop(name, scene, "horizontal_hop", n, seed).diffusion(events)
+        yield from NearThreshold(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
 def one_file(name, box, discs, events, seed):
-    """Yield the rows of smooth ``discs`` on a ring that is as long, for each, as that of two."""
+    """Yield the rows of smooth ``discs`` on a ring as long per disc as the ring of two discs."""
     for n in RING:
         pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
         scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
@@ -256,7 +271,7 @@ def one_file(name, box, discs, events, seed):
         }  # fmt: skip
         streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
         sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
-        # A power of two: a time of its own would be rounded by the last digits of the rate.
+        # A power of two, so that the last digits of the rate do not change the time.
         time = 2.0 ** round(math.log2(FOLLOWED * 2 / sampled.value))
         price = 2 * time * exact.event_rate(pair) * (discs / 2) ** 0.5
         replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
@@ -273,7 +288,7 @@ def on_lattice(seed):
     """Yield the rows of the single file on a lattice."""
     start = {"event": "swap", "method": "lattice"}
 
-    def said(quantity, swap, estimate, reference=None, **more):
+    def make_row(quantity, swap, estimate, reference=None, **more):
         row = start | {"quantity": quantity, "swap": swap} | more
         row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
         if reference is not None:
@@ -282,20 +297,20 @@ def on_lattice(seed):
         return row
 
     file = exclusion.single_file(MORE_RINGS, seed)
-    yield said("single_file", 0.0, file, time=exclusion.WITHOUT)
+    yield make_row("single_file", 0.0, file, time=exclusion.WITHOUT)
     for number, swap in enumerate(SWAPS, 1):
         time = exclusion.run_time(swap)
         rings = RINGS if time > LONG else MORE_RINGS
         diffusion = exclusion.diffusion(swap, rings, seed + number)
         free = exclusion.DENSITY if swap == 1 else None
         rate = {"exact_mean": 1 / (2 * exclusion.DENSITY * swap), "time": time}
-        yield said("diffusion", swap, diffusion, free, **rate)
+        yield make_row("diffusion", swap, diffusion, free, **rate)
 
 
 def near_threshold(name, box, inertias, events, seed):
     """Yield the rows of all hops of a plain ``Box`` near the radii where they become blocked.
 
-    ``inertias`` are those of rough discs at the last of these radii.
+    ``inertias`` are the moments of inertia of rough discs near the last of these radii.
     """
     limits = thresholds(box)
     for hop in limits:
@@ -305,7 +320,7 @@ def near_threshold(name, box, inertias, events, seed):
 
 
 def on_ring(name, box, events, seed):
-    """Yield the rows of two discs on a ring, smooth ones and rough ones."""
+    """Yield the rows of two discs on a ring, smooth and rough."""
     for inertia in (None, ONE_INERTIA):
         yield from one_ring(name, box, inertia, events, seed)
 
@@ -322,8 +337,8 @@ PARTS = {part.__name__: part for part in (near_threshold, on_ring, in_file, on_l
 def rows(part, seed, events=1, **given):
     """Return the rows of a ``part`` of passages.csv, without their empty cells.
 
-    ``events`` are about how many wall and disc events an estimate may take. Every estimate has
-    random streams of its own, derived from the ``seed``.
+    An estimate may take about ``events`` wall and disc events. Every estimate has its own random
+    streams, derived from the ``seed``.
     """
     check_integer("seed", seed, 0), check_integer("events", events)
     if part != "on_lattice":

@@ -9,7 +9,7 @@ INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
 
 def _parts(configuration):
-    """Return {name: parameters} of the parts, which have random streams of their own."""
+    """Return {name: parameters} of the parts; each part has its own random streams."""
     parts, seed = {}, {"seed": configuration.seed}
     events = {"events": scaled(configuration.main.event_budget, 160, 2**19, 2**25)}
     for scene in configuration.plain:

@@ -16,7 +16,7 @@ class Passages(Table):
     width: LENGTH
     height: LENGTH
     periodic: TEXT
-    """axes without walls; empty for none"""
+    """axes without walls; empty if both have walls"""
     event: TEXT
     """the hop; swap on the lattice"""
     discs: COUNT
@@ -27,7 +27,7 @@ class Passages(Table):
     (r_c − r)/r_c, the relative distance below the radius r_c at which the hop becomes blocked
     """
     moment_of_inertia: Column(float, "m r²")
-    """that of rough discs; empty for smooth ones"""
+    """moment of inertia of rough discs; empty for smooth discs"""
     swap: NUMBER
     """probability that neighbours on the lattice swap"""
     exact_mean: TIME
@@ -39,45 +39,45 @@ class Passages(Table):
     clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
     1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
     the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
-    of the time between passages, over all distances; rate:
-    of hops of two discs, or of each of more; diffusion: D/(ν ℓ²) with ν hops of a disc per time in
-    either direction, each by ℓ; single_file: F of the mean square displacement F √t
+    of the time between passages, over all distances; rate: hops per time, of both of two discs, or
+    of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
+    each by ℓ; single_file: F of the mean square displacement F √t
     """
     method: TEXT
     """
-    clusters: odd clusters over hops; hops: initial states on the surface of the hop; states: of the
-    invariant measure; fit: to the rows before; lattice: of exclusion
+    clusters: odd clusters over hops; hops: initial states on the surface of the hop; states:
+    initial states of the invariant measure; fit: to other rows; lattice: exclusion process
     """
     time: TIME
-    """t; for clusters the time without a hop that ends one"""
+    """t; for clusters, the time without a hop that ends a cluster"""
     estimate: Column(float, "time, 1/time or none")
     """estimate"""
     stderr: AS_ESTIMATE
     """its standard error"""
     reference: AS_ESTIMATE
     """
-    what it should come to: exact, or by the other method; of more than two discs by Monte Carlo
+    expected value: exact, or by the other method; for more than two discs by Monte Carlo
     """
     reference_stderr: AS_ESTIMATE
-    """standard error of the reference; empty where that is exact"""
+    """standard error of the reference; empty if the reference is exact"""
     z: NUMBER
     test: TEXT
     """how z was found: normal"""
     replicas: COUNT
-    """independent replicas; of a fit, points"""
+    """independent replicas; for a fit, points"""
     events: COUNT
-    """wall hits and disc collisions that were simulated for it"""
+    """wall hits and disc collisions simulated for the estimate"""
 
     @staticmethod
     def part(**given):
-        """Yield the rows of a part of the table; the arguments are those of ``measure.rows``."""
+        """Yield the rows of a part of the table, with the arguments of ``measure.rows``."""
         from twodiscs_paper.studies.passages import measure
 
         yield from (Passages.empty(**row) for row in measure.rows(**given))
 
     @staticmethod
     def rows(tables):
-        """Return the rows of all parts, one part after the other, and those of fits to them."""
+        """Return the rows of all parts, one part after the other, and the fits to them."""
         from twodiscs_paper.studies.passages import fits
 
         rows = [row for part in tables.values() for row in part]

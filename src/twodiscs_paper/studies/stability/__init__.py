@@ -1,1 +1,1 @@
-"""How each method behaves where arithmetic has it hard."""
+"""How each method behaves in numerically hard cases."""

@@ -1,4 +1,4 @@
-"""How every method behaves where arithmetic has it hard, a panel for each part of stability.csv."""
+"""How theory and sampling behave in numerically hard cases: parts of stability.csv."""
 
 from matplotlib.ticker import FixedLocator, LogLocator, NullLocator
 
@@ -12,7 +12,7 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 
-#: Inches: the width of two columns, the height of a panel, margins, what stands between panels.
+#: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
 WIDTH, HEIGHT = 7.0, 2.0
 RIGHT, BOTTOM, TOP, BETWEEN = 0.1, 0.36, 0.24, 0.6
 
@@ -22,7 +22,7 @@ NOTHING = 1e-17
 
 
 def draw(box, tables):
-    """Draw the rows of stability.csv on theory and sampling; ``box`` is that of the first scene."""
+    """Draw the rows of stability.csv on theory and sampling, for the ``box`` of the first scene."""
     parts = by_part(tables["stability"])
     figure = new_figure(TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
     _largest(panel(figure, "a"), parts.get("theory", []))
@@ -37,12 +37,12 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    Theory and sampling at hard radii; dashed lines are what is required. (a) Relative error of
+    Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative error of
     volume and areas in double precision below the largest radius, and (b) on both sides of the
     radii where a hop becomes blocked: closed forms, and the worst of volume, areas and mean times
-    as computed here. (c) Share of proposed configurations that is accepted, by rejection from the
-    prism and by the draws of initial states. (d) Residuals z of volume and areas estimated by those
-    draws. Rows without a symbol were not run.
+    as computed here. (c) Accepted share of proposed configurations, by rejection from the prism and
+    by the draws of initial states. (d) Residuals z of volume and areas estimated by these draws.
+    Rows without a symbol were not run.
     """
 
 
@@ -57,8 +57,8 @@ def by_part(rows):
 def panel(figure, name, names=0.0, beside=0.0):
     """Return new axes in one of the four quarters, with their letter ``name``.
 
-    ``names`` is the width of names at the left of the panel, ``beside`` that of what stands at its
-    right, in inches.
+    ``names`` and ``beside`` are the widths, in inches, of texts at the left and at the right of the
+    panel.
     """
     place = "abcd".index(name)
     left, across = panels.LEFT + place % 2 * WIDTH / 2, WIDTH / 2 - panels.LEFT - RIGHT
@@ -70,12 +70,12 @@ def panel(figure, name, names=0.0, beside=0.0):
 
 
 def select(rows, **wanted):
-    """Return those of ``rows`` that have these values."""
+    """Return the ``rows`` that have these values."""
     return [row for row in rows if all(row[name] == value for name, value in wanted.items())]
 
 
 def _logarithmic(axes, x, y):
-    """Make both scales logarithmic between the limits ``x`` and ``y``, a label a few decades."""
+    """Make both scales logarithmic between the limits ``x`` and ``y``, with few labels."""
     axes.set(xscale="log", yscale="log", xlim=x, ylim=y)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(numticks=6))
@@ -92,7 +92,7 @@ LINES = (
 
 
 def _worst(rows, method, quantity):
-    """Return (distances, worst errors) of a method; ``quantity`` None stands for all of them."""
+    """Return (distances, worst errors) of a method, over all quantities if ``quantity`` is None."""
     worst = {}
     for row in select(rows, method=method):
         if quantity in (None, row["quantity"]):
@@ -142,7 +142,7 @@ def _shares(axes, rows):
     axes.legend(loc="lower left")
 
 
-# One line a radius --------------------------------------------------------------------------------
+# A line for each radius ---------------------------------------------------------------------------
 
 
 def rounded(number):
@@ -188,12 +188,12 @@ def _estimates(axes, rows, radii):
     places = {key: i for i, key in enumerate(radii)}
     lines(axes, list(radii.values()))
     for look, volume, name in ((SERIES[0], True, "$V$"), (SERIES[1], False, "areas")):
-        shown = [
+        points = [
             (row["z"], places[row["case"], row["radius"]])
             for row in rows
             if (row["quantity"] == "volume") == volume and row["status"] == "sampled"
         ]
-        x, y = zip(*shown, strict=True) if shown else ([], [])
+        x, y = zip(*points, strict=True) if points else ([], [])
         axes.plot(x, y, ls="", label=name, clip_on=False, **panels.open_symbol(*look, 0.8))
     for z in (-5, 5):
         axes.axvline(z, **BOUND)

@@ -1,4 +1,4 @@
-"""How the dynamics behaves where arithmetic has it hard: parts of stability.csv, a panel each."""
+"""How the dynamics behaves in numerically hard cases: parts of stability.csv, a panel each."""
 
 import math
 
@@ -40,7 +40,7 @@ WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess
 
 
 def draw(box, tables):
-    """Draw the rows of stability.csv on dynamics; ``box`` is that of the first scene."""
+    """Draw the rows of stability.csv on dynamics, for the ``box`` of the first scene."""
     parts = by_part(tables["stability"])
     figure = new_figure(TOP + 2 * HEIGHT + BETWEEN + BOTTOM, WIDTH)
     runs = parts.get("dynamics", [])
@@ -55,14 +55,15 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     text = """
-    The dynamics in hard cases; dashed lines are what is required. (a) Worst of a long run: error of
-    the energy, overlap of the discs, distance of centres beyond their range. (b) Worst error of
-    predicted times to a contact (circles) and to a wall (squares), against 50 digits, for many ways
-    to approach. (c) Velocities are reversed after n events: error of return after n more events,
-    against the binary digits that the Lyapunov exponent λ per event costs; the line is one rounding
-    that grows at this rate. The legend has the number of events after which half of the digits are
-    lost, and in brackets the number that λ predicts. (d) Share of 95 % intervals that contain the
-    exact mean time, over independent repetitions. Rows without a symbol were not run.
+    The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values in a long
+    run: error of the energy, overlap of the discs, distance of centres beyond their range. (b)
+    Worst error of predicted times to a contact (circles) and to a wall (squares), against 50
+    digits, for many kinds of approach. (c) Velocities are reversed after n events: error of return
+    after n more events, against the binary digits that the Lyapunov exponent λ per event costs; the
+    line is one rounding that grows at this rate. The legend has the number of events after which
+    half of the digits are lost, and in brackets the number that λ predicts. (d) Share of 95 %
+    intervals that contain the exact mean time, over independent repetitions. Rows without a symbol
+    were not run.
     """
     return text + shown.if_any(
         lambda row: row["part"] == "coverage" and row["value"] is None,
@@ -76,12 +77,12 @@ def _runs(axes, rows, radii):
     lines(axes, list(radii.values()))
     names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}
     for quantity, (colour, marker) in WORST.items():
-        shown = select(rows, quantity=quantity)
+        worst = select(rows, quantity=quantity)
         sign = -1 if quantity == "smallest_gap" else 1
-        x = [max(sign * row["value"], NOTHING) for row in shown]
-        y = [places[row["case"], row["radius"]] for row in shown]
+        x = [max(sign * row["value"], NOTHING) for row in worst]
+        y = [places[row["case"], row["radius"]] for row in worst]
         axes.plot(x, y, ls="", label=names[quantity], **panels.open_symbol(colour, marker, 0.9))
-        for row in shown[:1]:
+        for row in worst[:1]:
             bound = abs(row["low"] if sign < 0 else row["high"])
             axes.axvline(bound, **BOUND | {"color": colour})
     axes.set(xscale="log", xlim=(NOTHING / 2, 1e-10), xlabel="worst of a run")
@@ -115,7 +116,7 @@ def _times(axes, rows):
 
 
 def _reversal(axes, rows):
-    """Draw the error of return over what the exponent says it should be."""
+    """Draw the error of return against the digits that the exponent predicts to be lost."""
     looks = (*SERIES, (ORANGE, "o"))
     radii = sorted({row["radius"] for row in select(rows, quantity="return_error")})
     bits = np.array([0.0, 36.0])
@@ -124,9 +125,9 @@ def _reversal(axes, rows):
         here = select(rows, radius=radius)
         rate = select(here, quantity="exponent", case="separation")[0]["value"]
         number = select(here, quantity="events_retraced")[0]
-        shown = select(here, quantity="return_error")
-        x = [rate * row["count"] / math.log(2) for row in shown]
-        y = [row["value"] for row in shown]
+        returns = select(here, quantity="return_error")
+        x = [rate * row["count"] / math.log(2) for row in returns]
+        y = [row["value"] for row in returns]
         name = f"$r={panels.number(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
         axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
     axes.axhline(2.0**-26, **BOUND)
@@ -145,8 +146,8 @@ def _coverage(axes, rows):
     for i, (event, look) in enumerate(LOOKS.items()):
         beside = (i - (len(LOOKS) - 1) / 2) * 0.12
         placed = [(radii.index(r["radius"]) + beside, r) for r in select(rows, quantity=event)]
-        shown = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
-        x, y, error = zip(*shown, strict=True) if shown else ([], [], [])
+        points = [(x, r["value"], r["stderr"]) for x, r in placed if r["value"] is not None]
+        x, y, error = zip(*points, strict=True) if points else ([], [], [])
         symbol = panels.open_symbol(*look)
         axes.errorbar(x, y, error, ls="", elinewidth=0.6, label=name_of(event), **symbol)
         few = [x for x, row in placed if row["value"] is None]

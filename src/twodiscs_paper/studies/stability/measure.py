@@ -1,10 +1,10 @@
-"""Where arithmetic has it hard, measured: theory, draws, events, long runs, reversal, error bars.
+"""Measure numerically hard cases: theory, draws, events, long runs, reversal, error bars.
 
-Everything is derived from the sides of a box, so anyone can repeat it for another one. The hard
-radii are a tiny one, both sides of h/4 and w/4, where a hop becomes blocked, and some just below
-the largest. Each function yields rows of stability.csv; all numbers follow from the seed alone.
+All cases follow from the sides of a box, so the study can be repeated for another box. The hard
+radii are a tiny radius, both sides of h/4 and w/4, where a hop becomes blocked, and some radii just
+below the largest. Each function yields rows of stability.csv; all numbers follow from the seed.
 
-References are computed with mpmath, from the very doubles that the methods are given.
+References are computed with mpmath, from the same doubles that the methods take.
 """
 
 import math
@@ -13,8 +13,7 @@ from itertools import pairwise
 import numpy as np
 from mpmath import mp, mpf
 
-from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import LinearFit, mean_of
+from twodiscs.comparison import scores
 from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.dynamics import counting
@@ -24,6 +23,8 @@ from twodiscs.dynamics.two.path import advance
 from twodiscs.model.checks import LARGEST_INTEGER, check_integer
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
+from twodiscs.points import estimates
+from twodiscs.points.estimates import LinearFit, mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
@@ -34,18 +35,18 @@ from twodiscs.theory.numerics.reference import DIGITS, exact_numbers
 #: Spacing of doubles at 1.
 EPSILON = 2.0**-52
 
-#: What is asked for: relative errors of exact numbers, accepted share of the proposals, errors of
+#: Bounds for a pass: relative errors of exact numbers, accepted share of the proposals, errors of
 #: predicted times in units of ``EPSILON`` × conditioning.
 THEORY_BOUND, ACCEPTED_BOUND, TIME_BOUND = 1e-13, 0.2, 8.0
 
-#: |E − 1/2|; gap between the discs and excess beyond a centre's range, in units of the rounding of
-#: the box (``box_units``).
+#: Bounds for a pass: |E − 1/2|; gap between the discs and excess beyond a centre's range, in units
+#: of the rounding of the box (``box_units``).
 ENERGY_BOUND, GAP_BOUND, EXCESS_BOUND = 1e-11, -1e-14, 1e-15
 
 #: Range of the share of 95 % intervals that cover the exact value.
 COVERAGE_BOUNDS = 0.92, 0.98
 
-#: Deviates beyond this are wrong.
+#: The largest |z| that passes.
 LARGEST_Z = 5.0
 
 #: Proposals for a measured share, and for an estimate of volume and areas.
@@ -54,28 +55,28 @@ SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
 #: Thickness of the shells around surfaces, as in ``montecarlo.shell_thickness``.
 SHELL = 0.02
 
-#: Lanes of a long run, and events of each between two looks at whether it advances.
+#: Lanes of a long run, and events of each lane between two tests of whether it advances.
 LANES, WINDOW = 64, 2**16
 
 #: A lane that needs less than this fraction of the mean time for the events of a window is stuck.
 STUCK = 0.01
 
-#: Trajectories that are reversed, and the error of return up to which they retrace their path: half
-#: of the digits are then lost.
+#: The number of reversed trajectories, and the error of return up to which they retrace their path:
+#: half of the digits are then lost.
 REVERSED, RETRACED = 4000, 2.0**-26
 
-#: The longest path that is reversed; where a smaller exponent allows more nothing is said.
+#: The longest path that is reversed; if a smaller exponent allows more, the row has no value.
 LONGEST = 2000
 
 #: Lengths of reversed paths over the predicted one. From ``FITTED`` to 1 the error of return is far
 #: above a rounding and far below the size of the box, and grows like an exponential.
 SHARES, FITTED = tuple(i / 10 for i in range(1, 13)), 0.4
 
-#: Five binary digits more or less than a rounding to begin with.
+#: The initial error may be five binary digits larger or smaller than one rounding.
 ROUNDINGS = 2.0**5
 
-#: Size of the separation whose growth is measured: its square is a rounding. Events in which it
-#: forgets how it began, and events of a first measurement, which says how long the paths will be.
+#: Size of the separation whose growth is measured: its square is a rounding. Events before its
+#: growth is measured, and events of a pilot measurement, which sets the length of the paths.
 SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 
 #: Independent repetitions of a measurement, each with as many replicas as share a stream.
@@ -85,11 +86,11 @@ REPETITIONS = 1600
 def row(part, quantity, case, value, low=None, high=None, z=None, **more):
     """Return the columns of a row of stability.csv that are not empty, and the bounds.
 
-    It has ``passed`` if the value is within ``low`` and ``high`` and |z| ≤ 5, as far as they are
-    given; without any of them, or without a value, nothing is said.
+    ``passed`` is whether the value is within ``low`` and ``high`` and |z| ≤ 5, as far as these are
+    given. Without any of them, or without a value, ``passed`` is None.
     """
     passed = None
-    if value is not None and any(asked is not None for asked in (low, high, z)):
+    if value is not None and any(bound is not None for bound in (low, high, z)):
         passed = (
             (low is None or value >= low)
             and (high is None or value <= high)
@@ -100,7 +101,7 @@ def row(part, quantity, case, value, low=None, high=None, z=None, **more):
 
 
 def other_seed(seed, i):
-    """Return the ``i``-th seed after ``seed``, for measurements that are to be independent."""
+    """Return the ``i``-th seed after ``seed``, for independent measurements."""
     return (seed + i) % (LARGEST_INTEGER + 1)
 
 
@@ -108,9 +109,10 @@ def other_seed(seed, i):
 
 
 def limits(box):
-    """Return {name: radius} of the radii at which something ends: "h/4", "w/4", "largest radius".
+    """Return {name: radius} of the limits of a plain ``Box``: "h/4", "w/4", "largest radius".
 
-    Only those that the plain ``Box`` has; where both hops end at once the name is "h/4".
+    A threshold is left out if discs do not fit there; if both hops end at the same radius, its name
+    is "h/4".
     """
     names = {box.threshold(hop): name for hop, name in zip(HOPS, ("w/4", "h/4"), strict=True)}
     by_name = {names[radius]: radius for radius in box.thresholds}
@@ -118,7 +120,7 @@ def limits(box):
 
 
 def beside(box, distances):
-    """Yield (name, distance, radius) for all ``limits`` and signed relative ``distances`` from it.
+    """Yield (name, distance, radius) for all ``limits`` and signed relative ``distances``.
 
     Radii that do not fit are left out.
     """
@@ -132,7 +134,7 @@ def beside(box, distances):
 def hard_radii(box):
     """Return a list of (name, distance, radius): an ordinary radius first, then the hard ones.
 
-    ``distance`` is relative to the limit that the name stands for, None where it stands for none.
+    ``distance`` is relative to the limit with this name, None if the name is not a limit.
     """
     short = box.shortest
     near = [
@@ -144,7 +146,9 @@ def hard_radii(box):
 
 
 def ordinary_radii(box):
-    """Return ascending radii away from all limits: three while both hops are open, then one each.
+    """Return ascending radii away from all limits.
+
+    Three are below the first limit, where both hops are open, and one between further limits.
 
     For the box 1.5 × 1 they are 0.05, 0.2, 0.24, 0.3 and 0.38.
     """
@@ -164,7 +168,7 @@ def ordinary_radii(box):
 
 
 def relative_error(values, true_values):
-    """Return the largest |value/true − 1|; a true zero (or none at all) must be met exactly."""
+    """Return the largest |value/true − 1|, or ∞ if a value differs from a true 0 or None."""
     worst = 0.0
     with mp.workdps(DIGITS):
         for name, value in values.items():
@@ -177,7 +181,7 @@ def relative_error(values, true_values):
 
 
 def theory_rows(box):
-    """Yield the errors of the exact numbers beside every limit, and those of the closed forms."""
+    """Yield the errors of the exact numbers and of the closed forms near every limit."""
     distances = [10.0**-k for k in range(1, 15)]
     for case, distance, radius in beside(box, [-d for d in distances] + distances):
         if case == "largest radius" and abs(distance) < 1e-12:
@@ -203,7 +207,7 @@ def theory_rows(box):
 
 
 def sampling_rows(box, seed):
-    """Yield the accepted share of rejection from the prism and of the draws that are used."""
+    """Yield the accepted shares of rejection from the prism and of the conditioned draws."""
     radii = [("ordinary", None, radius) for radius in ordinary_radii(box)]
     radii += hard_radii(box)[1:2]
     radii += beside(box, [-(10.0**-k) for k in range(1, 13)])
@@ -215,7 +219,7 @@ def sampling_rows(box, seed):
         point = montecarlo.conditioned_point(
             scene, ["volume"], SHARE_PROPOSALS, SHELL, other_seed(seed, i)
         )
-        hits, samples = point["quantities"]["volume"]["hits"], point["samples"]
+        hits, samples = point.quantities["volume"].hits, point.samples
         yield row(
             "sampling", "accepted_share", case, prism, method="prism", radius=radius,
             distance=distance,
@@ -228,7 +232,7 @@ def sampling_rows(box, seed):
 
 
 def estimate_rows(box, seed):
-    """Yield volume and areas estimated at all radii, by draws that keep to where the discs fit."""
+    """Yield estimates of volume and areas at all radii, by conditioned draws."""
     radii = [("ordinary", None, radius) for radius in ordinary_radii(box)]
     radii += hard_radii(box)[1:]
     for i, (case, distance, radius) in enumerate(radii):
@@ -238,11 +242,12 @@ def estimate_rows(box, seed):
             scene, quantities, ESTIMATE_PROPOSALS, SHELL, other_seed(seed, i)
         )
         theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
-        for seen in Volume.rows(theory, points) + Areas.rows(box, theory, points):
+        for found in Volume.rows(theory, points) + Areas.rows(box, theory, points):
             yield row(
-                "estimates", seen["quantity"], case, seen["estimate"], method="conditioned",
-                radius=radius, distance=distance, count=seen["samples"], exact=seen["expectation"],
-                stderr=seen["stderr"], z=seen["z"], status=seen["status"],
+                "estimates", found["quantity"], case, found["estimate"], method="conditioned",
+                radius=radius, distance=distance, count=found["samples"],
+                exact=found["expectation"], stderr=found["stderr"], z=found["z"],
+                status=found["status"],
             )  # fmt: skip
 
 
@@ -252,8 +257,8 @@ def estimate_rows(box, seed):
 def exact_contact(dx, dy, du, dv, sigma):
     """Return (time to contact, its conditioning) to 50 digits, or (None, None) without a contact.
 
-    The conditioning is Σ |p ∂t/∂p| over the five inputs: how far the time moves, to first order, if
-    each of them is wrong by one relative unit.
+    The conditioning is Σ |p ∂t/∂p| over the five inputs p: the change of the time, to first order,
+    if each input has a relative error of one.
     """
     with mp.workdps(50):
         dx, dy, du, dv, sigma = map(mpf, (dx, dy, du, dv, sigma))
@@ -271,8 +276,8 @@ def exact_contact(dx, dy, du, dv, sigma):
 def contact_error(dx, dy, du, dv, sigma):
     """Return the error of the predicted time to contact over ``EPSILON`` × conditioning.
 
-    None where roundings of the inputs decide between hit and miss; infinite for a contact that is
-    missed, or predicted where there is none.
+    It is None if roundings of the inputs decide between hit and miss. It is infinite if a contact
+    is missed, or predicted without a contact.
     """
     gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
     impact, graze = abs(dx * dv - dy * du), sigma * math.hypot(du, dv)
@@ -294,10 +299,10 @@ def wall_error(position, velocity, limit):
 
 
 def approaches(sigma, generator, cases):
-    """Return {name: list of (dx, dy, du, dv)} of discs that approach, where that is hard to see."""
+    """Return {name: list of (dx, dy, du, dv)} of discs whose contact is hard to predict."""
 
     def draw(distance, impact, speed=(-3, 0)):
-        """Discs at ``distance`` (σ) whose closest approach is ``impact`` (σ)."""
+        """Draw discs at ``distance`` (σ) whose closest approach is ``impact`` (σ)."""
         angle = generator.uniform(0, 2 * math.pi, cases)
         fast = 10 ** generator.uniform(*speed, cases)
         along = np.sqrt(distance**2 - impact**2)
@@ -351,9 +356,9 @@ def time_rows(box, seed, cases=400):
 def audit(starts, windows, window, law, shortest):
     """Run the lanes that begin at ``starts`` (8, lanes) for ``windows`` × ``window`` events each.
 
-    Returns for each lane, over the states after all of its events: the smallest |Δx|², the largest
-    |2E − 1|, the largest |x| and |y| of a centre, and whether it was lost: not finite any more, or
-    through with the events of a window in less than the time ``shortest``.
+    Returns for each lane, over the states after its events: the smallest |Δx|², the largest
+    |2E − 1|, the largest |x| and |y| of a centre, and whether the lane is lost. A lane is lost if
+    it is not finite, or if the events of a window take less than the time ``shortest``.
     """
     lanes = starts.shape[1]
     rows = new_rows(lanes, law)
@@ -394,10 +399,10 @@ def box_units(scene):
 
 
 def run(scene, number, seed):
-    """Simulate at least ``number`` events and return what was seen, as a dict.
+    """Simulate at least ``number`` events and return a dict of their number and the errors.
 
-    Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, of |Δx| − σ, and excess, the
-    largest of a centre beyond its range, both in ``box_units``; lanes_lost.
+    Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, the smallest |Δx| − σ, and
+    excess, the largest distance of a centre beyond its range, both in ``box_units``; lanes_lost.
     """
     per_lane = -(-check_integer("number", number) // LANES)
     windows = -(-per_lane // WINDOW)
@@ -430,7 +435,7 @@ def _checked(seed, ordinary, hard):
 
 
 def dynamics_rows(box, seed, ordinary, hard):
-    """Yield what runs of ``ordinary`` events, and of ``hard`` events at hard radii, have seen.
+    """Yield the errors in runs of ``ordinary`` events, and of ``hard`` events at hard radii.
 
     Raises ``InputError`` for a number out of range.
     """
@@ -443,11 +448,11 @@ def dynamics_rows(box, seed, ordinary, hard):
     }
     for i, (case, distance, radius) in enumerate(hard_radii(box)):
         number = ordinary if case == "ordinary" else hard
-        seen = run(box.scene(radius), number, other_seed(seed, i))
+        found = run(box.scene(radius), number, other_seed(seed, i))
         for quantity, bound in bounds.items():
             yield row(
-                "dynamics", quantity, case, float(seen[quantity]), radius=radius,
-                distance=distance, count=seen["events"], **bound,
+                "dynamics", quantity, case, float(found[quantity]), radius=radius,
+                distance=distance, count=found["events"], **bound,
             )  # fmt: skip
 
 
@@ -475,10 +480,10 @@ def turned_back(state):
 
 @compiled
 def return_errors(starts, number, law):
-    """Follow each start for ``number`` events, reverse, come back, and return how far off it ends.
+    """Follow each start for ``number`` events, reverse it, follow it back and return its errors.
 
-    The way back has as many events, the first of them at once, and then the flight that led to the
-    first event of the way out.
+    The way back has the same number of events, the first of them after no flight, and then the
+    flight that led to the first event of the way out.
     """
     errors = np.empty(starts.shape[1])
     for i in range(errors.size):
@@ -499,12 +504,12 @@ def return_errors(starts, number, law):
 
 @compiled
 def growth(starts, forgotten, measured, small, law):
-    """Return by which factor a ``small`` separation from each start grows, NaN if the two part.
+    """Return by which factor a ``small`` separation from each start grows, NaN if events differ.
 
-    It grows for ``forgotten`` events first, then for the ``measured`` ones. After every event the
-    neighbour is put back to the distance ``small``, along the line that joins the two (Benettin,
-    Galgani and Strelcyn, Phys. Rev. A 14, 2338 (1976)). Both are compared after the same event;
-    where their events differ they have parted.
+    It grows for ``forgotten`` events first, which the factor leaves out, then for ``measured``
+    events. After every event the neighbour is put back to the distance ``small``, along the line
+    that joins the two (Benettin, Galgani and Strelcyn, Phys. Rev. A 14, 2338 (1976)). The two are
+    compared after the same event; if their events differ, the factor is NaN.
     """
     factors = np.empty(starts.shape[1])
     for i in range(factors.size):
@@ -538,15 +543,16 @@ def growth(starts, forgotten, measured, small, law):
 
 
 def reversal_rows(box, seed):
-    """Yield how far reversed velocities retrace the path, and how far the exponent lets them.
+    """Yield how many events reversed velocities retrace, and how many the exponent predicts.
 
-    Errors begin at a rounding, 2⁻⁵³, and grow like exp(λn) with the number n of events, λ being the
-    exponent per event: they reach ``RETRACED`` after ln(``RETRACED`` · 2⁵³)/λ. The number measured
-    passes if that takes roundings of no more than ``ROUNDINGS`` · 2⁻⁵³, in a long box times the
-    ratio of its sides, and no less than 2⁻⁵³/``ROUNDINGS``. Errors of return are geometric means
-    over ``REVERSED`` independent trajectories. The exponent is that of the same events of such
-    trajectories, found from the growth of a separation: trajectories that start from the invariant
-    measure may need long to forget where, and their first events are no fair sample of all.
+    Errors begin at a rounding, 2⁻⁵³, and grow like exp(λn) with the number n of events, where λ is
+    the exponent per event. They reach ``RETRACED`` after ln(``RETRACED`` · 2⁵³)/λ events. The
+    measured number passes if it corresponds to an initial error between 2⁻⁵³/``ROUNDINGS`` and
+    ``ROUNDINGS`` · 2⁻⁵³; in a long box the upper bound is multiplied by the ratio of its sides.
+    Errors of return are geometric means over ``REVERSED`` independent trajectories. The exponent
+    comes from the growth of a separation over the same events of such trajectories: trajectories
+    from the invariant measure may remember their start for long, and their first events are no fair
+    sample of all events.
     """
     digits = math.log(RETRACED / 2.0**-53)
     long = max(box.sides) / min(box.sides)
@@ -576,7 +582,7 @@ def reversal_rows(box, seed):
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
         for block, number in enumerate(numbers, start=1):
             starts = states(scene, REVERSED, seed, block)
-            # A way back without any rounding is possible; it counts as an eighth of one.
+            # A way back without any rounding is possible; it counts as an eighth of a rounding.
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
             log_errors[number] = log = mean_of(np.log(off))
             value = math.exp(log.value)
@@ -608,10 +614,10 @@ def reversal_rows(box, seed):
 
 
 def coverage_rows(box, seed, repetitions=REPETITIONS):
-    """Yield how often the 95 % interval of a mean time covers the exact one, event by event.
+    """Yield how often the 95 % interval of a mean time covers the exact value, event by event.
 
-    A repetition is one block of ``counting.run_blocks``. Where most of them have too few events for
-    an interval (``estimates.has_error_bar``), that is all that is said.
+    A repetition is one block of ``counting.run_blocks``. If most repetitions have too few events
+    for an interval (``estimates.has_error_bar``), the row has the status too-few and no value.
     """
     low, high = COVERAGE_BOUNDS
     for radius in ordinary_radii(box):

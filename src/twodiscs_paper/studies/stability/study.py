@@ -1,4 +1,4 @@
-"""How accurate each method is where arithmetic has it hard."""
+"""How accurate each method is in numerically hard cases."""
 
 from twodiscs.figures.catalogue import Entry
 from twodiscs_paper.studies.stability.table import LongRuns, Stability

@@ -19,29 +19,29 @@ class Stability(Table):
     """
     quantity: TEXT
     """
-    what is measured. theory: of areas and mean_times the worst one. times: error in units of 2⁻⁵² ×
-    conditioning. dynamics: energy_error, the largest |E − 1/2|; smallest_gap, of |Δx| − 2r, and
-    excess, the largest of a centre beyond its range, both in units of the largest power of two in
-    the side of the box; lanes_lost, trajectories that ended up infinite or stuck. reversal:
-    exponent, per event; return_error, after count events and back; events_retraced, until it is
-    2⁻²⁶. coverage: the event
+    the measured quantity. theory: for areas and mean_times the worst of them. times: error in units
+    of 2⁻⁵² × conditioning. dynamics: energy_error, the largest |E − 1/2|; smallest_gap, the
+    smallest |Δx| − 2r, and excess, the largest distance of a centre beyond its range, both in units
+    of the largest power of two in the side of the box; lanes_lost, trajectories that became
+    infinite or stuck. reversal: exponent, per event; return_error, after count events and back;
+    events_retraced, the number of events at which it is 2⁻²⁶. coverage: the event
     """
     method: TEXT
     """stable, or closed-form in plain doubles; conditioned draws, or rejection from the prism"""
     case: TEXT
     """
     ordinary, tiny (1e-9 of the shorter side), or the limit nearby: h/4, w/4, largest radius. times:
-    how the discs approach. reversal: from the way out and back (return), or from a small separation
+    how the discs approach. reversal: by the way out and back (return), or by a small separation
     """
     radius: LENGTH
     distance: NUMBER
-    """radius/limit − 1, for the limit that case names"""
+    """radius/limit − 1, for the limit named in case"""
     count: COUNT
     """samples, cases, events or repetitions behind the value"""
     value: SEE_QUANTITY
-    """what was seen; empty where nothing can be said"""
+    """the measured value; empty if there is none (see status)"""
     exact: SEE_QUANTITY
-    """what it should be, apart from random and rounding errors"""
+    """its expected value, apart from random and rounding errors"""
     stderr: SEE_QUANTITY
     """standard error of the value"""
     z: NUMBER
@@ -51,11 +51,11 @@ class Stability(Table):
     """largest value that passes"""
     status: TEXT
     """
-    estimates: as in areas.csv; coverage: counted, or too-few where intervals are not shown;
-    reversal: long where the path stays exact for more than 2000 events
+    estimates: as in areas.csv; coverage: counted, or too-few if most repetitions have no interval;
+    reversal: long if the path stays exact for more than 2000 events
     """
     passed: TRUTH
-    """whether low ≤ value ≤ high and |z| ≤ 5, as far as they are given; empty without any"""
+    """whether low ≤ value ≤ high and |z| ≤ 5, as far as these are given; empty without them"""
 
     @classmethod
     def rows(cls, box, seed, ordinary, hard):
@@ -66,7 +66,7 @@ class Stability(Table):
 
 
 class LongRuns(Stability):
-    """As stability.csv, the rows on dynamics alone, from the longest runs."""
+    """The rows of stability.csv on dynamics, from ten times longer runs."""
 
     @classmethod
     def rows(cls, box, seed, ordinary, hard):

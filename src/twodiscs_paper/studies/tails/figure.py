@@ -6,7 +6,7 @@ from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION, new_figure
 
-#: Inches: the panel of the tails, of their ratio to the law, of the exponential, and gaps.
+#: Inches: heights of the panels of the tails, their ratio to the law and the exponential; gaps.
 TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.75, 0.95, 1.3, 0.07, 0.42, 0.22
 
 #: Colour and marker of the cases, in the order of the table.
@@ -21,32 +21,32 @@ def draw(box, tables):
     rows = tables["tails"]
     low = panels.BOTTOM + EXPONENTIAL + GAP
     figure = new_figure(low + RATIO + JOINT + TAILS + TOP)
-    whole = panels.add_panel(figure, low + RATIO + JOINT, TAILS)
+    tails = panels.add_panel(figure, low + RATIO + JOINT, TAILS)
     ratio = panels.add_panel(figure, low, RATIO)
-    alone = panels.add_panel(figure, panels.BOTTOM, EXPONENTIAL)
+    exponential = panels.add_panel(figure, panels.BOTTOM, EXPONENTIAL)
     cases = list(dict.fromkeys((row["event"], row["radius"]) for row in rows))
     for case, look in zip(cases, LOOKS, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == case]
         if any(row["quantity"] == "rate" for row in own):
-            _decay(alone, own, *look)
+            _decay(exponential, own, *look)
         else:
-            _tail(whole, ratio, own, *look)
+            _tail(tails, ratio, own, *look)
     times = np.geomspace(0.9, 20)
-    whole.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
-    for axes in (whole, ratio):
+    tails.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
+    for axes in (tails, ratio):
         axes.set(xscale="log", yscale="log", xlim=(0.9, 1150))
-    whole.set(ylim=(1e-11, 1.5), ylabel=r"$P(T>t)$")
-    whole.tick_params(labelbottom=False)
-    whole.legend(loc="upper right")
+    tails.set(ylim=(1e-11, 1.5), ylabel=r"$P(T>t)$")
+    tails.tick_params(labelbottom=False)
+    tails.legend(loc="upper right")
     ratio.axhline(1, color=BLACK, lw=0.7)
     ratio.set(ylim=(0.7, 14), xlabel=r"interval $t/\tau$", ylabel=r"$P(T>t)\,t^3/C$")
     ratio.set_yticks([1, 2, 5, 10], ["1", "2", "5", "10"])
     ratio.yaxis.set_minor_formatter("")
-    alone.set(yscale="log", xlim=(0, 10.5), xlabel=r"interval $t/\tau$", ylabel=r"$P(T>t)$")
-    alone.legend(loc="upper right")
-    for axes, name in ((whole, "a"), (ratio, "b"), (alone, "c")):
+    exponential.set(yscale="log", xlim=(0, 10.5), xlabel=r"interval $t/\tau$", ylabel=r"$P(T>t)$")
+    exponential.legend(loc="upper right")
+    for axes, name in ((tails, "a"), (ratio, "b"), (exponential, "c")):
         panels.letter(axes, name)
-    panels.name_box(whole, box)
+    panels.name_box(tails, box)
     return figure
 
 
@@ -68,13 +68,13 @@ def _name(row):
 
 
 def _values(rows):
-    """Return arrays of t/τ, the estimate and its error, where that is small enough to draw."""
+    """Return the rows with a small enough error, and arrays of their t/τ, estimate and error."""
     kept = [r for r in rows if r["stderr"] and r["stderr"] < LARGEST_ERROR * r["estimate"]]
     values = [(r["time"] / r["exact_mean"], r["estimate"], r["stderr"]) for r in kept]
     return kept, *np.array(values).T
 
 
-def _tail(whole, ratio, rows, colour, marker):
+def _tail(tails, ratio, rows, colour, marker):
     """Draw weighted estimates (open) and plain counts (full), and the law at long times."""
     for method in ("weighted", "counted"):
         kept, times, values, errors = _values([r for r in rows if r["method"] == method])
@@ -83,15 +83,15 @@ def _tail(whole, ratio, rows, colour, marker):
         if method == "counted":
             style = panels.open_symbol(colour, marker, 0.45) | {"markerfacecolor": colour}
         name = _name(rows[0]) if method == "weighted" else None
-        whole.plot(times, values, ls="", label=name, zorder=3, **style)
+        tails.plot(times, values, ls="", label=name, zorder=3, **style)
         ratio.errorbar(times, values / laws, errors / laws, ls="", elinewidth=0.6, **style)
         if method == "weighted":
             late = times > 4
-            whole.plot(times[late], laws[late], color=colour, zorder=2)
+            tails.plot(times[late], laws[late], color=colour, zorder=2)
 
 
 def _decay(axes, rows, colour, marker):
-    """Draw plain counts, the exponential of the mean and the one that fits."""
+    """Draw plain counts, the exponential with the mean τ and the fitted exponential."""
     fit = next(row for row in rows if row["quantity"] == "rate")
     _, times, values, errors = _values([row for row in rows if row["quantity"] == "survival"])
     style = panels.open_symbol(colour, marker)
@@ -101,10 +101,10 @@ def _decay(axes, rows, colour, marker):
     within = (times > first * 0.999) & (times < last * 1.001)
     rate, error = fit["estimate"] * mean, fit["stderr"] * mean
     digits = max(0, -int(np.floor(np.log10(error))))
-    shown = f"{rate:.{digits}f}({round(error * 10**digits)})"
+    digits_of_rate = f"{rate:.{digits}f}({round(error * 10**digits)})"
     scale = np.exp(np.mean(np.log(values[within]) + rate * times[within]))
     span = np.array([first, last])
-    name = rf"fit, rate ${shown}/\tau$"
+    name = rf"fit, rate ${digits_of_rate}/\tau$"
     axes.plot(span, scale * np.exp(-rate * span), color=colour, zorder=2, label=name)
     span = np.array([0, 10.5])
     axes.plot(span, np.exp(-span), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")

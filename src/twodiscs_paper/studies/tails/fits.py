@@ -25,13 +25,19 @@ def last_ratios(rows):
         start = row | {"method": "fit", "law": None}
         yield start | {"quantity": "last_ratio", "estimate": ratio, "stderr": error}
         if event in APPROACHES:
-            root = math.sqrt(row["time"] / row["exact_mean"])
-            approach = {"estimate": (ratio - 1) * root, "stderr": error * root}
-            yield start | {"quantity": "approach"} | approach
+            yield approach(row)
+
+
+def approach(row):
+    """Return the row on the c of the ratio 1 + c (t/τ)^(−1/2) of a ``row`` to its law."""
+    root = math.sqrt(row["time"] / row["exact_mean"])
+    ratio, error = row["estimate"] / row["law"], row["stderr"] / row["law"]
+    found = {"estimate": (ratio - 1) * root, "stderr": error * root}
+    return row | {"quantity": "approach", "method": "fit", "law": None} | found
 
 
 def constant_hazard(rows):
-    """Return (χ², its degrees of freedom) of one hazard between the times of ``rows``, or None.
+    """Return (χ², degrees of freedom) of a constant hazard between the times of ``rows``, or None.
 
     ``rows`` are survival probabilities at ascending times. Intervals that last longer than one time
     are among those that last longer than the time before. Therefore the variance of the hazard
@@ -51,7 +57,7 @@ def constant_hazard(rows):
 
 
 def constancy(rows):
-    """Yield the rows on whether a rate of decay is the same at all times that it was fitted to."""
+    """Yield the rows that test whether a rate of decay is constant over the times of its fit."""
     for rate in [row for row in rows if row["quantity"] == "rate"]:
         within = [
             row
@@ -73,6 +79,6 @@ def constancy(rows):
 
 
 def fits(rows):
-    """Yield what follows from the ``rows`` of tails.csv, as rows of that table."""
+    """Yield the rows of tails.csv that follow from its other ``rows``."""
     yield from last_ratios(rows)
     yield from constancy(rows)

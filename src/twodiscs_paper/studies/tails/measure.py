@@ -1,30 +1,30 @@
 """Tails of the times between events, where plain counting finds nothing.
 
 At a random moment of a stationary motion let F be the time to the next event and G the time since
-the last one. The interval F + G met in this way is picked by its length, hence (Palm)
+the last event. An interval F + G is picked in proportion to its length, hence (Palm)
 
     P(T > t) = τ ⟨1[F + G > t] / (F + G)⟩.
 
 Starts come from the invariant measure; G is found by running backwards from the same start. Long
-intervals begin near a neutral motion (see ``theory.tails.tail_constant``), where the discs share
-all but a small part s of the energy along one axis. On the sphere of speeds s is uniform on [0, 1],
-so the smaller of the parts along x and y is uniform on [0, 1/2]. Its interval is cut into strata,
-each a quarter of the one before; all are given the same number of starts, and their exact weights
-are powers of two and three times these. So a probability of 1e-8 takes no more starts than one of
-1/2, and the estimate has no bias. Nothing here needs more than + − × / and √.
+intervals begin near a neutral motion (see ``theory.tails.tail_constant``), where all energy except
+a small share s is along one axis. On the sphere of speeds s is uniform on [0, 1], hence the smaller
+of the shares along x and y is uniform on [0, 1/2]. This range is cut into strata, each a quarter of
+the one before. All strata have the same number of starts; their exact weights are powers of two, or
+three times powers of two. A probability of 1e-8 takes no more starts than a probability of 1/2, and
+the estimate has no bias. The method needs only + − × / and √.
 """
 
 import math
 
 import numpy as np
 
-from twodiscs.comparison.estimates import Estimate, mean_of
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
 from twodiscs.dynamics.two.path import advance, time_to_next
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_ascending, check_choice, check_integer
 from twodiscs.model.events import HOPS
+from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_configuration, draw_constants, draw_in_disc
 from twodiscs.sampling.starts import draw_starts, state_in
@@ -34,7 +34,7 @@ from twodiscs.theory import exact, tails
 #: Events whose tails are measured.
 TAILED = (*HOPS, "disc_collision")
 
-#: Independent blocks behind an error bar: it is itself known to some 7 %.
+#: Independent blocks behind an error bar, which then has a relative error of about 7 %.
 BLOCKS = 100
 
 
@@ -42,8 +42,8 @@ BLOCKS = 100
 def draw_drifting_velocity(state, largest, least):
     """Return (u1, v1, u2, v2) on the unit sphere with a share of the energy along one of the axes.
 
-    The share is uniform between ``least`` and ``largest`` ≤ 1/2, the axis either with equal chance.
-    It is never 0, when discs might never meet.
+    The share is uniform between ``least`` and ``largest`` ≤ 1/2; both axes are equally probable.
+    The share is never 0, because then discs might never meet.
     """
     share = largest - (largest - least) * uniform(state)
     p, q, square = draw_in_disc(state)
@@ -92,7 +92,7 @@ def length_biased(seed, first, stop, strata, samples, times, law, draw, hop):
 def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
     """Return the counts of intervals that begin within a ``window`` of time, (replicas, times + 1).
 
-    The first column has all intervals, the next those longer than each of ``times``.
+    The first column counts all intervals, the others the intervals longer than each of ``times``.
     """
     counts = np.zeros(((stop - first) * replicas, times.size + 1), np.int64)
     starts = np.zeros((8, replicas))
@@ -124,7 +124,10 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
 
 
 def _prepared(scene, event, times):
-    """Return (times as an array, the scene on its side for horizontal hops, is it a hop)."""
+    """Return (times as an array, the scene with vertical hops, whether the event is a hop).
+
+    For horizontal hops the axes of the scene are exchanged.
+    """
     check_choice("event", event, TAILED)
     if tails.tail_constant(scene, event) is None:
         raise InputError(
@@ -140,33 +143,33 @@ def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, without bias.
 
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
-    ``samples`` starts are drawn in each stratum of each of ``blocks`` ≥ 2 independent blocks, whose
-    spread gives the standard error; the strata reach down to the drifts that last for the longest
-    of the times, and the work grows with it. Raises ``InputError`` for an event that is blocked or
-    has no interval, and for a number out of range.
+    ``samples`` starts are drawn in each stratum of each of ``blocks`` ≥ 2 independent blocks. The
+    spread between blocks gives the standard error. The strata reach down to drifts that last for
+    the longest of the times, so the work grows with this time. Raises ``InputError`` for an event
+    that is blocked or has no interval, and for a number out of range.
     """
-    times, upright, hop = _prepared(scene, event, times)
+    times, oriented, hop = _prepared(scene, event, times)
     samples, seed = check_integer("samples", samples), check_integer("seed", seed, 0)
     blocks = check_integer("blocks", blocks, 2)
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
     means = length_biased(
-        np.uint64(seed), 0, blocks, strata, samples, times, law_of(upright),
-        draw_constants(upright), hop,
+        np.uint64(seed), 0, blocks, strata, samples, times, law_of(oriented),
+        draw_constants(oriented), hop,
     )  # fmt: skip
     means *= exact.mean_times(scene)[event]
     return mean_of(means)
 
 
 def _counts(scene, event, times, replicas, seed):
-    """Return what each replica has of P(T > t), (replicas, times): its count over the mean one."""
-    times, upright, hop = _prepared(scene, event, times)
+    """Return P(T > t) by each replica, (replicas, times): its counts over their mean number."""
+    times, oriented, hop = _prepared(scene, event, times)
     replicas, seed = check_integer("replicas", replicas, 2), check_integer("seed", seed, 0)
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
-        np.uint64(seed), 0, 1, replicas, window, times, law_of(upright),
-        draw_constants(upright), hop,
+        np.uint64(seed), 0, 1, replicas, window, times, law_of(oriented),
+        draw_constants(oriented), hop,
     )  # fmt: skip
     return counts[:, 1:] / 8
 
@@ -174,9 +177,9 @@ def _counts(scene, event, times, replicas, seed):
 def counted(scene, event, times, replicas, seed):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, by plain counting.
 
-    For comparison with ``tail``: ``replicas`` ≥ 2 starts of the invariant measure, in each of which
-    the intervals that begin within eight mean times are counted, however long they last. Their
-    number is on average eight, which the estimate divides by. Errors are from the spread between
+    It serves for comparison with ``tail``. From each of ``replicas`` ≥ 2 starts of the invariant
+    measure it counts all intervals that begin within eight mean times, however long they last. They
+    are eight on average, so the estimate divides by eight. Errors come from the spread between
     replicas. Raises ``InputError`` as ``tail`` does.
     """
     return mean_of(_counts(scene, event, times, replicas, seed))
@@ -187,7 +190,7 @@ def decay(scene, event, first, last, replicas, seed):
 
     It is ln[P(T > first)/P(T > last)]/(last − first) from the intervals that ``counted`` counts,
     with its error by the delta method over replicas. Raises ``InputError`` as ``counted`` does, and
-    where no interval is longer than ``last``.
+    if no interval is longer than ``last``.
     """
     counts = _counts(scene, event, [first, last], replicas, seed)
     early, late = counts.mean(axis=0)
@@ -198,23 +201,24 @@ def decay(scene, event, first, last, replicas, seed):
     return Estimate(math.log(early / late) / (last - first), spread / (last - first), n)
 
 
-#: Times of the tables in units of the mean: those that weighted starts reach, and plain counting.
+#: Times in the table, in units of the mean: for weighted starts and for plain counting.
 WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
 COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
 
 #: The window of the fitted rate, in units of the mean.
 WINDOW = (3, 9)
 
-#: Wall and disc events of a mean time, at most: intervals are followed for a thousand of those.
+#: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
 RAREST = 100
 
 
 def cases(box):
-    """Return pairs (event, radius) of a ``Box``: tails of disc collisions, of hops, of hops alone.
+    """Return the pairs (event, radius) of a ``Box`` whose tails are measured.
 
-    Radii are 0.24, 0.1 and 0.3 times the shorter side. Beyond a quarter of it no drift avoids the
-    hops that are still open; where none is, the last case is missing. So is one of events that come
-    less than once in ``RAREST`` events, in very long boxes.
+    They are disc collisions at 0.24 times the shorter side, and hops at 0.1 and 0.3 times the
+    shorter side. Beyond a quarter of this side no drift avoids the hops that are still open; if no
+    hop is open, the last case is missing. In very long boxes, events that come less than once in
+    ``RAREST`` events are left out.
     """
     hop, short = "vertical_hop" if box.width >= box.height else "horizontal_hop", box.shortest
     candidates = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
@@ -232,9 +236,9 @@ def _comes(scene, event):
 
 
 def rows(box, samples, replicas, seed):
-    """Yield the rows of tails.csv for a ``Box``; the arguments are those of the estimates.
+    """Yield the rows of tails.csv for a ``Box``; ``tail`` and ``counted`` explain the arguments.
 
-    Every case and method has a stream of its own: ``seed`` and the numbers after it.
+    Every case and method has its own stream: ``seed`` and the numbers after it.
     """
     seed = check_integer("seed", seed, 0)
     for i, (event, radius) in enumerate(cases(box)):

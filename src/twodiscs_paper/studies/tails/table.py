@@ -11,7 +11,7 @@ class Tails(Table):
     """
 
     event: TEXT
-    """what begins and ends the interval: a hop or disc_collision"""
+    """the event that begins and ends the interval: a hop or disc_collision"""
     radius: LENGTH
     exact_mean: TIME
     """exact mean interval"""
@@ -19,13 +19,13 @@ class Tails(Table):
     """
     survival: P(T > t); rate: of the decay of P(T > t); last_ratio: of P(T > t) to its law, at the
     last time with an error below a fifth; approach: c of that ratio, if it is 1 + c (t/τ)^(−1/2);
-    chi2, degrees, chance: χ² of one rate at all times of the fit, its degrees of freedom, and the
-    probability of a larger one
+    chi2, degrees, chance: χ² of a constant rate over all times of the fit, its degrees of freedom,
+    and the probability of a larger χ²
     """
     method: TEXT
     """
-    counted: intervals that begin within a window; weighted: those met by starts that are drawn near
-    the motions that last, with exact weights; fit: follows from the rows before
+    counted: intervals that begin within a window; weighted: intervals around starts that are drawn
+    near motions with long intervals, with exact weights; fit: follows from other rows
     """
     time: TIME
     """t; for a rate, where the fit begins"""
@@ -37,8 +37,7 @@ class Tails(Table):
     """its standard error, from independent blocks"""
     law: AS_ESTIMATE
     """
-    C/t³ with the exact C, empty where it is 0; for a rate 1/mean, which it would be if intervals
-    were exponential
+    C/t³ with the exact C, empty if C is 0; for a rate 1/mean, the rate of exponential intervals
     """
 
     @staticmethod

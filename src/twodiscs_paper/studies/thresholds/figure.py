@@ -10,7 +10,7 @@ from twodiscs.theory.exact import mean_times
 from twodiscs.theory.laws import leading_law
 from twodiscs_paper.studies.thresholds.measure import near, passages, start
 
-#: Inches: the panel of the hops, that of the ratios to the laws, the gap, the room above.
+#: Inches: heights of the panels of the hops and of the ratios, the gap, the margin above.
 HOP_TIMES, RATIOS, GAP, TOP = 2.0, 1.6, 0.4, 0.22
 
 #: The least distance below the limit, relative to it, and points on a curve.
@@ -83,15 +83,15 @@ def caption(shown):
 
 
 def _mean_times(tables):
-    """Return the rows of the mean_times.csv that is given, if one is."""
+    """Return the rows of the mean_times.csv among ``tables``, or none without one."""
     measured = [rows for name, rows in tables.items() if name.endswith("mean_times")]
     return measured[0] if measured else []
 
 
 def _points(axes, law, rows, name, style, unit=np.ones_like):
-    """Draw measured times over ``unit`` of the radius; those from a strip have full symbols."""
-    for shown, look in panels.by_start(rows, style):
-        columns = [[row[c] for row in shown] for c in ("radius", "estimate", "stderr")]
+    """Draw measured times over ``unit`` of the radius; times from a strip have full symbols."""
+    for group, look in panels.by_start(rows, style):
+        columns = [[row[c] for row in group] for c in ("radius", "estimate", "stderr")]
         radius, value, error = np.array(columns, float)
         scale = unit(radius)
         axes.errorbar(
@@ -101,7 +101,7 @@ def _points(axes, law, rows, name, style, unit=np.ones_like):
 
 
 def _slopes(axes):
-    """Draw the two powers that are told apart."""
+    """Draw the two powers that the figure compares."""
     x = np.array([4e-5, 1e-3])
     for power, name in ((-2, r"$\delta^{-2}$"), (-1.5, r"$\delta^{-3/2}$")):
         y = 100 * (x / x[0]) ** power

@@ -1,41 +1,41 @@
-"""Power laws of the mean times where an event dies out, fitted to what was simulated.
+"""Fit power laws to the simulated mean times near the radius where an event dies out.
 
-Near a limiting radius r_c a mean time goes like C δ^p with δ = r_c − r: hops that become blocked
-before the discs jam diverge with p = −2, what is left vanishes with p = 1 below the largest radius
-(``theory.laws.threshold_time``). Straight lines are fitted to ln τ against ln δ with the weights of
-the measured errors, in two forms: ``plain``, to the times as they are, and ``reduced``, to times
-over the regular factor τ_exact/(C δ^p), which tends to 1. A plain exponent says how far the law
-itself holds at the radii at hand, and the same fit to the exact curve says what it should come to;
-a reduced one is p, and its coefficient C, wherever it is measured.
+Near a limiting radius r_c a mean time goes like C δ^p with δ = r_c − r. For hops that become
+blocked before the discs jam it diverges with p = −2. For other events it vanishes with p = 1 below
+the largest radius (``theory.laws.threshold_time``). Straight lines are fitted to ln τ against ln δ
+with the weights of the measured errors, in two forms: ``plain``, to the times as they are, and
+``reduced``, to times over the regular factor τ_exact/(C δ^p), which tends to 1. A plain exponent
+says how far the law itself holds at these radii; the same fit to the exact curve gives its expected
+value. A reduced exponent is p, and its coefficient C, at all radii.
 """
 
 import math
 
 import numpy as np
 
-from twodiscs.comparison.estimates import LinearFit
 from twodiscs.comparison.scores import chi2_p
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
+from twodiscs.points.estimates import LinearFit
 from twodiscs.theory.laws import leading_law
 
-#: Fits take radii this close to the limit, relative to it, and no other limit in between.
+#: Fits take radii within this relative distance of the limit, without another limit in between.
 WIDTH = 0.2
 
-#: A line through fewer points is not fitted.
+#: The fewest points for a fit.
 FEWEST = 3
 
-#: What a fit takes of the rows of a table.
+#: The columns that a fit uses.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
 
 
 def fits(law, quantity, radii, times, errors, exact):
     """Yield the fits to ``times`` at ``radii`` as rows of thresholds.csv, without scene and event.
 
-    ``errors`` are standard errors of the times, ``exact`` the exact mean times. The mean time
-    itself is compared with what the exact curve gives; the first passage has no exact curve.
-    Coefficients are those at the exact power, and of mean times alone. Yields nothing for fewer
-    than three points.
+    ``errors`` are standard errors of the times, ``exact`` the exact mean times. Fits to mean times
+    are compared with the same fits to the exact curve; first passages have no exact curve.
+    Coefficients are fitted at the exact power, to mean times only. Yields nothing for fewer than
+    three points.
     """
     if len(radii) < FEWEST:
         return
@@ -81,19 +81,19 @@ def _row(parameter, value, error, curve, law, chi2, degrees):
 
 
 def start(box, law):
-    """Return the radius from which on times are fitted by the ``law`` of a ``Box``."""
+    """Return the smallest radius of a fit to the ``law`` of a ``Box``."""
     others = [limit for limit in box.thresholds if limit < law.limit]
     return max([(1 - WIDTH) * law.limit, *others])
 
 
 def near(box, law, rows):
-    """Return those of ``rows`` near enough to the limit of the ``law``, with an honest error."""
+    """Return the ``rows`` with a standard error and near enough to the limit of the ``law``."""
     low = start(box, law)
     return [row for row in rows if low < row["radius"] < law.limit and row["stderr"]]
 
 
 def passages(distributions, name, event):
-    """Return the rows of distributions.csv on the mean first passages of a scene, not cut."""
+    """Return the rows of distributions.csv on the mean first passages of a scene, without a cut."""
     wanted = name, event, "first_passage", None
     return [
         row
@@ -103,7 +103,7 @@ def passages(distributions, name, event):
 
 
 def strips(fit, times):
-    """Return the row on the share of the mean times of a ``fit``, a row, that come from strips."""
+    """Return the row with the share of the ``times`` behind a row ``fit`` that are from strips."""
     share = sum(row["starts"] == "strip" for row in times) / len(times)
     names = "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points"
     kept = {name: fit[name] for name in (*names, "nearest", "farthest")}
@@ -114,7 +114,7 @@ def rows(tables, scenes):
     """Yield the rows of thresholds.csv.
 
     ``scenes`` is {name: parameters of its box}. ``tables`` has the rows of distributions, for the
-    first passages, and those of <name>/mean_times of every scene that measured them.
+    first passages, and of <name>/mean_times for every scene that measures them.
     """
     for name, parameters in scenes.items():
         box = Box(**parameters)
@@ -130,8 +130,8 @@ def rows(tables, scenes):
                     row | {"exact": row["exact_mean"]}
                     for row in passages(tables["distributions"], name, event)
                 ]
-            for quantity, seen in measured.items():
-                kept = near(box, law, seen)
+            for quantity, found in measured.items():
+                kept = near(box, law, found)
                 values = [[row[c] for row in kept] for c in COLUMNS]
                 fitted = [start | {"event": event} | row for row in fits(law, quantity, *values)]
                 yield from fitted

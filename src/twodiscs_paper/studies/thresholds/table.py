@@ -34,7 +34,7 @@ class Thresholds(Table):
     parameter: TEXT
     """
     exponent p, or coefficient C at the exact exponent; strips: the share of the fitted mean times
-    that come from starts in strips
+    whose initial states lie in strips
     """
     estimate: Column(float, "of C: time/length^p")
     """fitted value"""
@@ -49,7 +49,7 @@ class Thresholds(Table):
     chi2: NUMBER
     """sum of squared residuals in standard errors"""
     degrees: COUNT
-    """its degrees of freedom"""
+    """degrees of freedom of chi2"""
     p: NUMBER
     """probability of a larger χ² if the power law holds over the window"""
 

@@ -1,6 +1,6 @@
 """Every number that the manuscript prints: its name, its table, its rows, its column, its format.
 
-Nothing is computed here: what needs a fit, a correlation or a χ² is a row of the table of a study.
+Nothing is computed here: the results of fits, correlations and χ² are rows of tables of studies.
 """
 
 from twodiscs.model.events import HOPS, SHELLS
@@ -41,6 +41,7 @@ from twodiscs_paper.pipeline.documents.numbers.texts import (
     SEVERITY,
     SHARE,
     SHORT_EVENT,
+    SPREAD,
     STEP_FLOORS,
     THEORY,
 )
@@ -54,7 +55,8 @@ def _of(table):
 check, grid, volume, areas, mean_times = map(
     _of, ("check", "grid", "volume", "areas", "mean_times")
 )
-cost, long_run, agreement, errata = map(_of, ("cost", "long_run", "agreement", "errata"))
+cost, agreement, errata = map(_of, ("cost", "agreement", "errata"))
+long_run, long_passages, long_tails = map(_of, ("long_run", "long_passages", "long_tails"))
 distributions, tails, thresholds = map(_of, ("distributions", "tails", "thresholds"))
 effects, passages, more_discs = map(_of, ("effects", "passages", "more_discs"))
 accuracy_cost, stability = map(_of, ("accuracy_cost", "stability"))
@@ -64,6 +66,7 @@ OVER_MEAN = ("estimate/exact_mean", "stderr/exact_mean")
 TIMES_MEAN = ("estimate*exact_mean", "stderr*exact_mean")
 FITTED = ("slope", "slope_stderr")
 FIRST = ("first",)
+FARTHEST, NEAREST = ("largest", "distance"), ("smallest", "distance")
 
 # How simulations agree with the exact theory ------------------------------------------------------
 
@@ -113,6 +116,12 @@ AGREEMENT = (
 )
 
 RAREST = ("largest", "exact")
+DECAY = {"quantity": "rate"}
+POWER = {"quantity": "survival", "law": ...}
+RELATIVE = ("estimate/law", "stderr/law")
+PAUSES = {"scene": "pause", "quantity": "coefficient"}
+SMOOTH = {"scene": Other("pause"), "quantity": "coefficient"}
+APPROACH = {"quantity": "approach"}
 LONG_RUN = (
     long_run("long_run_events", {"event": ("any_wall", "disc_collision")}, "count", total(2)),
     long_run("long_run_radius", {}, "radius", AS_TYPED, FIRST),
@@ -120,6 +129,35 @@ LONG_RUN = (
     long_run("long_run_rare", {}, "exact", digits(2), RAREST),
     long_run("long_run_rare_error", {"exact": ...}, "relative_stderr", largest(1), RAREST),
     long_run("long_run_largest", {}, "z", largest()),
+    *(
+        long_passages(
+            f"long_exponent_{name}",
+            {"event": hop, "quantity": "last_exponent"},
+            ESTIMATE,
+            WITH_ERROR,
+        )
+        for name, hop in (("horizontal", "horizontal_hop"), ("vertical", "vertical_hop"))
+    ),
+    long_passages("long_kappa", SMOOTH | {"event": FIRST_HOP}, ESTIMATE, WITH_ERROR, NEAREST),
+    *(
+        long_passages(f"pause_{name}", PAUSES, ESTIMATE, WITH_ERROR, (which, "time"))
+        for name, which in (("once", "smallest"), ("twice", "largest"))
+    ),
+    long_passages("pause_distance", PAUSES, "distance", POWER_OF_TWO, FIRST),
+    long_passages("long_distance", {"quantity": "last_exponent"}, "distance", POWER_OF_TWO, FIRST),
+    long_passages("long_hops", SMOOTH, "replicas", RANGE),
+    *(
+        number
+        for end, pick in (("first", FIRST), ("last", ("last",)))
+        for number in (
+            long_tails(f"long_time_{end}", APPROACH, "time/exact_mean", digits(2), pick),
+            long_tails(f"long_approach_{end}", APPROACH, ESTIMATE, WITH_ERROR, pick),
+            long_tails(f"long_ratio_{end}", POWER, RELATIVE, WITH_ERROR, pick),
+            long_tails(f"long_rate_{end}", DECAY, TIMES_MEAN, WITH_ERROR, pick),
+            long_tails(f"long_rate_{end}_from", DECAY, "time/exact_mean", digits(2), pick),
+            long_tails(f"long_rate_{end}_to", DECAY, "until/exact_mean", digits(2), pick),
+        )
+    ),
 )
 
 AGREEMENT_CELLS = Cells(
@@ -143,7 +181,6 @@ AGREEMENT_CELLS = Cells(
 DENSITIES = {"quantity": "density_at_zero", "z": ...}
 ODD = ("largest", "z")
 ODD_DENSITY = distributions("odd_density", DENSITIES, ESTIMATE, WITH_ERROR, ODD)
-DECAY = {"quantity": "rate"}
 
 
 def _tail(name, event):
@@ -168,7 +205,7 @@ def _hazards(quantity):
     return {"scene": MAIN, "quantity": quantity}
 
 
-#: A hazard that falls although no drift avoids the hop, in another box than the first one.
+#: A hazard that falls although no drift avoids the hop, in another box than the first.
 ELSEWHERE = {"scene": Other(MAIN), "event": "vertical_hop", "quantity": "falling_without_drift"}
 
 DISTRIBUTIONS = (
@@ -271,6 +308,13 @@ POWERS = (
         )
     ),
     agreement("effects", {"quantity": "effects"}, "count", INTEGER),
+    agreement("third_virial", {"quantity": "third_virial"}, "estimate", digits(9)),
+    thresholds(
+        "reduced_vertical",
+        LAWS | REDUCED | {"event": "vertical_hop", "parameter": "exponent"},
+        ESTIMATE,
+        WITH_ERROR,
+    ),
     effects("effect_scenes", {"quantity": Other("never_met_share")}, "scene", DISTINCT_IN_WORDS),
     agreement("effects_largest", {"quantity": "effects"}, "estimate", largest()),
     NEVER_MET,
@@ -288,7 +332,7 @@ POWERS = (
     errata("statements_major", {"severity": "major"}, "verdict", COUNTED),
 )
 
-#: Times between hits of any wall follow from those of the right and of the top wall.
+#: Times between hits of any wall follow from the times of the right and the top wall.
 POWERS_CELLS = Cells(
     "powers",
     "thresholds",
@@ -330,7 +374,6 @@ ERRATA_CELLS = Cells(
 
 #: Moments of inertia, in units of mr², as the manuscript names them; one half is a solid disc.
 INERTIAS = {"one": 1.0, "half": 0.5, "quarter": 0.25, "tenth": 0.1}
-FARTHEST, NEAREST = ("largest", "distance"), ("smallest", "distance")
 FILES = {"scene": MAIN, "discs": Other(2), "method": "states"}
 LATTICE = {"method": "lattice"}
 
@@ -365,6 +408,9 @@ PASSAGES = (
         "passages_rough_distance", _near("coefficient", ...), "distance", POWER_OF_TWO, NEAREST
     ),
     passages(
+        "passages_rough_last", _near("coefficient", INERTIAS["half"]), ESTIMATE, WITH_ERROR, NEAREST
+    ),
+    passages(
         "passages_rough_half_power",
         _near("passage_exponent", INERTIAS["half"]),
         ESTIMATE,
@@ -373,10 +419,20 @@ PASSAGES = (
     *_ends("passages_ring_smooth", _near("diffusion", **RING)),
     *_ends("passages_ring", _near("diffusion", **RING), "distance", POWER_OF_TWO, "_distance"),
     *_ends("passages_ring_rough", _near("diffusion", INERTIAS["half"], **RING)),
-    passages("passages_files", FILES | {"quantity": "diffusion"}, "estimate", RANGE),
+    passages("passages_files_least", FILES | {"quantity": "diffusion"}, "estimate", smallest()),
+    passages("passages_files_most", FILES | {"quantity": "diffusion"}, "estimate", largest()),
     passages("passages_files_error", FILES | {"quantity": "diffusion"}, "stderr", largest(1)),
     passages("passages_files_discs", FILES | {"quantity": "diffusion"}, "discs", NUMBER_WORDS),
-    passages("passages_files_rates", FILES | {"quantity": "rate"}, "estimate", QUOTIENT),
+    *(
+        passages(
+            f"passages_files_rates_{name}",
+            FILES | {"quantity": "rate", "discs": discs},
+            "estimate",
+            QUOTIENT,
+        )
+        for name, discs in (("four", 4), ("eight", 8))
+    ),
+    passages("passages_lattice_z", LATTICE | {"quantity": "diffusion"}, "z", largest()),
     passages("passages_single_file", LATTICE | {"quantity": "single_file"}, ESTIMATE, WITH_ERROR),
     *(
         passages(f"passages_lattice_{name}", LATTICE | {"quantity": "diffusion"}, c, form, pick)
@@ -394,6 +450,9 @@ MORE_DISCS = (
     more_discs("more_discs_exact", {"exact": ..., "event": Other("virial")}, "z", COUNTED),
     more_discs("more_discs_sums", {"event": "virial"}, "z", COUNTED),
     more_discs("more_discs_largest", {}, "z", largest()),
+    more_discs("more_discs_sampled", {}, "monte_carlo_z", COUNTED),
+    more_discs("more_discs_sampled_largest", {}, "monte_carlo_z", largest()),
+    more_discs("more_discs_top", {"event": "top_wall"}, ("radius", "dynamics"), SPREAD),
     more_discs("more_discs_most", JUDGED, "discs", INTEGER, ("largest", "discs")),
     more_discs("more_discs_width", JUDGED, "width/discs", digits(3), ("largest", "discs")),
 )
@@ -419,7 +478,7 @@ MORE_DISCS_CELLS = Cells(
     is_numbered=True,
 )
 
-# What a digit costs, and where arithmetic has it hard ---------------------------------------------
+# The cost of a digit, and numerically hard cases --------------------------------------------------
 
 #: The fitted powers: (part, method, quantity) in accuracy_cost.csv.
 PRICES = {

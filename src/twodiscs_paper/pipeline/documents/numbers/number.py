@@ -1,4 +1,4 @@
-"""What a number of the manuscript is: a table, a filter for its rows, a column, and a format."""
+"""A number of the manuscript: a table, a filter for its rows, a column, and a format."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -33,8 +33,8 @@ class Number:
     column may be the ratio or the product of two columns, "time/exact_mean". A row counts if none
     of its ``columns`` is empty. The ``format`` writes the values of one row, or of several ones.
 
-    If a format is of one row and several rows count, ``pick`` decides: the "first" row, the "last"
-    one, or the one with the "largest" or "smallest" size of some columns, ("largest", "radius").
+    If a format takes one row and several rows count, ``pick`` decides: the "first" row, the "last"
+    row, or the row with the "largest" or "smallest" size of some columns, ("largest", "radius").
     ``same`` takes only rows that share columns with the row of another number, (ODD_DENSITY,
     "scene", "radius").
     """
@@ -51,7 +51,7 @@ class Number:
         """Return the rows that the number takes; exactly one for a format of one row.
 
         ``tables`` are {name: rows}, ``given`` are the values of ``MAIN`` and ``FIRST_HOP``. Raises
-        ``NoRow`` if there is no row, ``InputError`` for several rows in place of one.
+        ``NoRow`` if there is no row, ``InputError`` for several rows instead of one.
         """
         where = resolved(self.where, given)
         if self.same:
@@ -70,7 +70,7 @@ class Number:
         return rows
 
     def printed(self, tables, given):
-        """Return what is ``Printed``; raises as ``rows`` does."""
+        """Return the number as ``Printed``; raise the errors of ``rows``."""
         values = [self._values(row) for row in self.rows(tables, given)]
         if self.format.is_of_several:
             return self.format.write([one if len(one) > 1 else one[0] for one in values])
@@ -91,9 +91,10 @@ class Cells:
 
     A line is made of the rows of ``table`` with the same values of the columns ``key``; without a
     key every row is a line. Rows count if they have the values of ``where``. Each of the ``cells``
-    is a ``Number``, named by the column of the printed table. It takes its rows from those of the
-    line, or if it is of another table from the rows with the same key. Lines are in the order of
-    the table, or ``is_sorted`` by the key. A line is named by its key, or ``is_numbered``.
+    is a ``Number`` with the name of a column of the printed table. It takes its rows from the rows
+    of the line. If it belongs to another table, it takes the rows with the same key there. Lines
+    are in the order of the table, or ``is_sorted`` by the key. The name of a line is its key, or
+    its number if it ``is_numbered``.
     """
 
     name: str
@@ -151,7 +152,7 @@ def matches(row, where):
 
 
 def value_of(row, column):
-    """Return the value of a column in a ``row``, of "one/other" or "one*other"; None if empty."""
+    """Return the value of a column, "one/other" or "one*other" in a ``row``; None if empty."""
     for sign in "/*":
         if sign in column:
             one, other = (row[name] for name in column.split(sign))

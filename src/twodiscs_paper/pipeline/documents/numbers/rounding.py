@@ -1,8 +1,8 @@
 """How results are rounded and written: the one rule of the manuscript.
 
-An estimate with its error has the digits that the error leaves. The largest of several values is
-rounded up and the smallest down, so that the sentence about them is true. Texts are markup of
-Typst, with mathematics between dollars.
+The error of an estimate decides the number of its digits. The largest of several values is rounded
+up and the smallest down, so that the sentence about them is true. Texts are markup of Typst, with
+mathematics between dollars.
 """
 
 import math
@@ -15,7 +15,7 @@ WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "
 
 
 class Printed(NamedTuple):
-    """What is printed of a number: its ``value``, None for several values or words, and a text."""
+    """A number in print: its ``value``, None for several values or words, and its ``text``."""
 
     value: float | None
     text: str
@@ -69,9 +69,9 @@ def span(values, n=2):
 
 
 def with_error(value, error):
-    """Return 0.813(2) or 0.81(12): the error is that of the last digit, of two if it begins with 1.
+    """Return 0.813(2) or 0.81(12): the error of the last digit, or of the last two if it begins 1.
 
-    ``error`` is positive; one that is larger than 1 is written in full, 120(30).
+    ``error`` is positive; an error larger than 1 is written in full, 120(30).
     """
     places = -math.floor(math.log10(error))
     if error * 10.0**places < 1.95:
@@ -108,9 +108,9 @@ def sides(width, height):
 class Format(NamedTuple):
     """How the values of a number are written.
 
-    ``write`` takes the values of the columns of one row; if it ``is_of_several`` rows, a list of
-    them, of tuples for several columns. A format that ``takes_empty`` cells writes a row whose
-    first column alone is not empty. A cell of a table without a row prints ``empty``.
+    ``write`` takes the values of the columns of one row. If the format ``is_of_several`` rows, it
+    takes a list of values, or of tuples for several columns. A format that ``takes_empty`` cells
+    writes a row even if only its first column is not empty. A cell without a row prints ``empty``.
     """
 
     write: Callable

@@ -1,4 +1,4 @@
-"""The table of all numbers that the manuscript prints, and the tables that they are taken from."""
+"""The table of all numbers that the manuscript prints, and the tables with their values."""
 
 import sys
 from pathlib import Path
@@ -14,24 +14,31 @@ READ = {number.table for number in (*NUMBERS, *(cell for table in CELLS for cell
 OF_SCENES = sorted(READ & SCENE_TABLES.keys())
 OF_STUDIES = sorted(READ & STUDY_TABLES.keys())
 
+#: Tables of the long runs, which are kept: no build makes them.
+LONG_RUNS = {
+    "long_run": SCENE_TABLES["mean_times"],
+    "long_passages": STUDY_TABLES["passages"],
+    "long_tails": STUDY_TABLES["tails"],
+}
+
 
 class PaperNumbers(Table):
     """One row per number that the manuscript prints."""
 
     name: TEXT
-    """what the manuscript calls it; table/row/column for a cell of a table"""
+    """its name in the manuscript; table/row/column for a cell of a table"""
     value: NUMBER
-    """the number itself, if the text is of one"""
+    """the number itself, if the text shows one number"""
     text: TEXT
-    """what is printed, as markup of Typst; empty for an empty cell"""
+    """the printed text, as markup of Typst; empty for an empty cell"""
 
 
-def read(results, scenes, long_run=None):
+def read(results, scenes, long_runs=None):
     """Return {name: rows} of the tables in the folder ``results`` that numbers are taken from.
 
-    ``long_run`` is the mean_times.csv of the long run, which no build makes. ``scenes`` have a
-    "name", "width" and "height" each, which are added to the rows of a scene, and the names of
-    their "tables". Raises ``OSError`` for a table that is missing, ``InputError`` for a file that
+    ``long_runs`` are {name: path} of tables among ``LONG_RUNS``. ``scenes`` have a "name", "width"
+    and "height" each, which are added to the rows of a scene, and the names of their "tables".
+    Raises ``OSError`` for a table that is missing, ``InputError`` for a file that
     is no table.
     """
     tables = {name: [] for name in (*OF_SCENES, *OF_STUDIES)}
@@ -42,17 +49,18 @@ def read(results, scenes, long_run=None):
             tables[name] += [start | row for row in SCENE_TABLES[name].read(path)]
     for name in OF_STUDIES:
         tables[name] = STUDY_TABLES[name].read(Path(results, f"{name}.csv"))
-    tables["long_run"] = SCENE_TABLES["mean_times"].read(long_run) if long_run else []
-    return tables
+    paths = long_runs or {}
+    return tables | {
+        name: kind.read(paths[name]) if name in paths else [] for name, kind in LONG_RUNS.items()
+    }
 
 
 def printed(tables, scenes):
     """Return {name: ``Printed``} of all that the manuscript prints.
 
-    ``tables`` are as ``read`` returns them; the first of the ``scenes`` is the one that the
-    manuscript is about. A number without a row is left out, for a configuration may have less; its
-    sentence goes to the standard error. Raises ``InputError`` for a number with several rows in
-    place of one.
+    ``tables`` are as ``read`` returns them; the manuscript is about the first of the ``scenes``. A
+    number without a row is left out, because a configuration may have less; its sentence goes to
+    the standard error. Raises ``InputError`` for a number with several rows instead of one.
     """
     main = scenes[0]
     hop = "horizontal_hop" if main["width"] > main["height"] else "vertical_hop"

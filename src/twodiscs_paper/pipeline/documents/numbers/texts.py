@@ -1,4 +1,4 @@
-"""Formats that one number or one column of a table needs: lists of cases, and corrections."""
+"""Formats for single numbers or columns of a table: lists of cases, and corrections."""
 
 import math
 import re
@@ -51,6 +51,13 @@ def _share(count, replicas):
     return Printed(share, f"a share of {significant(share, 1).text}" if count else "none")
 
 
+def _spread(pairs):
+    of_radius = {}
+    for radius, value in pairs:
+        of_radius.setdefault(radius, []).append(value)
+    return at_most([100 * (max(values) / min(values) - 1) for values in of_radius.values()])
+
+
 def _chance(p):
     return significant(p, 1) if p > LEVEL else Printed(p, "$0$")
 
@@ -63,17 +70,19 @@ def _list(write):
     return several(lambda values: Printed(None, write(values)))
 
 
-#: Hops and radii, as a sentence has them.
+#: Hops and radii, as part of a sentence.
 CASES = several(_cases)
 STEP_FLOORS, PLURALS, NUMBER_WORDS = map(_list, (_step_floors, _plurals, _number_words))
 #: The largest of several values over the smallest.
 QUOTIENT = several(lambda values: significant(max(values) / min(values), 2))
+#: By how many per cent values at one radius differ at most, from pairs (radius, value).
+SPREAD = several(_spread)
 SHARE, CHANCE = Format(_share), Format(_chance)
 EXACT_OR_MEASURED = Format(_exact_or_measured, takes_empty=True)
 FIRST_LETTER = words(lambda event: event[0])
 SHORT_EVENT = words(lambda event: " ".join(SHORT.get(word, word) for word in event.split("_")))
 THEORY = words(lambda theory: theory.replace("none", "--"))
-#: The largest size of all but one of several values; a depth, where the least value is negative.
+#: The second largest size of several values; the depth of an overlap, a negative gap.
 OTHERS = several(lambda z: at_most(sorted(map(abs, z))[:-1]) if len(z) > 1 else None)
 OVERLAP = several(lambda gaps: at_most([-min(gaps)]))
 POWER_OF_TWO = Format(lambda x: Printed(x, f"$2^({round(math.log2(x))})$"))

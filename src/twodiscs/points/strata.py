@@ -1,9 +1,10 @@
-"""Strata: what is known exactly of random starts takes scatter out of a mean over them.
+"""Strata: the exact laws of random initial states reduce the variance of a mean over them.
 
-Starts are sorted by quantities whose law is exact, into strata of exact probability p. Then Σ p ⟨N⟩
-with the mean of N in each stratum scatters less than the mean over all starts: how chance filled
-the strata matters to second order only (Cochran, Sampling Techniques, 1977, section 5A.9). The
-starts stay those of the invariant measure, all independent.
+Initial states are sorted by quantities whose law is exact, into strata of exact probability p. Then
+Σ p ⟨N⟩ with the mean of N in each stratum has a smaller variance than the mean over all of them:
+the random numbers of states in the strata matter only to second order (Cochran, Sampling
+Techniques, 1977, section 5A.9). The initial states are still independent, from the invariant
+measure.
 """
 
 import math
@@ -14,10 +15,10 @@ import numpy as np
 from twodiscs.model.checks import InputError
 from twodiscs.theory.plain import RULE
 
-#: Strata of each quantity.
+#: The number of strata of each quantity.
 PARTS = 8
 
-#: The fastest starts are one stratum, of at least such a share.
+#: The fastest initial states are one stratum, of at least this probability.
 LEAST_FRACTION = 1 / 64
 
 #: If the smallest stratum expects fewer initial states than this, neighbours are merged.
@@ -25,7 +26,7 @@ FEWEST = 16
 
 
 def fraction_below(cosine, components):
-    """Return the share of directions with a component between −``cosine`` and ``cosine``.
+    """Return the fraction of directions with a component between −``cosine`` and ``cosine``.
 
     Directions are uniform on the unit sphere in ``components`` ≥ 2 dimensions; 0 ≤ cosine ≤ 1.
     The component is sin t with density ∝ cosⁿ⁻² t.
@@ -41,9 +42,9 @@ def fraction_below(cosine, components):
 
 @cache
 def fractions_of_speeds(components):
-    """Return the shares of directions by the size of one component: up to 1/8, to 2/8 and so on.
+    """Return the fractions of directions by the size of one component: up to 1/8, 2/8 and so on.
 
-    The last ones are taken together: they have a share of ``LEAST_FRACTION`` at least.
+    The last ones are merged into a fraction of at least ``LEAST_FRACTION``.
     """
     below = [fraction_below(part / PARTS, components) for part in range(PARTS)]
     below = [share for share in below if share <= 1 - LEAST_FRACTION]
@@ -51,19 +52,20 @@ def fractions_of_speeds(components):
 
 
 def _merged(sums):
-    """Return ``sums`` (n, m) of strata and their neighbours, two by two; an odd one stays alone."""
+    """Return ``sums`` (n, m) with neighbouring strata merged in pairs; an odd last one stays."""
     for axis, size in enumerate(sums.shape):
         sums = np.add.reduceat(sums, np.arange(0, size, 2), axis=axis)
     return sums
 
 
 def mean_of(shares, starts, counts, squares):
-    """Return the mean of N and its standard error, from what is known of the strata.
+    """Return the mean of N and its standard error from strata.
 
-    That is their exact ``shares``, which add up to 1, the numbers of ``starts``, Σ N and Σ N²,
-    arrays (n, m). Which strata are taken together depends on the number of all starts, so that the
-    mean has no bias, except in the rare case of a stratum with fewer than two of them. The error is
-    infinite for a single start. Raises ``InputError`` for arrays that are no such numbers.
+    Arguments are arrays (n, m): their exact ``shares``, which add up to 1, the numbers of initial
+    states in ``starts``, Σ N and Σ N². The merging of strata depends only on the number of all
+    initial states, so the mean has no bias, except in the rare case of a stratum with fewer than
+    two of them. The error is infinite for a single initial state. Raises ``InputError`` for other
+    arrays.
     """
     try:
         strata = [np.array(part, float) for part in (shares, starts, counts, squares)]
@@ -71,7 +73,7 @@ def mean_of(shares, starts, counts, squares):
         raise InputError("strata must be arrays of numbers") from None
     shapes = {part.shape for part in strata}
     if len(shapes) > 1 or strata[0].ndim != 2 or not strata[1].sum() >= 1:
-        raise InputError(f"strata must be starts in arrays of one shape (n, m), not of {shapes}")
+        raise InputError(f"strata must be in arrays of one shape (n, m), not of {shapes}")
     if not abs(strata[0].sum() - 1) < 1e-9:
         raise InputError(f"shares of strata must add up to 1, not to {strata[0].sum():g}")
     expected = strata[1].sum() * strata[0]

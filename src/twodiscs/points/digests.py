@@ -1,4 +1,4 @@
-"""SHA-256 of files, and JSON files that carry the digest of their own content."""
+"""SHA-256 of files, and JSON files with the digest of their content."""
 
 import json
 from hashlib import sha256
@@ -8,19 +8,19 @@ from twodiscs.model.checks import InputError
 
 KEY = "sha256"
 
-#: A key of a file that differs from run to run: it is no part of the content or of its digest.
+#: A key whose value differs from run to run: neither the content nor its digest includes it.
 SECONDS = "seconds"
 
 
 def digest(*paths):
-    """Return the SHA-256 of files, one after the other, in hexadecimal digits."""
+    """Return the SHA-256 of concatenated files, in hexadecimal digits."""
     return sha256(b"".join(Path(path).read_bytes() for path in paths)).hexdigest()
 
 
 def write_json(path, content, seconds=None):
     """Write the dict ``content`` with its digest, keys sorted; floats keep all their digits.
 
-    ``seconds`` say what it took, if that is known.
+    ``seconds`` is the processor time that it took, if known.
     """
     content = content | {KEY: _digest_of(content)}
     if seconds is not None:
@@ -32,7 +32,7 @@ def write_json(path, content, seconds=None):
 def read_json(path):
     """Return the content of a file of ``write_json``.
 
-    Raises ``InputError`` if it is not what was written, ``OSError`` if it cannot be read.
+    Raises ``InputError`` if the file was changed, ``OSError`` if it cannot be read.
     """
     try:
         content = json.loads(Path(path).read_bytes())

@@ -2,16 +2,20 @@
 
 import math
 from fractions import Fraction
+from itertools import combinations_with_replacement
 
 import mpmath
 import numpy as np
 import pytest
+from factory import counts_point
 from scipy.stats import linregress, sem
 
-from twodiscs.comparison import estimates, scores
-from twodiscs.comparison.estimates import Estimate, LinearFit, mean_of
+from twodiscs.comparison import scores
+from twodiscs.comparison.check import sum_rule
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
+from twodiscs.points import estimates
+from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory.numerics.reference import exact_numbers
 
 # Estimates ------------------------------------------------------------------------------------
@@ -91,7 +95,7 @@ def test_a_count_is_a_sum_of_others_if_it_is_so_in_every_replica():
     # The channel has no wall to the right.
     assert sums_of_others(*sums_of({"top_wall": top, "any_wall": top})) == {"any_wall"}
     assert sums_of_others(*sums_of({"right_wall": right, "top_wall": top})) == set()
-    # The same sum over all replicas, by chance.
+    # The same sum over all replicas, randomly.
     moved = np.roll(right + top, 1)
     assert sums_of_others(*sums_of(whole | {"any_wall": moved})) == set()
     assert sums_of_others(sums_of(whole | {"any_wall": moved})[0]) == {"any_wall"}
@@ -170,7 +174,7 @@ def test_two_points_have_a_line_whose_error_needs_theirs():
 
 @pytest.mark.parametrize(("x", "y"), [([], []), ([1.0], [1.0]), ([1.0, 2.0], [1.0])])
 def test_one_point_has_no_line(x, y):
-    with pytest.raises(ValueError, match="two points at least"):
+    with pytest.raises(ValueError, match="at least two points"):
         LinearFit(x, y)
 
 
@@ -214,38 +218,6 @@ def test_no_event_and_no_spread_divide_by_nothing():
     assert math.isfinite(scores.mean_time_z(10**9, 10**15, 1000, 10.0, 1e9)[0])
 
 
-def in_octaves(counts):
-    """Return the numbers of replicas, Σ N and Σ N² by octave of ``counts``."""
-    octave = np.array([int(n).bit_length() for n in counts])
-    return [np.bincount(octave, counts.astype(float) ** k).astype(int).tolist() for k in range(3)]
-
-
-@pytest.mark.parametrize(("tail", "honest"), [(None, True), (4.5, True), (1.2, False)])
-def test_an_error_that_few_replicas_make_is_none(tail, honest):
-    """Poisson counts, and bursts with P(N > n) ~ n^−tail; the fourth moment by another method."""
-    rng = np.random.default_rng(5)
-    counts = rng.poisson(20, 20_000)
-    if tail:
-        counts = counts + (rng.pareto(tail, counts.size) * 5).astype(int)
-    total, squares = int(counts.sum()), int((counts**2).sum())
-    found = estimates.error_of_error(total, squares, counts.size, in_octaves(counts))
-    deviations = (counts - counts.mean()) ** 2
-    expected = math.sqrt((deviations**2).sum()) / deviations.sum() / 2
-    assert expected / 2 < found < expected * 1.001
-    assert estimates.has_error_bar(total, squares, counts.size, in_octaves(counts)) == honest
-    assert estimates.has_error_bar(total, squares, counts.size)
-
-
-@pytest.mark.parametrize(("bursting", "honest"), [(15, False), (20, False), (30, True)])
-def test_an_error_must_be_known_to_ten_per_cent(bursting, honest):
-    """If k replicas make all of the spread, the error is known to 1/(2√k)."""
-    counts = np.full(100_000, 1000)
-    counts[:bursting] = 20_000
-    total, squares = int(counts.sum()), int((counts**2).sum())
-    assert estimates.has_error_bar(total, squares, counts.size)
-    assert estimates.has_error_bar(total, squares, counts.size, in_octaves(counts)) == honest
-
-
 def test_weights_below_their_resolution_have_no_error():
     """Squares of weights are rounded to units: 2^20 of them is one, here weights are of 2^−10."""
     unit, samples = 2**20, 10**6
@@ -260,10 +232,6 @@ def test_weights_below_their_resolution_have_no_error():
     hits = samples - 90
     assert estimates.effective_misses(unit * hits, unit * hits, unit, samples) == pytest.approx(90)
     assert estimates.effective_misses(5, 0, unit, samples) == 0
-
-
-def test_replicas_without_spread_have_an_error_of_no_error():
-    assert estimates.error_of_error(300, 900, 100, [[0, 0, 100], [0, 0, 300], [0, 0, 900]]) == 0
 
 
 def test_bound_from_no_event_holds_for_clusters():
@@ -300,8 +268,11 @@ def test_sum_rule_holds_for_the_exact_rates(radius):
     times = exact_numbers(scene)[2]
     counts = {e: int(mpmath.nint(n * replicas * time / times[e])) for e, n in copies.items()}
     # No two events in one replica: only the squares are not zero.
-    products = {f"{x}*{y}": counts[x] * (x == y) for x in counts for y in counts}
-    found = estimates.sum_rule(scene, time, replicas, counts, products)
+    pairs = combinations_with_replacement(counts, 2)
+    products = {f"{x}*{y}": counts[x] * (x == y) for x, y in pairs}
+    fields = {"duration": time, "replicas": replicas, "counts": counts, "products": products}
+    each = {name: dict.fromkeys(counts, value) for name, value in (("target", 1.0), ("status", ""))}
+    found = sum_rule(scene, counts_point(radius, **fields, **each))
     assert found.value == pytest.approx(1, abs=1e-8)  # counts are rounded to some 1e-9
     scale = 3 * math.pi / (4 * time)
     weights = {"disc_collision": scale * 2 * radius / math.sqrt(8)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import betainc
 
-from twodiscs.sampling.blocks.strata import (
+from twodiscs.points.strata import (
     LEAST_FRACTION,
     PARTS,
     fraction_below,
@@ -56,7 +56,7 @@ def test_means_have_no_bias(starts, number):
     rng = np.random.default_rng(starts)
     fillings = [filled(rng, starts) for _ in range(number)]
     off = np.array([mean_of(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
-    # Where there are enough starts to keep all strata nothing scatters.
+    # With enough starts to keep all strata, the mean has no variance.
     assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size) + 1e-15
 
 
@@ -76,8 +76,8 @@ def test_errors_are_honest(starts):
         variances.append(error**2)
     spread = np.array(off) ** 2 - variances
     assert abs(spread.mean()) <= 5 * spread.std() / math.sqrt(spread.size)
-    # Of all scatter, that within strata is left as soon as there are enough starts; the spread of
-    # 2000 means is known to 1.6 %, so that a tenth is six standard errors.
+    # With enough starts only the variance within strata is left; the spread of 2000 means is known
+    # to 1.6 %, so that a tenth is six standard errors.
     within = math.sqrt(TRUE / starts)
     between = math.sqrt(float(np.sum(SHARES * (MEANS - TRUE) ** 2)) / starts)
     if starts == 3000:
@@ -100,7 +100,7 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
         mean, _ = mean_of(shares, starts, counts, counts)
         pairs = 2 / 3 * 8 / 60 + 1 / 3 * 7 / (15 + last)
         assert mean == pytest.approx(pairs if parts == 2 else np.mean(counts / starts))
-    # A stratum that stayed all but empty has no mean of its own.
+    # A stratum that is almost empty has no separate mean.
     starts = np.array([[99, 99, 99], [99, 99, 1]])
     mean, _ = mean_of(shares, starts, counts, counts)
     assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
@@ -117,9 +117,9 @@ GOOD = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares
     [
         ({"shares": [[0.5, 0.4]]}, "shares of strata must add up to 1, not to 0.9"),
         ({"shares": [[float("nan"), 0.5]]}, "must add up to 1, not to nan"),
-        ({"starts": [[0, 0]]}, "strata must be starts in arrays of one shape"),
-        ({"starts": [[9], [9]]}, "strata must be starts in arrays of one shape"),
-        ({"counts": [1, 2]}, "strata must be starts in arrays of one shape"),
+        ({"starts": [[0, 0]]}, "strata must be in arrays of one shape"),
+        ({"starts": [[9], [9]]}, "strata must be in arrays of one shape"),
+        ({"counts": [1, 2]}, "strata must be in arrays of one shape"),
         ({"counts": [[1, 2], [3]]}, "strata must be arrays of numbers"),
         ({"squares": "many"}, "strata must be arrays of numbers"),
         ({"squares": None}, "strata must be"),

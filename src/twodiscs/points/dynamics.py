@@ -1,0 +1,167 @@
+"""Events that molecular dynamics counted at one radius, in independent replicas of a duration T."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations_with_replacement
+from typing import ClassVar
+
+import numpy as np
+
+from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.events import EVENTS
+from twodiscs.points import estimates
+from twodiscs.points.base import Point, require_positive, require_same_keys
+from twodiscs.points.strata import mean_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Count:
+    """The counts of one event.
+
+    ``count`` is Σ N and ``squares`` Σ N² over the ``replicas``, each of a ``duration`` T. Initial
+    states come from an exactly known ``share`` of configuration space.
+    """
+
+    duration: float
+    share: float
+    replicas: int
+    count: int
+    squares: int
+    status: str
+
+    #: A better estimate (⟨N⟩, error) than from these sums, None without one.
+    mean = None
+
+    def __post_init__(self):
+        require_positive(self, "duration", "share", "replicas")
+
+    @property
+    def sums(self):
+        """Σ N, Σ N² and the number of replicas."""
+        return self.count, self.squares, self.replicas
+
+    def time(self, copies=1):
+        """Return the time T · copies/share; over ⟨N⟩ it is the mean time between events.
+
+        ``copies`` is the number of events that count as one (``Scene.multiplicity``).
+        """
+        return self.duration * copies / self.share
+
+    def estimate(self, copies=1):
+        """Return the mean time between events as an ``Estimate``, None if none was counted."""
+        if not self.count:
+            return None
+        return estimates.mean_time(*self.sums, self.time(copies), self.mean)
+
+    def bound(self):
+        """Return a lower bound on the mean time, valid if no event was counted."""
+        return estimates.mean_time_bound(self.replicas, self.time())
+
+
+@dataclass(frozen=True)
+class Strata:
+    """Strata (n, m) of initial states: exact probabilities, numbers of states, Σ N and Σ N²."""
+
+    shares: list[list[float]]
+    starts: list[list[int]]
+    counts: list[list[int]]
+    squares: list[list[int]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StripCount(Count):
+    """The counts of a rare hop in a time 2T from initial states next to its surface.
+
+    ``rounds`` and ``events`` belong to its run. Raises ``InputError`` if the counts are not the
+    sums over the strata.
+    """
+
+    rounds: int
+    events: int
+    strata: Strata
+
+    def __post_init__(self):
+        super().__post_init__()
+        _ = self.mean
+        sums = {"replicas": "starts", "count": "counts", "squares": "squares"}
+        for name, part in sums.items():
+            total, found = np.sum(getattr(self.strata, part)), getattr(self, name)
+            if total != found:
+                raise InputError(f"{name} of a strip is {found!r}, but in its strata {total}")
+
+    @cached_property
+    def mean(self):
+        """⟨N⟩ and its error, from the strata."""
+        of = self.strata
+        return mean_of(of.shares, of.starts, of.counts, of.squares)
+
+
+@dataclass(frozen=True)
+class DynamicsPoint(Point):
+    """The counts of events in ``replicas`` of a ``duration`` T, in some ``rounds``.
+
+    ``events`` is the number of wall hits and disc collisions. ``counts`` is Σ N by event,
+    ``products`` Σ N_a N_b by "a*b" of each pair in the order of ``EVENTS``, ``target`` the relative
+    error asked for by event, and ``status`` reached, budget or impossible. ``strips`` are counts of
+    rare hops from initial states next to their surface.
+    """
+
+    stage: ClassVar[str] = "dynamics"
+
+    radius: float
+    duration: float
+    replicas: int
+    rounds: int
+    events: int
+    counts: dict[str, int]
+    products: dict[str, int]
+    target: dict[str, float]
+    status: dict[str, str]
+    strips: dict[str, StripCount]
+
+    def __post_init__(self):
+        require_positive(self, "duration", "replicas")
+        pairs = combinations_with_replacement(self.counted, 2)
+        require_same_keys("products", self.products, [f"{a}*{b}" for a, b in pairs])
+        for name in ("counts", "target", "status"):
+            require_same_keys(name, getattr(self, name), self.counted)
+        if unknown := self.strips.keys() - self.counts.keys():
+            raise InputError(f"strips.{min(unknown)} is not known")
+        for event in self.counted:
+            self.everywhere(event)
+
+    @property
+    def counted(self):
+        """The events counted, in the order of ``EVENTS``."""
+        return [event for event in EVENTS if event in self.counts]
+
+    def everywhere(self, event):
+        """Return the ``Count`` of an event from initial states in all of configuration space."""
+        return Count(
+            duration=self.duration,
+            share=1.0,
+            replicas=self.replicas,
+            count=self.counts[event],
+            squares=self.products[f"{event}*{event}"],
+            status="counted" if event in self.strips else self.status[event],
+        )
+
+    def strip(self, event):
+        """Return the ``StripCount`` of a rare hop, None of any other event."""
+        return self.strips.get(event)
+
+    def count(self, event):
+        """Return the best ``Count`` of an event, from its strip if there is one."""
+        return self.strip(event) or self.everywhere(event)
+
+    def estimate(self, event, copies=1):
+        """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""
+        return self.count(check_choice("event", event, self.counted)).estimate(copies)
+
+    def sums_of_others(self):
+        """Return the set of events whose number is the sum of other events' in every replica."""
+        return estimates.sums_of_others(self.counts, self.products, self.replicas)
+
+    def combination(self, weights):
+        """Return Σ weight × ⟨N⟩ as an ``Estimate``, given {event: weight} (see ``estimates``)."""
+        return estimates.combination(weights, self.counts, self.products, self.replicas)

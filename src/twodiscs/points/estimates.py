@@ -1,0 +1,321 @@
+"""Estimates with standard errors from counts and samples.
+
+Sums over replicas and samples are integers; variances are computed from them before any rounding.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain, combinations
+
+import numpy as np
+
+from twodiscs.model.checks import InputError, check_fraction, check_integer, check_length
+from twodiscs.model.events import EVENTS
+
+#: The least number of independent events, and of replicas, for an error bar. At 100 the error
+#: itself is known to some 10 %, and ± 1.96 errors have a coverage of 93 to 96 %, also for clustered
+#: counts.
+MIN_EVENTS = 100
+
+#: The least typical weight of insertions, over the least weight whose square is not rounded to 0.
+RESOLVED = 8
+
+#: Allowance for clusters of rare events: the largest mean number of events in a replica with any. A
+#: hop through a narrow gap may be undone soon: just below the thresholds of boxes from 1 × 1 to
+#: 3 × 1, replicas of length 10 and 50 gave Σ N²/Σ N between 1.0 and 1.8.
+CLUSTER = 4
+
+
+def check_real(name, value, low=0.0, high=math.inf, *, ends=False):
+    """Return ``value`` as a float inside (low, high), or inside [low, high] if ``ends``."""
+    text = f"{name} must be a finite number {'from' if ends else 'between'} {low!r} "
+    text += f"{'to' if ends else 'and'} {high!r}, not {value!r}"
+    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
+        raise InputError(text)
+    number = float(value)
+    inside = low <= number <= high if ends else low < number < high
+    if not (inside and math.isfinite(number)):
+        raise InputError(text)
+    return number
+
+
+def moments_of(total, squares, replicas):
+    """Check Σ N, Σ N² and the number of replicas against each other."""
+    total, squares = check_integer("total", total, 0), check_integer("squares", squares, 0)
+    replicas = check_integer("replicas", replicas, 1)
+    if squares < total or squares * replicas < total**2:
+        raise InputError(
+            f"squares must be at least total and total²/replicas, not {squares!r} for total "
+            f"{total!r} of {replicas!r} replicas"
+        )
+    return total, squares, replicas
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value, its standard error, and the number of independent samples.
+
+    Raises ``InputError`` unless the value is finite, the error finite and not negative, and n ≥ 1.
+    """
+
+    value: float
+    stderr: float
+    n: int
+
+    def __post_init__(self):
+        object.__setattr__(self, "value", check_real("value", self.value, low=-math.inf))
+        object.__setattr__(self, "stderr", check_real("stderr", self.stderr, ends=True))
+        object.__setattr__(self, "n", check_integer("n", self.n, 1))
+
+    @property
+    def relative_stderr(self) -> float:
+        """The standard error over the size of the value; infinite if the value is zero."""
+        return self.stderr / abs(self.value) if self.value else math.inf
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """Return the normal confidence interval (low, high)."""
+        half = normal_quantile(confidence) * self.stderr
+        return self.value - half, self.value + half
+
+    def covers(self, exact: float, confidence: float = 0.95) -> bool:
+        """Return whether the confidence interval contains ``exact``."""
+        low, high = self.interval(confidence)
+        return low <= exact <= high
+
+
+def normal_quantile(confidence):
+    """Return the half-width, in standard errors, of a two-sided normal interval; 0 < level < 1."""
+    from scipy.special import ndtri  # a slow import, and few jobs need it
+
+    return float(-ndtri((1 - check_fraction("confidence", confidence)) / 2))
+
+
+def mean_of(values):
+    """Return the mean of independent ``values`` along their first axis, as an ``Estimate``.
+
+    The error comes from their spread. For values in two dimensions the result is a list of
+    estimates, one for each column. Raises ``InputError`` for fewer than two values.
+    """
+    values = np.asarray(values, float)
+    n = len(values)
+    if n < 2:
+        raise InputError(f"values must be at least two, not {n}")
+    means, errors = values.mean(axis=0), np.std(values, axis=0, ddof=1) / math.sqrt(n)
+    if values.ndim == 1:
+        return Estimate(float(means), float(errors), n)
+    return [Estimate(float(m), float(e), n) for m, e in zip(means, errors, strict=True)]
+
+
+class LinearFit:
+    """The straight line through values ``y`` over ``x``, by least squares.
+
+    ``errors`` are the standard errors of ``y``, one for all or one for each. Without them the
+    scatter about the line gives one error for all. ``slope`` is an ``Estimate``, ``constant`` the
+    value at x = 0, ``chi2`` the sum of squared residuals in units of the errors (None without
+    them). If the error of the slope is not known, for two points without errors, it is 0.0. Raises
+    ``InputError`` for fewer than two points.
+    """
+
+    def __init__(self, x, y, errors=None):
+        x, y = np.asarray(x, float), np.asarray(y, float)
+        if x.size < 2 or x.size != y.size:
+            raise InputError(f"x and y must be at least two points, not {x.size} and {y.size}")
+        weights = np.broadcast_to(1.0 if errors is None else 1 / np.asarray(errors, float), x.shape)
+        (slope, self.constant), covariance = np.polyfit(x, y, 1, w=weights, cov="unscaled")
+        residuals = weights * (y - self.constant - slope * x)
+        self.chi2 = None if errors is None else float(residuals @ residuals)
+        scatter = 1.0
+        if errors is None:
+            scatter = float(residuals @ residuals) / (x.size - 2) if x.size > 2 else 0.0
+        self.slope = Estimate(float(slope), math.sqrt(covariance[0, 0] * scatter), x.size)
+
+
+def combination(weights, totals, products, n):
+    """Return Σ_a w_a ⟨N_a⟩ with its error, from sums over n independent samples.
+
+    ``weights`` and ``totals`` map names to w_a and Σ N_a; ``products`` maps "a*b" to Σ N_a N_b for
+    every pair of names, in the order of ``weights``, including squares. The variance is that of the
+    combination in each sample, so it includes correlations and cancellations between the terms. It
+    is exact for the given integers. Raises ``InputError`` for n < 2, for sums that are no integers,
+    and for a missing sum.
+    """
+    n = check_integer("n", n, 2)
+    names = list(weights)
+    w = {a: Fraction(check_real(f"weight of {a}", weights[a], low=-math.inf)) for a in names}
+    try:
+        total = {a: check_integer(f"total of {a}", totals[a], 0) for a in names}
+        product = {
+            (a, b): check_integer(f"product {a}*{b}", products[f"{a}*{b}"], 0)
+            for i, a in enumerate(names)
+            for b in names[i:]
+        }
+    except KeyError as missing:
+        raise InputError(f"the sums have no {missing.args[0]!r}") from None
+    mean = sum(w[a] * total[a] for a in names) / n
+    spread = sum(
+        (1 if a == b else 2) * w[a] * w[b] * (n * value - total[a] * total[b])
+        for (a, b), value in product.items()
+    )
+    if spread < 0:
+        raise InputError("products must be of the same samples as totals: the variance is negative")
+    return Estimate(float(mean), math.sqrt(spread / (n * n * (n - 1))), n)
+
+
+# Monte Carlo ----------------------------------------------------------------------------------
+
+
+def checked_hits(hits, samples):
+    hits, samples = check_integer("hits", hits, 0), check_integer("samples", samples, 1)
+    if hits > samples:
+        raise InputError(f"hits must not exceed the {samples} samples, not {hits!r}")
+    return hits, samples
+
+
+def binomial_estimate(hits, samples, measure):
+    """Return measure · hits/samples with its binomial error, or ``None`` without a hit.
+
+    ``measure`` > 0 is the value if every sample is a hit.
+    """
+    hits, samples = checked_hits(hits, samples)
+    measure = check_real("measure", measure)
+    if not hits:
+        return None
+    fraction = hits / samples
+    error = math.sqrt(fraction * ((samples - hits) / samples) / samples)
+    return Estimate(measure * fraction, measure * error, samples)
+
+
+def weighted_estimate(total, squares, unit, samples, measure):
+    """Return (``measure`` × ⟨w⟩ as an ``Estimate`` or ``None``, effective number of samples).
+
+    ``total`` is Σ w and ``squares`` Σ w² over a number of ``samples``, both in ``unit``, as in
+    points of insertions. The effective number is (Σ w)²/Σ w², the number of samples of equal weight
+    with the same precision, if few have a weight. It is 0 if the squares are too few units for an
+    error. The estimate is None if all weights are 0.
+    """
+    total, squares = check_integer("total", total, 0), check_integer("squares", squares, 0)
+    samples, measure = check_integer("samples", samples, 2), check_real("measure", measure)
+    if not total:
+        return None, 0.0
+    mean, second = total / (unit * samples), squares / (unit * samples)
+    error = math.sqrt(max(second - mean**2, 0.0) / samples)
+    resolved = squares * math.sqrt(unit) >= RESOLVED * total
+    effective = total**2 / (squares * unit) if resolved else 0.0
+    return Estimate(measure * mean, measure * error, samples), effective
+
+
+def effective_misses(total, squares, unit, samples):
+    """Return the number of samples of weight 0 that would cause the same spread.
+
+    Arguments are those of ``weighted_estimate``. Squares are known to one ``unit``, which limits
+    the number.
+    """
+    spread = 1 - total**2 / (squares * unit * samples) if squares else 0.0
+    return max(0.0, spread) * min(unit, samples)
+
+
+# Molecular dynamics ---------------------------------------------------------------------------
+
+
+def effective_count(total, squares, replicas):
+    """Return (mean/error)² of the mean count: independent events of this number are as precise.
+
+    ``total`` = Σ N and ``squares`` = Σ N² over ``replicas``. It is zero if the replicas have no
+    spread, because the error is then not known.
+    """
+    total, squares, replicas = moments_of(total, squares, replicas)
+    spread = replicas * squares - total**2
+    return total**2 * (replicas - 1) / spread if spread else 0.0
+
+
+def has_error_bar(total, squares, replicas):
+    """Return whether there is an error bar: from 100 replicas and 100 effective events on."""
+    return effective_count(total, squares, replicas) >= MIN_EVENTS and replicas >= MIN_EVENTS
+
+
+def mean_time(total, squares, replicas, duration, mean=None):
+    """Return T/⟨N⟩ with its error by the delta method, or ``None`` without a count.
+
+    ``total`` and ``squares`` are Σ N and Σ N² over the replicas that can have the event, each of
+    length ``duration`` = T. The time and the mean count have the same relative error. ``mean``, if
+    given, is a better estimate (count, error) than from these sums. Show the error only if
+    ``has_error_bar`` is true.
+    """
+    total, squares, replicas = moments_of(total, squares, check_integer("replicas", replicas, 2))
+    duration = check_real("duration", duration)
+    if not total:
+        return None
+    if mean is not None:
+        time, relative = duration / mean[0], mean[1] / mean[0]
+        return Estimate(time, time * relative, replicas)
+    time = duration * replicas / total
+    relative = math.sqrt((replicas * squares - total**2) / (total**2 * (replicas - 1)))
+    return Estimate(time, time * relative, replicas)
+
+
+def mean_time_bound(replicas, duration, confidence=0.95):
+    """Return the lower bound on the mean time if ``replicas`` had no event in ``duration``.
+
+    If a replica with any event has at most K on average, it has one with a probability q of at
+    least (T/τ)/K. Then P(none) = (1 − q)^R ≤ exp(−RT/(Kτ)), which is 1 − ``confidence`` at
+    τ = RT/(K ln 1/(1 − confidence)). K is 4, as in the tests. The familiar RT/3 at 95 % has K = 1,
+    and is too large if events come in clusters.
+    """
+    replicas, duration = check_integer("replicas", replicas, 1), check_real("duration", duration)
+    confidence = check_fraction("confidence", confidence)
+    return duration * replicas / (CLUSTER * -math.log1p(-confidence))
+
+
+def sums_of_others(counts, products=None, replicas=None):
+    """Return the set of events whose number is the sum of the numbers of others.
+
+    ``counts`` and ``products`` are Σ N_a and Σ N_a N_b by event. The difference must be zero in
+    every replica, that is, have mean and variance 0; without ``products`` the sums over all
+    replicas decide. The last of the related events in the order of ``EVENTS`` is named: any_wall,
+    if right_wall and top_wall count all hits that are equal by symmetry.
+    """
+    derived = set()
+    for event in reversed(EVENTS):
+        rest = [e for e in EVENTS if e != event and e not in derived and counts.get(e)]
+        terms = chain.from_iterable(combinations(rest, n) for n in range(1, len(rest) + 1))
+        for some in terms if counts.get(event) else ():
+            if sum(counts[e] for e in some) == counts[event]:
+                weights = {e: -1 if e in some else 1 for e in EVENTS if e in (*some, event)}
+                if not products or combination(weights, counts, products, replicas).stderr == 0:
+                    derived.add(event)
+    return derived
+
+
+def density_at_zero(counts, intervals, width):
+    """Return the density at 0 as an ``Estimate``, from p(0) − a t² through the first two bins.
+
+    ``counts`` belong to the first bins of ``width`` from 0, out of a number of independent
+    ``intervals``; the error is for multinomial counts. There is no linear term: discs that touch
+    right after a hop are side by side and exchange velocities along x, which does not change the
+    time of the hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
+    ``intervals``.
+    """
+    n = np.array([check_integer("count", n, 0) for n in counts[:2]], float)
+    if n.size < 2:
+        raise InputError(f"counts must be of at least 2 bins, not {n.size}")
+    intervals, width = check_integer("intervals", intervals), check_length("width", width)
+    if n.sum() > intervals:
+        raise InputError(f"intervals must be at least the {int(n.sum())} counts, not {intervals!r}")
+    weights = np.array([7, -1]) / 6
+    share = weights @ n / intervals
+    spread = weights**2 @ n / intervals - share**2
+    return Estimate(share / width, math.sqrt(spread / intervals) / width, intervals)
+
+
+def density_of_chains_at_zero(densities, errors, linear=False):
+    """Return the density at 0 as ``density_at_zero`` does, and its error.
+
+    ``densities`` of the first two bins have ``errors``, from the spread between chains of intervals
+    for example, which are taken as uncorrelated. If ``linear``, the line through the two bins is
+    straight.
+    """
+    (first, second), (error, other) = densities, errors
+    if linear:
+        return (3 * first - second) / 2, math.hypot(3 * error, other) / 2
+    return (7 * first - second) / 6, math.hypot(7 * error, other) / 6

@@ -1,0 +1,202 @@
+"""Volume and areas by Monte Carlo at one radius, from hits or from weighted insertions."""
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import ClassVar, NamedTuple
+
+from twodiscs.model.checks import InputError, check_choice
+from twodiscs.points import estimates
+from twodiscs.points.base import Point, decoded, require_positive
+from twodiscs.points.estimates import Estimate
+
+#: The areas of walls from which symmetry gives all others.
+WALL_AREAS = ("right_wall_area", "top_wall_area")
+
+
+class Sampled(NamedTuple):
+    """One quantity: its estimate or None, the hits, and the least of hits and misses.
+
+    ``epsilon`` is the thickness of its shell, None without one.
+    """
+
+    estimate: Estimate | None
+    hits: int
+    enough: float
+    epsilon: float | None = None
+
+
+class SampledPoint(Point):
+    """The base of points of volume and areas."""
+
+    stage: ClassVar[str] = "monte_carlo"
+
+    def estimate(self, quantity):
+        """Return the ``Estimate`` of a sampled quantity, None without a hit."""
+        return self.sampled(check_choice("quantity", quantity, self.quantities)).estimate
+
+
+@dataclass(frozen=True)
+class Hits:
+    """Samples in a set, whose size is ``measure`` × hits/samples; ``epsilon`` is a thickness."""
+
+    hits: int
+    measure: float
+    epsilon: float | None
+
+    def __post_init__(self):
+        require_positive(self, "measure")
+
+
+@dataclass(frozen=True)
+class MonteCarloPoint(SampledPoint):
+    """The hits among ``samples``, by quantity: "volume" or "<event>_area".
+
+    ``method`` is monte_carlo or conditioned. ``right_and_top`` is the number of samples in both
+    shells, for scenes in which all walls have four times the area of these two.
+    """
+
+    radius: float
+    method: str
+    samples: int
+    quantities: dict[str, Hits]
+    right_and_top: int | None = None
+
+    def __post_init__(self):
+        require_positive(self, "samples")
+
+    @classmethod
+    def of(cls, content):
+        """Return the point of a dict: a ``MonteCarloPoint``, or an ``InsertionPoint``."""
+        weighted = isinstance(content, dict) and content.get("method") == InsertionPoint.METHOD
+        return decoded(InsertionPoint if weighted else cls, content)
+
+    def sampled(self, quantity):
+        """Return a quantity as ``Sampled``, None if the point does not have it."""
+        if (part := self.quantities.get(quantity)) is None:
+            return None
+        estimate = estimates.binomial_estimate(part.hits, self.samples, part.measure)
+        return Sampled(estimate, part.hits, min(part.hits, self.samples - part.hits), part.epsilon)
+
+    def all_walls(self, scene):
+        """Return the area of all walls from two shells as ``Sampled``, or None."""
+        if self.right_and_top is None or not {*WALL_AREAS} <= self.quantities.keys():
+            return None
+        right, top = (self.quantities[wall] for wall in WALL_AREAS)
+        estimate = estimates.combination(
+            {"right": 4 * right.measure, "top": 4 * top.measure},
+            {"right": right.hits, "top": top.hits},
+            {"right*right": right.hits, "right*top": self.right_and_top, "top*top": top.hits},
+            self.samples,
+        )
+        enough = min(self.sampled(wall).enough for wall in WALL_AREAS)
+        seen = min(right.hits, top.hits) > 0
+        return Sampled(estimate if seen else None, right.hits + top.hits, enough)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Σ w and Σ w² of insertions; ``measure`` is the value for a mean weight of 1."""
+
+    sum: int
+    squares: int
+    measure: float
+
+    def __post_init__(self):
+        require_positive(self, "measure")
+
+
+@dataclass(frozen=True)
+class InsertionPoint(SampledPoint):
+    """The weights of ``samples`` of more than two discs, by quantity: "volume" or "<event>_area".
+
+    Sums are in units of 1/``unit``; ``products`` are Σ w_a w_b by "a*b" of each pair.
+    """
+
+    METHOD: ClassVar[str] = "insertion"
+
+    radius: float
+    method: str
+    samples: int
+    unit: int
+    quantities: dict[str, Weights]
+    products: dict[str, int]
+
+    def __post_init__(self):
+        require_positive(self, "samples", "unit")
+        both = {frozenset(name.split("*")) for name in self.products}
+        pairs = {frozenset(pair) for pair in combinations(self.quantities, 2)}
+        if both != pairs or len(both) < len(self.products):
+            raise InputError("products must have all pairs of quantities")
+
+    def _sums(self, quantity):
+        part = self.quantities[quantity]
+        return part.sum, part.squares, self.unit, self.samples
+
+    def sampled(self, quantity):
+        """Return a quantity as ``Sampled``, None if the point does not have it.
+
+        Its hits are the effective number of samples.
+        """
+        if quantity not in self.quantities:
+            return None
+        sums = self._sums(quantity)
+        found = estimates.weighted_estimate(*sums, self.quantities[quantity].measure)
+        return self._sampled(*found, estimates.effective_misses(*sums))
+
+    def all_walls(self, scene):
+        """Return the area of all walls of a ``Scene`` as ``Sampled``, or None."""
+        walls = [wall for wall in WALL_AREAS if wall.removesuffix("_area") in scene.events]
+        if not {*walls} <= self.quantities.keys():
+            return None
+        weights = {wall: scene.multiplicity(wall.removesuffix("_area")) for wall in walls}
+        misses = min(estimates.effective_misses(*self._sums(wall)) for wall in walls)
+        return self._sampled(*self.total(weights), misses)
+
+    def _sampled(self, estimate, effective, misses):
+        return Sampled(estimate, round(effective), min(effective, misses))
+
+    def _moments(self, weights):
+        """Return ⟨w⟩, ⟨w²⟩ and the effective number of samples of Σ_q weight × quantity.
+
+        ``weights`` are {quantity: weight}. The effective number is the least of all quantities.
+        """
+        parts, samples = self.quantities, self.unit * self.samples
+        scale = {name: weight * parts[name].measure for name, weight in weights.items()}
+
+        def joint(a, b):
+            if a == b:
+                return parts[a].squares
+            return self.products[f"{a}*{b}" if f"{a}*{b}" in self.products else f"{b}*{a}"]
+
+        mean = math.fsum(scale[a] * parts[a].sum for a in scale) / samples
+        second = math.fsum(scale[a] * scale[b] * joint(a, b) for a in scale for b in scale)
+        effective = min(estimates.weighted_estimate(*self._sums(a), 1.0)[1] for a in scale)
+        return mean, second / samples, effective
+
+    def total(self, weights):
+        """Return (Σ_q weight × estimate of q as an ``Estimate`` or None, effective number).
+
+        ``weights`` are {quantity: weight}; the covariance of the quantities is in the error.
+        """
+        mean, second, effective = self._moments(weights)
+        if not mean:
+            return None, 0.0
+        error = math.sqrt(max(second - mean**2, 0.0) / self.samples)
+        return Estimate(mean, error, self.samples), effective
+
+    def ratio(self, weights):
+        """Return (Σ_q weight × estimate of q)/(estimate of the volume) as an ``Estimate``.
+
+        The error is propagated linearly, with the covariance of the quantities and the volume. The
+        result is None if one of them has an effective number of samples below ``MIN_EVENTS``.
+        """
+        volume, _, enough = self._moments({"volume": 1.0})
+        area, _, effective = self._moments(weights)
+        if min(enough, effective) < estimates.MIN_EVENTS:
+            return None
+        # The variance of Σ weight × q/area − volume/V, whose mean is 0.
+        terms = {name: weight / area for name, weight in weights.items()} | {"volume": -1 / volume}
+        variance = max(self._moments(terms)[1], 0.0)
+        ratio = area / volume
+        return Estimate(ratio, ratio * math.sqrt(variance / self.samples), self.samples)

@@ -1,0 +1,196 @@
+"""Pressures, free energy and diffusion: limits, sum rules, derivatives, measured against exact."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from effect_scenes import SCENES
+
+import twodiscs as td
+
+PAPER = td.Scene(1.5, 1.0, 0.2)
+THREE = td.Scene(1.5, 1.0, 0.15, discs=3)
+
+EXACT = {
+    "plain": PAPER,
+    "blocked": td.Scene(1.5, 1.0, 0.3),
+    "narrow": td.Scene(3.0, 1.0, 0.4),
+    "rough": SCENES["rough"],
+    "balls": SCENES["balls"],
+    "masses": td.Scene(1.5, 1.0, 0.2, mass_ratio=3),
+    "channel": SCENES["channel"],
+    "three": THREE,
+    "file": td.Scene(3.0, 0.6, 0.18, discs=5),
+}
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_forces_are_derivatives_of_the_free_energy(name):
+    """−∂(F/kT)/∂w by differences, with the ideal gas that free energies leave out."""
+    scene = EXACT[name]
+    kt, step = 1 / scene.velocity_components, 1e-5
+    others = {"right_wall": math.prod(s for s in (scene.height, scene.depth) if s)}
+    others["top_wall"] = math.prod(s for s in (scene.width, scene.depth) if s)
+    for wall, side in (("right_wall", "width"), ("top_wall", "height")):
+        if f"{wall}_pressure" not in td.pressure(scene):
+            assert scene.periodic
+            continue
+        length = getattr(scene, side)
+        low, high = (td.free_energy(replace(scene, **{side: length + s})) for s in (-step, step))
+        due = kt * (scene.discs / length - (high - low) / (2 * step)) / others[wall]
+        assert td.pressure(scene)[f"{wall}_pressure"] == pytest.approx(due, rel=2e-7)
+
+
+@pytest.mark.parametrize("name", [n for n in EXACT if n not in ("balls", "masses", "channel")])
+def test_walls_and_collisions_tell_one_pressure(name):
+    found = td.pressure(EXACT[name])
+    assert found["wall_pressure"] == pytest.approx(found["virial_pressure"], rel=1e-10)
+    sides = sorted((found["right_wall_pressure"], found["top_wall_pressure"]))
+    assert sides[0] <= found["wall_pressure"] <= sides[1]
+    ratio = found["wall_pressure"] / found["ideal_pressure"]
+    assert found["compressibility_factor"] == pytest.approx(ratio, rel=1e-14)
+
+
+@pytest.mark.parametrize("scene", [PAPER, SCENES["rough"], SCENES["balls"], THREE])
+def test_tiny_discs_are_an_ideal_gas(scene):
+    found = td.pressure(scene.with_radius(1e-7))
+    n, kt = scene.discs, 1 / scene.velocity_components
+    volume = math.prod(scene.side(axis) for axis in scene.axes)
+    assert found.pop("compressibility_factor") == pytest.approx(1, abs=2e-6)
+    for value in found.values():
+        assert value == pytest.approx(n * kt / volume, rel=2e-6)
+    assert td.free_energy(scene.with_radius(1e-7)) == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_the_second_virial_coefficient_is_that_of_discs(discs):
+    """Collisions of N discs of diameter σ in the room A B: 1 + (N − 1) B₂/(A B), B₂ = π σ²/2.
+
+    Beyond that the walls take a share of order σ/A, which two radii extrapolate away.
+    """
+    excess = []
+    for radius in (1e-4, 2e-4):
+        scene = td.Scene(1.5, 1.0, radius, discs=discs)
+        a, b = scene.range_x, scene.range_y
+        kt = 1 / scene.velocity_components
+        norm = (scene.height * a + scene.width * b) / 2
+        factor = td.pressure(scene)["virial_pressure"] * norm / (discs * kt)
+        excess.append((factor - 1) * a * b / ((discs - 1) * (2 * radius) ** 2))
+    assert 2 * excess[0] - excess[1] == pytest.approx(math.pi / 2, rel=1e-5)
+
+
+def test_two_discs_have_the_published_pressure():
+    """The closed form of V below both thresholds, differentiated by hand."""
+    w, h, r = 1.5, 1.0, 0.2
+    a, b = w / 2 - r, h / 2 - r
+    volume = 16 * (a * b) ** 2 - 16 * math.pi * a * b * r**2 + 64 / 3 * (a + b) * r**3 - 8 * r**4
+    right = 8 * a * b**2 - 4 * math.pi * b * r**2 + 16 / 3 * r**3
+    found = td.pressure(PAPER)
+    assert found["right_wall_pressure"] == pytest.approx(2 / 4 * right / volume / h, rel=1e-13)
+    assert td.free_energy(PAPER) == pytest.approx(-math.log(volume / (w * h) ** 2), rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["plain", "blocked", "rough", "three"])
+def test_measured_pressures_are_the_exact_ones(name):
+    """20 scores at 5 sigma: one false alarm in 87,000."""
+    scene = EXACT[name]
+    # Crowds of collisions of rough discs take more replicas.
+    duration = 2e6 if name == "rough" else 1e5
+    found = td.pressure(td.simulate(scene, duration=duration, seed=4))
+    assert list(found) == list(td.pressure(scene))
+    for quantity, exact in td.pressure(scene).items():
+        one = found[quantity]
+        assert one.exact == exact
+        if quantity != "ideal_pressure":
+            assert one.stderr < 0.02 * one.value
+            assert abs(one.z) < 5, quantity
+    assert "virial_pressure" in str(found)
+
+
+def test_errors_of_pressures_are_those_of_independent_runs():
+    """Over 60 seeds: spreads over stated errors are within 5 of their errors, 1/√118."""
+    runs = [td.pressure(td.simulate(PAPER, duration=1e5, seed=n)) for n in range(60)]
+    for quantity in ("right_wall_pressure", "wall_pressure", "virial_pressure"):
+        spread = np.std([run[quantity].value for run in runs], ddof=1)
+        stated = math.sqrt(np.mean([run[quantity].stderr ** 2 for run in runs]))
+        assert abs(spread / stated - 1) < 5 / math.sqrt(118), quantity
+    # Both walls are hit by the same discs: errors as of independent counts would be wrong.
+    walls = [runs[0][f"{wall}_pressure"] for wall in ("right_wall", "top_wall")]
+    with pytest.raises(td.InputError, match="must have different random numbers"):
+        walls[0] + walls[1]
+    assert (runs[0]["virial_pressure"] - runs[1]["virial_pressure"]).exact == 0
+
+
+def test_some_events_tell_some_pressures():
+    found = td.pressure(td.simulate(PAPER, 0.5, budget=1, events="right_wall"))
+    assert list(found) == ["right_wall_pressure", "ideal_pressure"]
+    found = td.pressure(td.simulate(PAPER, 0.5, budget=1, events="disc_collision"))
+    assert list(found) == ["virial_pressure", "ideal_pressure"]
+    four = td.pressure(td.Scene(1.5, 1.0, 0.12, discs=4))
+    assert {name for name, value in four.items() if value is not None} == {"ideal_pressure"}
+
+
+def test_the_free_energy_is_measured_by_the_volume():
+    """Five standard errors: one false alarm in two million."""
+    found = td.free_energy(td.sample(PAPER, 1e6, seed=2))
+    assert found.exact == td.free_energy(PAPER)
+    assert abs(found.z) < 5
+    volume = td.sample(PAPER, 1e6, seed=2, quantities="volume")["volume"]
+    assert found.stderr == pytest.approx(volume.stderr / volume.value)
+    assert (found.quantity, found.unit) == ("excess_free_energy", "kT")
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: td.pressure(SCENES["field"]), "field must be 0 for a pressure"),
+        (lambda: td.pressure(SCENES["unequal"]), "radius_ratio must be 1 for a pressure"),
+        (lambda: td.pressure(SCENES["torus"]), "must have walls along x or y for a pressure"),
+        (lambda: td.pressure(3), "of must be a Scene or a result of simulate, not 3"),
+        (lambda: td.pressure(td.sample(PAPER, 1)), "of must be a Scene or a result of simulate"),
+        (lambda: td.free_energy(SCENES["field"]), "field must be 0 for the free energy"),
+        (lambda: td.free_energy("a"), "of must be a Scene or a result of sample, not 'a'"),
+        (lambda: td.diffusion(PAPER, [1]), "axis must be periodic in the scene for diffusion"),
+        (lambda: td.diffusion(SCENES["channel"], [1], axis="y"), "axis must be one of x for"),
+        (lambda: td.diffusion(SCENES["channel"], [0, 1]), "times must be above 0 for diffusion"),
+    ],
+)
+def test_what_has_no_pressure_or_diffusion_is_refused(call, said):
+    with pytest.raises(td.InputError) as caught:
+        call()
+    assert said in str(caught.value)
+
+
+# Diffusion ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["channel", "torus", "ring"])
+def test_squared_displacements_begin_ballistically(name):
+    """⟨u²⟩ t² with ⟨u²⟩ = (1 − 1/N)/D for N equal discs at total momentum 0, at five sigma."""
+    scene = SCENES.get(name) or td.Scene(2.0, 1.0, 0.1, discs=3, periodic="x")
+    found = td.diffusion(scene, [1e-3, 2e-3], 5e4, seed=3)
+    n = scene.discs
+    # Unit vectors of the D free components: each disc has its share of those along the axis.
+    square = (n - 1) / n / scene.velocity_components
+    for k, time in enumerate(found.times):
+        # Collisions within the time take less than a hundredth of it.
+        due = square * time**2
+        assert abs(found.mean[k, 0] - due) < 5 * found.stderr[k, 0] + 0.01 * due
+    frame = found.frame()
+    assert [*frame] == [
+        "squared_displacement", "diffusion", "squared_displacement_stderr", "diffusion_stderr",
+    ]  # fmt: skip
+    assert found.mean[0, 1] == pytest.approx(found.mean[0, 0] / 2e-3)
+
+
+def test_slopes_know_that_their_ends_are_of_the_same_replicas():
+    """Against the same replicas by ``observe``, and the spread of 40 seeds at five sigma."""
+    ring, times = td.Scene(1.5, 1.0, 0.2, periodic="x"), [1.0, 2.0]
+    runs = [td.diffusion(ring, times, 1, seed=n) for n in range(40)]
+    by_hand = td.observe(ring, lambda a, b: (b["x1"] - a["x1"]) ** 2, times, 1, seed=0)
+    # Two equal discs at total momentum 0 have the same displacement, up to its sign.
+    assert np.allclose(runs[0].mean[:, 0], by_hand.mean, rtol=1e-12)
+    spread = np.std([run.mean[1, 1] for run in runs], ddof=1)
+    assert abs(spread / runs[0].stderr[1, 1] - 1) < 5 / math.sqrt(78) + 0.05
+    assert td.plot(runs[0]).axes[0].get_legend().texts[1].get_text() == "diffusion"

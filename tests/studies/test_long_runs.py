@@ -1,0 +1,131 @@
+"""The long runs of the studies: their tables follow from what is kept, and agree with the build.
+
+A dozen scores are held to five standard errors: a false alarm in fewer than 1e-5 of all seeds.
+"""
+
+import math
+from pathlib import Path
+
+import pytest
+import yaml
+
+from twodiscs.dynamics.two.passages import REPLICAS
+from twodiscs.points.digests import read_json
+from twodiscs_paper.studies.passages import long_run as passages
+from twodiscs_paper.studies.passages.table import Passages
+from twodiscs_paper.studies.tails import long_run as tails
+from twodiscs_paper.studies.tails.table import Tails
+
+PAPER = Path(__file__).resolve().parents[2] / "paper"
+
+
+def kept(name, table):
+    """Return (configuration, rows) of a long run."""
+    folder = PAPER / "long_run" / name
+    configuration = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
+    return configuration, table.read(folder / f"{name}.csv")
+
+
+def of(rows, **where):
+    """Return those of ``rows`` that have these values."""
+    return [row for row in rows if where.items() <= row.items()]
+
+
+def assert_same(made, found):
+    """Assert that rows are the same, numbers to twelve digits."""
+    assert len(made) == len(found)
+    for one, other in zip(made, found, strict=True):
+        for column, value in other.items():
+            if isinstance(value, float):
+                value = pytest.approx(value, rel=1e-12)
+            assert one[column] == value, column
+
+
+def deviation(one, other):
+    """Return by how many standard errors two rows differ."""
+    error = math.hypot(one["stderr"], other["stderr"])
+    return abs(one["estimate"] - other["estimate"]) / error
+
+
+def test_the_table_of_passages_is_that_of_its_counts():
+    configuration, found = kept("passages", Passages)
+    counts = read_json(PAPER / "long_run" / "passages" / "clusters.json")
+    made = [
+        row
+        for one in configuration["thresholds"]
+        for row in passages.rows(one, counts[one["name"]])
+    ]
+    assert_same(made, found)
+    for one in configuration["thresholds"]:
+        for count in counts[one["name"]]:
+            assert sum(hops for _, hops in count["sizes"]) == -(-one["hops"] // REPLICAS) * REPLICAS
+
+
+def test_passages_agree_with_those_of_the_build():
+    _, found = kept("passages", Passages)
+    expected = of(Passages.read(PAPER / "expected" / "passages.csv"), scene="paper")
+    compared = 0
+    for row in of(found, quantity="coefficient"):
+        where = {k: row[k] for k in ("quantity", "event", "distance", "moment_of_inertia", "time")}
+        for other in of(expected, **where):
+            assert deviation(row, other) < 5
+            compared += 1
+    assert compared >= 4
+    once, twice = of(found, scene="pause", quantity="coefficient")
+    assert twice["time"] == 2 * once["time"]
+    assert twice["estimate"] < once["estimate"]  # the same states: later hops undo passages
+
+
+def test_a_small_run_counts_every_hop_once():
+    one = {
+        "name": "small", "width": 1.5, "height": 1.0, "hop": "horizontal_hop",
+        "first": 7, "last": 7, "hops": 2 * REPLICAS - 1, "seed": 1, "pauses": [1, 2],
+    }  # fmt: skip
+    counts = passages.counted(one)
+    assert [sum(hops for _, hops in count["sizes"]) for count in counts] == [2 * REPLICAS] * 2
+    assert counts[1]["events"] > counts[0]["events"]
+    assert [row["quantity"] for row in passages.rows(one, counts)] == [
+        "coefficient", "passage_time", "coefficient", "passage_time",
+    ]  # fmt: skip
+
+
+def test_the_rows_of_tails_follow_from_the_probabilities():
+    configuration, found = kept("tails", Tails)
+    replicas = configuration["counted"]["replicas"] * configuration["counted"]["runs"]
+    counted = of(found, quantity="survival", method="counted")
+    assert [round(row["time"] / row["exact_mean"]) for row in counted] == configuration["counted"][
+        "times"
+    ]
+    for row in counted:
+        number = row["estimate"] * 8 * replicas
+        assert number == pytest.approx(round(number), abs=1e-3)
+    rates = of(found, quantity="rate")
+    for row, early, late in zip(rates, counted[:-1], counted[1:], strict=True):
+        ratio = math.log(early["estimate"] / late["estimate"])
+        assert row["estimate"] == pytest.approx(ratio / (late["time"] - early["time"]))
+    weighted = of(found, quantity="survival", method="weighted")
+    for row, one in zip(of(found, quantity="approach"), weighted, strict=True):
+        excess = one["estimate"] / one["law"] - 1
+        assert row["estimate"] == pytest.approx(excess * (one["time"] / one["exact_mean"]) ** 0.5)
+
+
+def test_tails_agree_with_those_of_the_build():
+    _, found = kept("tails", Tails)
+    expected = Tails.read(PAPER / "expected" / "tails.csv")
+    compared = 0
+    for row in of(found, quantity="survival"):
+        for other in of(expected, **{k: row[k] for k in ("event", "radius", "quantity", "method")}):
+            if other["time"] == pytest.approx(row["time"]) and other["stderr"]:
+                assert deviation(row, other) < 5
+                compared += 1
+    assert compared >= 10
+
+
+def test_errors_of_joined_runs_are_those_of_as_many_replicas():
+    one = {"width": 1.5, "height": 1.0, "event": "vertical_hop", "radius": 0.3, "times": [2, 4]}
+    many = tails.counted(one | {"replicas": 500, "runs": 16, "seed": 5})
+    single = tails.counted(one | {"replicas": 8000, "runs": 1, "seed": 50})
+    for joined, alone in zip(many, single, strict=True):
+        assert deviation(joined, alone) < 5
+        # An error of 8000 replicas is itself known to some per cent.
+        assert joined["stderr"] == pytest.approx(alone["stderr"], rel=0.25)
