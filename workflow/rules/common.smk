@@ -175,9 +175,7 @@ def origin(w):
 def radius_of(w):
     """Return the arguments for the radius of a trajectory, for figures of a trajectory."""
     has_trajectory = "trajectory" in ENTRIES[w.figure].tables
-    return (
-        ["--radius", str(about(w).quantities.trajectory)] if has_trajectory else []
-    )
+    return ["--radius", str(about(w).quantities.trajectory)] if has_trajectory else []
 
 
 def figure_code(w):
