@@ -32,7 +32,7 @@ def test_two_discs_have_the_weights_of_a_scene():
         # Four pairs of a disc and a wall are counted together here.
         each = weight * (4 if event.endswith("wall") else 1)
         assert each == pytest.approx(known[event], rel=1e-14)
-    with pytest.raises(InputError, match="ring"):
+    with pytest.raises(InputError, match="x is periodic"):
         rates.virial_weights(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
 
 

@@ -76,8 +76,6 @@ MEAN_SCORES = {"comparison": "z_mean"}
 EVERYWHERE, STRIPS = {"starts": "invariant"}, {"starts": "strip"}
 
 AGREEMENT = (
-    grid("scenes", {}, "scene", DISTINCT_IN_WORDS),
-    grid("radii", {}, "radius", COUNTED),
     check("comparisons", COMPARED, "passed", COUNTED),
     check("tests", TESTS, "passed", COUNTED),
     check("tests_largest", TESTS, "z", largest()),
@@ -226,12 +224,6 @@ DISTRIBUTIONS = (
     ),
     *_tail("collisions", "disc_collision"),
     *_tail("hops", "vertical_hop"),
-    tails(
-        "tail_hops_approach",
-        {"event": "vertical_hop", "quantity": "approach"},
-        ESTIMATE,
-        WITH_ERROR,
-    ),
     tails("decay_rate", DECAY, TIMES_MEAN, WITH_ERROR),
     tails("decay_radius", DECAY, "radius", digits(3)),
     tails("decay_first", DECAY, "time/exact_mean", digits(2)),
