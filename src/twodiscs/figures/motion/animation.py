@@ -80,6 +80,9 @@ def moments(rows, step):
 class Stage:
     """The panels and their moving parts, for one stretch of a trajectory."""
 
+    #: Points: what the sign of the hop takes above the box.
+    above = SIGN
+
     def __init__(self, box, radius, rows):
         self.scene = scene = box.scene(check_length("radius", radius))
         width, height = box.width, box.height
@@ -97,7 +100,7 @@ class Stage:
         inches = drawing.scale(width, height, ACROSS - LEFT - RIGHT, TALLEST)
         beneath = BOTTOM + STRIP + GAP
         more = panels.of_radius(radius)
-        up = 0 if panels.is_short(box, radius) or box.family == "many" else SIGN
+        up = 0 if panels.is_short(box, radius) else self.above
         room = LARGER * panels.room(box, more) + up / 72
         self.figure = new_figure(beneath + inches * height + TOP + room, ACROSS)
         self.figure.set_dpi(DPI)
@@ -286,6 +289,8 @@ class Stage:
 
 class StageOfMany(Stage):
     """The panels of more than two discs: all discs, and beneath their positions over time."""
+
+    above = 0
 
     def moments(self, rows, step):
         """Return (times of the frames, None, the first of them), the same number as for a hop."""

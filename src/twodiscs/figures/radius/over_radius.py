@@ -142,7 +142,7 @@ def _approach(axes, box, by_quantity):
         if part.is_visible():
             handles.append(Line2D([], [], label=label, color=colour))
         shown += [time for time in times if time]
-        if box.family == "many":
+        if None in times:
             shown += [row["estimate"] for row in part.rows if row["estimate"]]
         if box.is_plain:
             near = distances < LAW
