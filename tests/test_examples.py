@@ -347,7 +347,7 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
     at_a_radius = [row for row in rows if row["radius"] is not None]
     text = " ".join(page("docs/reading-check.md").split())
     counts = (len(at_a_radius), len({row["radius"] for row in at_a_radius}))
-    said = re.search(r"has (\d+) rows at (\w+) radii, and (\d+) on all", text)
+    said = re.search(r"has (\d+) rows at (\w+) radii, and (\d+) rows over all", text)
     assert (int(said[1]), {"two": 2}[said[2]]) == counts
     assert int(said[3]) == len(rows) - counts[0]
 
