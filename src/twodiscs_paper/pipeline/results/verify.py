@@ -86,7 +86,7 @@ def _tolerance(column, row):
         return 0.0
     if column == "value" and row.get("part") in OF_ROUNDINGS:
         return math.inf
-    if column in ("z", "p"):
+    if column in ("z", "monte_carlo_z", "p"):
         return SCORE
     if column == "estimate" and OF_SCORES & {row.get("comparison"), row.get("quantity")}:
         return SCORE
