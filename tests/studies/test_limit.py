@@ -1,0 +1,73 @@
+"""The limit of smooth discs at a threshold, from which c is computed."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from twodiscs.model.checks import InputError
+from twodiscs_paper.studies.passages import limit
+
+#: False alarms of a comparison with an error bar: one in a million.
+SIGMA = 5
+
+
+@pytest.fixture(scope="module")
+def states():
+    """Slacks uniform in the room at the separation 1/2, and velocities (4, 200)."""
+    stream = np.random.default_rng(3)
+    a, b = stream.random((2, 200))
+    a, b = np.where(a + b > 1, 1 - a, a), np.where(a + b > 1, 1 - b, b)
+    return np.array([a / 8, b / 8, *(8 * stream.normal(size=(2, 200)))])
+
+
+@pytest.mark.parametrize(("rate", "end"), [(0.7, 3.0), (-0.9, 0.2)])
+def test_slacks_stay_in_the_room(states, rate, end):
+    for state in states.T.copy():
+        assert limit.fly(state, 0.5, rate, end, math.inf)
+        assert min(state[:2]) >= 0
+        assert state[0] + state[1] <= end**2 / 2 * (1 + 1e-12)
+
+
+def test_reversed_velocities_retrace_the_motion(states):
+    for start in states.T:
+        state = start.copy()
+        limit.fly(state, 0.5, 0.7, 3.0, math.inf)
+        state[2:] *= -1
+        limit.fly(state, 3.0, -0.7, 0.5, math.inf)
+        state[2:] *= -1
+        # Some dozen events; roundings grow by less than a factor of two in each.
+        np.testing.assert_allclose(state, start, rtol=0, atol=1e-8)
+
+
+def test_the_invariants_are_kept_in_the_neck():
+    # At separations far below 1 the room changes slowly: w = v × room changes by a share of the
+    # order of u³ g/2w, 4e-3 at most here.
+    state = np.array([0.001, 0.002, 1.0 / 0.005, -0.6 / 0.005])
+    limit.fly(state, 0.1, 1.0, 0.2, math.inf)
+    assert math.hypot(*state[2:]) * 0.02 == pytest.approx(math.hypot(1, 0.6), rel=4e-3)
+
+
+def test_early_turns_pass_with_the_exact_probability():
+    # With invariants kept for ever each pair with P² > 2 (w1² + w2²) passes, whenever it turns.
+    def integrand(cosine, rest):
+        total = math.sqrt(2 * rest) * cosine
+        return 1.5 * math.sqrt(rest) * (1 + total / math.sqrt(2 - total**2))
+
+    exact, _ = dblquad(integrand, 0, 1, math.sqrt(0.5), 1)
+    found = limit.amplitude(24, 5, near=1e9)
+    longest = limit.NEAR * limit.FARTHEST
+    assert abs(found.value / longest - exact) < SIGMA * found.stderr / longest
+
+
+def test_c_does_not_depend_on_where_invariants_are_kept():
+    early, late = limit.amplitude(48, 6, near=0.25), limit.amplitude(96, 7, near=0.45)
+    assert abs(early.value - late.value) < SIGMA * math.hypot(early.stderr, late.stderr)
+
+
+def test_numbers_out_of_range_are_refused():
+    with pytest.raises(InputError, match="blocks must be"):
+        limit.amplitude(1, 5)
+    with pytest.raises(InputError, match="seed must be"):
+        limit.amplitude(2, -1)
