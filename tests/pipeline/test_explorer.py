@@ -82,9 +82,9 @@ def numbers(box, radius):
     return {"volume": exact.volume(scene), "areas": areas, "times": times}
 
 
-def evaluated(expression, folder):
-    """Return the value of an expression about the formulas, by Node or else by Chromium."""
-    script = (SOURCES / "theory.js").read_text(encoding="utf-8")
+def evaluated(expression, folder, *scripts):
+    """Return the value of an expression about the ``scripts``, by Node or else by Chromium."""
+    script = "".join((SOURCES / name).read_text(encoding="utf-8") for name in scripts)
     if node := shutil.which("node"):
         script += f"\nconsole.log(JSON.stringify({expression}));"
         run = subprocess.run([node, "-"], input=script, capture_output=True, text=True, check=True)
@@ -98,7 +98,9 @@ def evaluated(expression, folder):
 
 def test_formulas_in_javascript_are_those_of_the_package(tmp_path):
     cases = [[box.width, box.height, radius] for box, radius in CASES]
-    computed = evaluated(f"{json.dumps(cases)}.map((sides) => exact(...sides))", tmp_path)
+    computed = evaluated(
+        f"{json.dumps(cases)}.map((sides) => exact(...sides))", tmp_path, "theory.js"
+    )
     assert sum(written is None for written in computed) > 20
     assert sum(written is not None for written in computed) > 300
     for (box, radius), written in zip(CASES, computed, strict=True):
@@ -117,11 +119,33 @@ def test_formulas_in_javascript_are_those_of_the_package(tmp_path):
 
 def test_limits_in_javascript_are_those_of_the_package(tmp_path):
     sides = [[box.width, box.height] for box in BOXES]
-    largest = evaluated(f"{json.dumps(sides)}.map((box) => largestRadius(...box))", tmp_path)
-    ends = evaluated(f"{json.dumps(sides)}.map((box) => thresholds(...box))", tmp_path)
+    largest = evaluated(
+        f"{json.dumps(sides)}.map((box) => largestRadius(...box))", tmp_path, "theory.js"
+    )
+    ends = evaluated(f"{json.dumps(sides)}.map((box) => thresholds(...box))", tmp_path, "theory.js")
     assert largest == pytest.approx([box.largest_radius for box in BOXES], rel=1e-15)
     for box, named in zip(BOXES, ends, strict=True):
         assert [radius for radius, _ in named] == [*box.thresholds]
+
+
+# Errors -------------------------------------------------------------------------------------------
+
+#: Independent scores of each event, of as few runs as have an error.
+SCORES = 600
+
+
+def test_scores_scatter_by_one(tmp_path):
+    """The mean square of scores of Student's law with 99 degrees of freedom, at 5 sigma."""
+    scores = evaluated(
+        f"Array.from({{length: {SCORES}}}, (_, seed) => {{"
+        " const many = new Runs(1.5, 1, 0.2, 1000 + seed);"
+        " while (many.done < ENOUGH) many.advance(100, ENOUGH);"
+        " return [0, 2, 3].map(i => many.measured(i).z); })",
+        tmp_path, "theory.js", "dynamics.js",
+    )  # fmt: skip
+    for z in zip(*scores, strict=True):
+        square = sum(score * score for score in z) / SCORES
+        assert abs(square - 99 / 97) < SIGMAS * math.sqrt(2.2 / SCORES)
 
 
 # Points -------------------------------------------------------------------------------------------
@@ -229,19 +253,6 @@ def test_the_same_seed_gives_the_same_counts_and_more_runs_a_smaller_error(drive
     more = counted(driven("radius=0.2&seed=3&runs=8000"), 8000)
     for event, row in more.items():
         assert value(row["error"]) == pytest.approx(value(first[event]["error"]) / 4, rel=0.3)
-
-
-def test_scores_scatter_by_one(driven):
-    """The sum of squares of 40 scores with different seeds: χ² with a false alarm of 1e-6."""
-    page = driven("runs=0")
-    scores = page.look(
-        "Array.from({length: 40}, (_, seed) => {"
-        " const many = new Runs(1.5, 1, 0.2, 1000 + seed);"
-        " while (many.done < 400) many.advance(100);"
-        " return [0, 2, 3].map(i => many.measured(i).z); })"
-    )
-    for z in zip(*scores, strict=True):
-        assert 12 < sum(score * score for score in z) < 98
 
 
 #: Means, and means of squares, of initial states: separations, centres, velocities; worst errors.

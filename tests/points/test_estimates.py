@@ -232,6 +232,10 @@ def test_weights_below_their_resolution_have_no_error():
     hits = samples - 90
     assert estimates.effective_misses(unit * hits, unit * hits, unit, samples) == pytest.approx(90)
     assert estimates.effective_misses(5, 0, unit, samples) == 0
+    # Half of far more samples than there are units: the squares show half of the units.
+    samples = 2**10 * unit
+    some = unit * samples // 2
+    assert estimates.effective_misses(some, some, unit, samples) == unit / 2
 
 
 def test_bound_from_no_event_holds_for_clusters():
@@ -300,3 +304,10 @@ def test_the_density_at_zero_of_chains_is_that_of_counts_with_other_errors():
     binomial = [math.sqrt(n) / intervals / width for n in counts]
     _, error = estimates.density_of_chains_at_zero(densities, binomial)
     assert error == pytest.approx(independent.stderr, rel=0.01)
+    # The straight line through the middles of both bins.
+    value, error = estimates.density_of_chains_at_zero(densities, errors, linear=True)
+    (_, constant), covariance = np.polyfit(
+        [0.5, 1.5], densities, 1, w=1 / np.array(errors), cov="unscaled"
+    )
+    assert value == pytest.approx(constant)
+    assert error == pytest.approx(math.sqrt(covariance[1, 1]))

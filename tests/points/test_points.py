@@ -1,6 +1,7 @@
 """Points as objects and as files: a written point is read unchanged, other files are errors."""
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from twodiscs.points.base import by_radius
 from twodiscs.points.digests import read_json, write_json
 from twodiscs.points.dynamics import Strata, StripCount
 from twodiscs.points.intervals import WideBins
-from twodiscs.points.monte_carlo import InsertionPoint, Weights
+from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
 from twodiscs_paper.pipeline.jobs.table import POINTS
 
 LAW = Laws(BOX.scene(0.1))
@@ -197,3 +198,50 @@ def test_points_are_sorted_and_a_radius_must_not_come_twice():
     assert [point.radius for point in by_radius(points)] == [0.1, 0.2, 0.3]
     with pytest.raises(ValueError, match=r"points must not contain radius 0\.02 twice"):
         by_radius([counts_point(0.02)] * 2)
+
+
+def test_the_error_of_a_density_is_that_of_a_ratio_of_two_numbers_of_each_chain():
+    """Chains with more intervals have more of them in a bin: the residuals have the error."""
+    chains, width = 200, 0.25
+    intervals = RNG.poisson(30, chains)
+    counts = [RNG.binomial(intervals, 0.4), RNG.binomial(intervals, 0.1)]
+    bins = {
+        "counts": [int(c.sum()) for c in counts],
+        "squares": [int((c * c).sum()) for c in counts],
+        "products": [int((c * intervals).sum()) for c in counts],
+    }
+    total = int(intervals.sum())
+    point = bins_point(
+        0.1, chains=chains, intervals=total, bin_width=width,
+        intervals_squared=int((intervals**2).sum()), wide=WideBins(edges=[0, 1, 2], **bins), **bins,
+    )  # fmt: skip
+    for found, c in zip(point.bins(), counts, strict=False):
+        density = c.sum() / total
+        residuals = (c - density * intervals).std(ddof=1) * math.sqrt(chains) / total
+        assert found.density.value == pytest.approx(density / width)
+        assert found.density.stderr == pytest.approx(residuals / width)
+
+
+def test_the_error_of_a_ratio_of_insertions_is_that_of_its_samples():
+    samples, unit = 5000, 1
+    common = RNG.poisson(100, samples)
+    volume, area = common + RNG.poisson(50, samples), common + RNG.poisson(20, samples)
+    point = InsertionPoint(
+        radius=0.1, method="insertion", samples=samples, unit=unit,
+        quantities={
+            "volume": Weights(int(volume.sum()), int((volume**2).sum()), 3.0),
+            "top_wall_area": Weights(int(area.sum()), int((area**2).sum()), 4.0),
+        },
+        products={"volume*top_wall_area": int((volume * area).sum())},
+    )  # fmt: skip
+    found = point.ratio({"top_wall_area": 2.0})
+    ratio = 2 * 4 * area.mean() / (3 * volume.mean())
+    relative = (area / area.mean() - volume / volume.mean()).std() / math.sqrt(samples)
+    assert found.value == pytest.approx(ratio)
+    assert found.relative_stderr == pytest.approx(relative)
+
+
+def test_the_area_of_all_walls_is_as_sure_as_that_of_the_rarer_wall():
+    hits = {"right_wall_area": Hits(5000, 1.0, 0.1), "top_wall_area": Hits(50, 1.0, 0.1)}
+    point = MonteCarloPoint(0.1, "monte_carlo", 10**6, hits, right_and_top=1)
+    assert point.all_walls(BOX.scene(0.1)).enough == 50

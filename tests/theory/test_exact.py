@@ -5,6 +5,7 @@ import math
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from mpmath import mp, mpf
 from theory.antiderivatives import DIGITS, Profile, lengths, reference, relative_error
@@ -128,3 +129,23 @@ def test_plain_scenes_need_the_standard_library_only():
         [sys.executable, "-c", code], check=True, timeout=60, text=True, capture_output=True
     )
     assert not {"numpy", "mpmath", "scipy", "numba"} & set(run.stdout.split())
+
+
+@pytest.mark.parametrize(
+    "effects", [{"radius_ratio": 0.4}, {"periodic": "x", "radius_ratio": 1.5}, {"depth": 0.8}]
+)
+def test_the_free_fraction_is_that_of_draws_in_the_prism(effects):
+    """Centres between the walls of each disc, at 5 sigma."""
+    scene, rng, draws = Scene(1.5, 1.0, 0.15, **effects), np.random.default_rng(1), 200_000
+    square = np.zeros(draws)
+    for axis in scene.axes:
+        side = scene.side(axis)
+        ring = axis in scene.periodic
+        first, second = (
+            rng.uniform(0.0 if ring else r, side - (0.0 if ring else r), draws) for r in scene.radii
+        )
+        apart = np.abs(first - second)
+        square += np.minimum(apart, side - apart if ring else apart) ** 2
+    free = np.mean(square > scene.contact_distance**2)
+    expected = exact.free_fraction(scene)
+    assert abs(free - expected) < 5 * math.sqrt(expected * (1 - expected) / draws)

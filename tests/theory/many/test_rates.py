@@ -36,28 +36,6 @@ def test_two_discs_have_the_weights_of_a_scene():
         rates.virial_weights(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
 
 
-@pytest.mark.parametrize("scene", KNOWN, ids=repr)
-def test_bonferroni_bounds_hold(scene):
-    low, high = rates.bonferroni_bounds(scene)
-    log_all = scene.discs * math.log(scene.range_x * scene.range_y)
-    fraction = math.exp(exact.measures(scene, hops=False).log_volume - log_all)
-    # For two discs they are equal; a difference from 1 has a rounding of that.
-    assert low - 1e-15 <= fraction <= high + 1e-15
-
-
-def test_bonferroni_bounds_are_close_for_small_discs():
-    """They differ by the second order in the number of overlapping pairs."""
-    for discs in (3, 8, 64):
-        scene = Scene(1.5, 1.0, 1e-3, discs=discs)
-        low, high = rates.bonferroni_bounds(scene)
-        pairs = discs * (discs - 1) / 2 * rates.overlap_of_two(scene)
-        assert 0 < high - low <= pairs**2
-    scene = Scene(1.5, 1.0, 1e-3, discs=3)
-    fraction = math.exp(exact.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
-    low, high = rates.bonferroni_bounds(scene)
-    assert low < fraction < high
-
-
 @pytest.mark.parametrize("discs", [2, 3])
 def test_small_discs(discs):
     """The error of the first orders falls like the next one: σ³ for walls, σ² over collisions."""

@@ -140,9 +140,9 @@ def can_be_level(scene, axis):
     along, across = scene.range_x, scene.range_y
     if axis == "x":
         along, across = across, along
-    ring = bool(scene.periodic) and axis == "y"
+    ring = bool(scene.periodic) and axis == "y"  # of at least 2σ, see ``largest_known_radius``
     sigma = scene.contact_distance
-    if along <= (2 * sigma if ring else sigma):
+    if along <= sigma:
         return False
     beside = (along - sigma) / 2 if ring else max(along / 2, along - sigma)
     return scene.discs < 3 or math.hypot(beside, across) > sigma

@@ -103,22 +103,6 @@ def overlap_of_two(scene):
     return 1 - plain.exact(two)[0] / (scene.range_x * scene.range_y) ** 2
 
 
-def bonferroni_bounds(scene):
-    """Return (lower, upper) bounds of V/(AB)^N, the probability of no overlap.
-
-    With the probability q of a pair they are 1 − n q and 1 − n q + S₂, n = N(N − 1)/2 (Bonferroni
-    1936). S₂ is the sum of the probabilities that two given pairs overlap. It is q² for pairs
-    without a common disc, and otherwise at most q times πσ²/(AB), the largest fraction of the box
-    that one disc blocks for another.
-    """
-    n, q = scene.discs * (scene.discs - 1) / 2, overlap_of_two(scene)
-    closed = min(1.0, math.pi * scene.contact_distance**2 / (scene.range_x * scene.range_y))
-    sharing = n * (scene.discs - 2)
-    apart = n * (n - 1) / 2 - sharing
-    first = 1 - n * q
-    return max(0.0, first), min(1.0, first + sharing * q * closed + apart * q * q)
-
-
 def small_disc_rates(scene):
     """Return {class of events: rate} without hops, for small σ at fixed ranges A and B.
 
