@@ -25,6 +25,7 @@ from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
+from twodiscs.points.estimates import mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
@@ -51,8 +52,8 @@ def timed(work):
     return result, time.process_time() - start
 
 
-def interleaved(variants, repetitions=REPETITIONS):
-    """Return {name: median speed} of {name: function that returns (units, seconds)}."""
+def in_turns(variants, repetitions=REPETITIONS):
+    """Return {name: speeds} of {name: function that returns (units, seconds)}."""
     for work in variants.values():
         work()
     speeds = {name: [] for name in variants}
@@ -60,7 +61,17 @@ def interleaved(variants, repetitions=REPETITIONS):
         for name, work in variants.items():
             units, seconds = work()
             speeds[name].append(units / seconds)
+    return speeds
+
+
+def medians(speeds):
+    """Return {name: median} of {name: speeds}."""
     return {name: median(values) for name, values in speeds.items()}
+
+
+def interleaved(variants, repetitions=REPETITIONS):
+    """Return {name: median speed} of {name: function that returns (units, seconds)}."""
+    return medians(in_turns(variants, repetitions))
 
 
 def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
@@ -251,13 +262,34 @@ def compared(name, values, unit, baseline, larger_is_better=True):
 MANY = {"lockstep": partial(lockstep, BLOCKS // 8, replace(SCENE, radius=SCENE.radius / 2))}
 MANY |= {f"discs_{discs}": partial(lockstep_of_many, discs) for discs in (2, 3, 4, 8)}
 
-#: Numbers of discs in a box of 0.75 × 1 for each, at half the radius; with hops, and without.
-NUMBERS = (3, 8, 16, 64, 256, 1024)
+#: Numbers of discs in a box of 0.75 × 1 for each, at half the radius: few in lock step, and many in
+#: cells. Variants with hops have one of these names, variants without hops the other one.
+FEW, LARGE = (3, 8, 16), (64, 256, 1024)
+WITH_HOPS, WITHOUT_HOPS = "discs_{}", "discs_{}_without_hops"
 BY_NUMBER = {"lockstep": MANY["lockstep"]} | {
-    f"discs_{discs}{'' if hops else '_without_hops'}": partial(in_long_box, discs, hops)
-    for hops in (True, False)
-    for discs in NUMBERS
+    name.format(discs): partial(in_long_box, discs, name == WITH_HOPS)
+    for name in (WITH_HOPS, WITHOUT_HOPS)
+    for discs in (*FEW, *LARGE)
 }
+
+
+def exponent_rows(speeds):
+    """Yield the rows of the powers of N with which the time per event grows.
+
+    ``speeds`` are lists, {variant of ``BY_NUMBER``: speeds}. The power is fitted in each turn, and
+    the error comes from the differences between turns.
+    """
+    for numbers, variant, names in (
+        (FEW, "few_discs", WITH_HOPS),
+        (LARGE, "many_discs", WITH_HOPS),
+        (LARGE, "many_discs_without_hops", WITHOUT_HOPS),
+    ):
+        times = -np.log([speeds[names.format(discs)] for discs in numbers])
+        power = mean_of(np.polyfit(np.log(numbers), times, 1)[0])
+        yield {
+            "benchmark": "exponent_of_time_by_number", "variant": variant, "value": power.value,
+            "unit": "1", "stderr": power.stderr,
+        }  # fmt: skip
 
 
 def benchmarks(effects):
@@ -283,7 +315,9 @@ def benchmarks(effects):
         "numpy",
     )
     add("md_events_per_second_of_many", interleaved(MANY), "1/s", "lockstep")
-    add("md_events_per_second_by_number", interleaved(BY_NUMBER), "1/s", "lockstep")
+    by_number = in_turns(BY_NUMBER)
+    add("md_events_per_second_by_number", medians(by_number), "1/s", "lockstep")
+    rows.extend(exponent_rows(by_number))
     for error in (1e-3, 1e-4):
         events = count_until(error)[0]
         seconds = {
@@ -317,12 +351,14 @@ def main():
     effects = {r.name: r.box.effects for r in requests if r.box.family == "effects"}
     quick = given.table == "effects_cost"
     rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
+    table = EffectsCost if quick else Benchmark
     Path(given.output).parent.mkdir(parents=True, exist_ok=True)
-    (EffectsCost if quick else Benchmark).write(given.output, rows)
+    table.write(given.output, [table.empty(**row) for row in rows])
     for row in rows:
+        last = f"± {row['stderr']:.2g}" if "stderr" in row else f"{row['ratio']:.3g}"
         print(
-            f"{row['benchmark']:<34}{row['variant']:<20}{row['value']:>14.4g} {row['unit']:<4}"
-            f"{row['ratio']:>10.3g}"
+            f"{row['benchmark']:<34}{row['variant']:<24}{row['value']:>10.4g} {row['unit']:<4}"
+            f"{last:>10}"
         )
 
 

@@ -30,7 +30,7 @@ from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.studies.effects import figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import SCENES
-from twodiscs_paper.studies.effects.table import Effects, EffectsCost, EffectsCurves
+from twodiscs_paper.studies.effects.table import Benchmark, Effects, EffectsCost, EffectsCurves
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]
@@ -305,3 +305,18 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
     }  # fmt: skip
     assert (True, ("disc_collision",)) in watched
     assert (False, (*WALLS, "any_wall")) in watched
+
+
+def test_the_power_of_the_number_of_discs_is_that_of_the_times():
+    """Times ∝ N^p with p of 1.5 and 2.5 in two turns have the mean 2 and the error 1/2."""
+    speeds = {
+        name.format(n): [n**-1.5, n**-2.5]
+        for name in (benchmark.WITH_HOPS, benchmark.WITHOUT_HOPS)
+        for n in (*benchmark.FEW, *benchmark.LARGE)
+    }
+    rows = [Benchmark.empty(**row) for row in benchmark.exponent_rows(speeds)]
+    assert {row["variant"] for row in rows} == {
+        "few_discs", "many_discs", "many_discs_without_hops",
+    }  # fmt: skip
+    for row in rows:
+        assert (row["value"], row["stderr"]) == pytest.approx((2, 0.5))

@@ -100,8 +100,11 @@ class EffectsCost(Table):
     unit: TEXT
     """unit of the value"""
     ratio: NUMBER
-    """how many times better than the baseline of the same run"""
+    """how many times better than the baseline of the same run; empty for a fit"""
 
 
 class Benchmark(EffectsCost):
     """One row per benchmark and variant, all variants of a benchmark measured in one run."""
+
+    stderr: Column(float, "as value")
+    """standard error of a fit; empty for a median"""
