@@ -356,7 +356,7 @@ class Measurements(Result, Mapping[str, Measurement]):
     def __init__(self, kind, scene, rows, settings, kept, stream=None, note=None):
         self.kind, self.scene, self.rows = kind, scene, rows
         self.settings, self.kept, self.note = settings, kept, note
-        found = (_measurement(scene, row, stream) for row in rows)
+        found = (measurement(scene, row, stream) for row in rows)
         self._measurements = Quantities((one.quantity, one) for one in found)
 
     def __getitem__(self, name: str) -> Measurement:
@@ -437,7 +437,8 @@ def _streams(kind, stream):
     return frozenset() if stream is None else frozenset([(kind, stream)])
 
 
-def _measurement(scene, row, stream):
+def measurement(scene, row, stream=None):
+    """Return the ``Measurement`` of a row of a table; ``stream`` is the seed of its randomness."""
     quantity = quantity_of(row)
     return Measurement(
         quantity,
