@@ -189,9 +189,13 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     # The configuration may contain the lines in its comments.
     text = Path("my.yaml").read_text()
     for line in re.findall(r"# (\w+: .*)", text):
-        assert re.match(r"(seed|shared|radii|effects|watch): ", line), line
+        assert re.match(r"(seed|shared|effects|watch|monte_carlo): ", line), line
     Path("all.yaml").write_text(re.sub(r"# (\w+: )", r"\1", text))
     assert load(read("all.yaml")).scenes[0].effects == {"radius_ratio": 0.5}
+    # The commands in its first lines have targets.
+    targets = re.findall(r"^# twodiscs run my.yaml *(\w*)", text, re.MULTILINE)
+    assert targets[0] == ""
+    assert {*targets[1:]} <= {*build.TARGETS}
     assert command(monkeypatch, cli, "new", "my.yaml") == 2
     assert capsys.readouterr().err == "error: my.yaml exists already and is not overwritten\n"
     assert Path("my.yaml").read_text() == text
@@ -207,7 +211,8 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     monkeypatch.chdir(build.snakefile().parent)
     assert "--snakefile" not in build.command("my.yaml", [], build.snakefile())
     words = build.command("my.yaml", [], build.snakefile(), 3, True)
-    assert words[1:] == ["--cores", "3", "--no-hooks", "--dry-run", "--configfile", "my.yaml"]
+    options = ["--cores", "3", "--no-hooks", "--dry-run", "--configfile", "my.yaml"]
+    assert words[1:] == [*options, "--", "report"]
     with pytest.raises(InputError, match="cores must be"):
         build.command("my.yaml", [], Path("Snakefile"), 0)
     with pytest.raises(InputError, match="not 'volme'; did you mean 'volume'"):
@@ -219,8 +224,8 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     [
         ("tails", "tails is about a scene without effects, and a.yaml has none"),
         ("paper", "paper is about a scene without effects, and a.yaml has none"),
-        ("volume", "volume cannot be drawn: no scene of a.yaml has its quantities"),
-        ("model", "model cannot be drawn: no scene of a.yaml has its quantities"),
+        ("volume", "volume cannot be drawn: no scene of a.yaml has its quantities in `watch`"),
+        ("model", "model is about a scene without effects, and a.yaml has none"),
     ],
 )
 def test_a_target_that_shows_nothing_is_refused(tmp_path, monkeypatch, capsys, target, said):

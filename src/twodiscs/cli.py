@@ -91,14 +91,20 @@ def _parser():
 
     text = "build a configuration with Snakemake, or some of it, on all cores"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
+    if sys.argv[1:2] == ["run"]:
+        some.epilog = f"Targets: {', '.join(_targets())}."
     file = some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
     file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
     targets = some.add_argument(
-        "targets", nargs="*", default=[], metavar="TARGET", help="such as volume or report (all)"
+        "targets",
+        nargs="*",
+        default=[],
+        metavar="TARGET",
+        help="a name or a file of results (report)",
     )
     targets.completer = _targets
     some.add_argument("--cores", type=whole_number, help="to work on (all)")
-    text = "print the jobs and their reasons, but run nothing"
+    text = "print a table of the jobs, but run nothing"
     some.add_argument("-n", "--dry-run", action="store_true", help=text)
     some.set_defaults(work=_run)
     text = "write a commented configuration"
@@ -137,7 +143,9 @@ def _run(options):
 
 
 def _new(options):
-    _build().new(options.configuration)
+    if (new := plugin("new")) is None:
+        raise InputError("twodiscs new needs the package twodiscs_paper")
+    new(options.configuration)
 
 
 def _build():
@@ -146,10 +154,10 @@ def _build():
         import snakemake  # noqa: F401
     except ImportError:
         raise InputError(
-            f"twodiscs {sys.argv[1]} needs Snakemake: pip install '.[workflow]' in the repository"
+            "twodiscs run needs Snakemake: pip install '.[workflow]' in the repository"
         ) from None
     if (build := plugin("build")) is None:
-        raise InputError(f"twodiscs {sys.argv[1]} needs the package twodiscs_paper")
+        raise InputError("twodiscs run needs the package twodiscs_paper")
     return build
 
 

@@ -135,7 +135,9 @@ def test_reading_a_configuration_needs_no_numerical_package():
     ("width", "height"), [(1.5, 1), (3e6, 1e6), (1, 1), (2, 1), (1e-6, 3e-6), (7, 16), (1, 500)]
 )
 def test_a_name_and_a_box_are_enough(width, height):
-    request = one(box={"width": width, "height": height})
+    box = {"width": width, "height": height}
+    assert one(box=box).quantities.names == {f"{event}_time" for event in EVENTS}
+    request = one(box=box, watch=True)
     assert len(request.radii) == 24
     parts = (f"{event}_{part}" for event in EVENTS for part in ("area", "time"))
     assert request.quantities.names == {"volume", "hop_histogram", "trajectory", *parts}
@@ -279,7 +281,7 @@ def test_seeds_differ_between_scenes_methods_and_radii_and_follow_the_root():
         for request in load.load(mapping).scenes:
             every += [p["seed"] for job, p in jobs(request).items() if "seed" in p]
     assert len(set(every)) == len(every) == 2 * 2 * (2 + 2 + 4 + 1)
-    assert one().trajectory_seed == stream_seed(1908, "one", "trajectory", "0.24")
+    assert one(watch=True).trajectory_seed == stream_seed(1908, "one", "trajectory", "0.24")
     # theory.csv also holds the radii of the histograms, whose exact means are compared.
     assert edited()["theory",] == [0.0375, 0.1, 0.112, 0.188, 0.2, 0.262]
 
@@ -302,7 +304,7 @@ CALLS = [
 
 @pytest.mark.parametrize(("effects", "events", "histograms"), CALLS)
 def test_everything_is_what_has_a_place(effects, events, histograms):
-    request = one(effects=effects)
+    request = one(effects=effects, watch=True)
     assert request.quantities.areas == request.quantities.mean_times == events
     assert request.quantities.hop_histogram == histograms
     assert request.histogram["event"] == next((e for e in events if e in HOPS), None)
@@ -326,7 +328,7 @@ def test_default_radii_keep_to_what_there_is():
     # With g = 2 two discs one above the other have the energy up to r = 1/(4g).
     strong = one(effects={"field": 2}, watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert strong.quantities.hop_histogram == (0.0125, 0.0375, 0.0625, 0.0875)
-    assert one(effects={"field": 2}).quantities.trajectory == 0.0625
+    assert one(effects={"field": 2}, watch=True).quantities.trajectory == 0.0625
     # The larger disc has a hundredth of the side.
     assert one(effects={"radius_ratio": 4}).radii[0] == 0.0025
     assert len(one(radii={"count": 1}, effects={"field": 1}).radii) == 1
@@ -459,6 +461,7 @@ SCENES = {
     "radii: {smallest: 0.4}": ".radii.smallest: radius 0.4 does not fit: …",
     "radii: {smallest: 0.25}": ".radii: smallest must not be 0.25, at which a hop becomes blocked",
     "radii: {step: 1}": ".radii has an unknown key 'step'; its keys are smallest, count, include",
+    "watch: false": ".watch must ask for at least one of volume, …, not for nothing",
     "watch: {}": ".watch must ask for at least one of volume, …, not for nothing",
     "watch: {volumes: true}": ".watch has an unknown key 'volumes'; did you mean 'volume'?",
     "watch: {areas: [wall]}": ".watch.areas[0] must be one of …, not 'wall'; did you mean '…wall'?",
@@ -706,14 +709,14 @@ def test_two_discs_are_the_default_and_leave_no_trace():
 
 
 def test_more_discs_are_a_scene_of_their_own():
-    request = one(discs=3, radii=[0.1, 0.2])
+    request = one(discs=3, radii=[0.1, 0.2], watch=True)
     assert request.box == Box(1.5, 1.0, discs=3)
     assert request.effects == {"discs": 3}
     assert request.quantities.mean_times == EVENTS
     assert request.quantities.hop_histogram == ()
     assert request.quantities.trajectory == 0.125  # half of h/4
     assert one(discs=3).radii[-1] == pytest.approx(0.9 * request.box.largest_radius, rel=0.02)
-    ring = one(discs=3, radii=[0.1], effects={"periodic": "x"})
+    ring = one(discs=3, radii=[0.1], effects={"periodic": "x"}, watch=True)
     assert ring.quantities.trajectory == 0.143  # half of the largest radius
     histogram = one(discs=3, radii=[0.1], watch={"hop_histogram": {"event": "horizontal_hop"}})
     assert histogram.quantities.hop_histogram == (0.025, 0.075, 0.125, 0.175)

@@ -10,11 +10,13 @@ from checkout import REPOSITORY
 from PIL import Image, ImageDraw
 from rules import rules
 
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
     KEY,
     KEY_OF_ALL,
     contents,
     key_figures,
+    mean_times,
     movie,
     page,
     short,
@@ -68,6 +70,25 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
     assert said in summary("small", [row])
 
 
+def test_mean_times_are_those_of_their_table():
+    folder = REPOSITORY / "paper" / "expected"
+    scene = {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}}
+    shown = [(radius, *row) for radius, rows in mean_times(folder, scene) for row in rows]
+    rows = MeanTimes.read(folder / "paper" / "mean_times.csv")
+    for (radius, event, value, error, exact, z), row in zip(shown, rows, strict=True):
+        assert (radius, event.replace(" ", "_")) == (row["radius"], row["event"])
+        if row["stderr"] is None:
+            assert error == row["status"]
+            continue
+        # All end at the second digit of the error: half of it is at most a twentieth of the error.
+        for text, number in ((value, row["estimate"]), (error, row["stderr"])):
+            assert abs(float(text) - number) <= 0.0501 * row["stderr"]
+        if row["exact"] is not None:
+            assert abs(float(exact) - row["exact"]) <= 0.0501 * row["stderr"]
+            assert abs(float(z) - row["z"]) <= 0.00501
+    assert mean_times(folder, scene | {"name": "absent"}) == []
+
+
 def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
     frames = []
     for x in range(20):
@@ -98,6 +119,8 @@ def report():
     files = [f"{scene['name']}/mean_times.csv" for scene in LONG]
     shown = contents(REPOSITORY, files, LONG, "<svg></svg>")
     row = {"radii": 12, "comparisons": 1234, "tests": 1234, "failed": 0, "largest": 3.21}
+    wide = ["horizontal hop", "1.23456789e-06", "1.2e-12", "1.23456789e-06", "-0.12"]
+    shown["measured"] = [[scene["name"], [[0.249975, [wide] * 6]]] for scene in LONG]
     shown["agreements"] = [row | scene | {"events": 4.4e10} for scene in LONG]
     template = REPOSITORY / "workflow" / "report" / "front.html"
     return page(template.read_text(encoding="utf-8"), shown)
@@ -117,3 +140,10 @@ def test_long_names_are_not_wider_than_the_window(report, width, tmp_path):
         assert chromium.look("document.documentElement.scrollWidth") <= width
         of = "...[...document.querySelectorAll('main *')].map"
         assert chromium.look(f"Math.max({of}(e => e.getBoundingClientRect().right))") <= width
+        assert chromium.look("document.querySelectorAll('.numbers tr').length") == 3 * 8
+        colours = []
+        for scheme in ("light", "dark"):
+            feature = {"name": "prefers-color-scheme", "value": scheme}
+            chromium.call("Emulation.setEmulatedMedia", features=[feature])
+            colours.append(chromium.look("getComputedStyle(document.body).backgroundColor"))
+        assert colours == ["rgb(255, 255, 255)", "rgb(21, 23, 26)"]

@@ -41,14 +41,19 @@ def wait_until(condition, seconds=300):
 
 
 def begun(checkout, *words):
-    """Return a process of a Python module, as of a terminal, when a job of it is at work."""
-    run = subprocess.Popen(
-        [sys.executable, "-m", *words],
-        cwd=checkout.path,
-        env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
+    """Return a process of a Python module, as of a terminal, when a job of it is at work.
+
+    The file ``printed`` of the checkout has what it prints.
+    """
+    with open(checkout.path / "printed", "w", encoding="utf-8") as printed:
+        run = subprocess.Popen(
+            [sys.executable, "-m", *words],
+            cwd=checkout.path,
+            env=os.environ | {"PYTHONPATH": str(checkout.path / "src")},
+            stdout=printed,
+            stderr=printed,
+            start_new_session=True,
+        )
     wait_until(lambda: processes(checkout.path))
     return run
 
@@ -76,9 +81,8 @@ def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     assert ("monte_carlo", ("scene=one", "radius=0.2")) in checkout.jobs(JOB)
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
-@pytest.mark.parametrize("name", ["SIGKILL", "SIGINT"])
+@pytest.mark.parametrize("name", [pytest.param("SIGKILL", marks=pytest.mark.slow), "SIGINT"])
 def test_a_build_ends_with_twodiscs_run(tmp_path, name):
     """Killed or interrupted in a terminal, it takes the jobs along: nobody else works there."""
     checkout = fresh(tmp_path / "checkout")
@@ -92,4 +96,7 @@ def test_a_build_ends_with_twodiscs_run(tmp_path, name):
         os.killpg(run.pid, signal.SIGINT)
         assert run.wait(60) not in (0, -signal.SIGINT)  # Snakemake has cleaned up
         assert not processes(checkout.path)
+        printed = (checkout.path / "printed").read_text(encoding="utf-8")
+        assert printed.endswith("\nInterrupted. The same command goes on from here.\n")
+        assert "Error" not in printed
         checkout.snakemake("--dry-run")  # there is no lock

@@ -81,7 +81,7 @@ async function look() {
             button.click();
             return [...seen, button.innerText, picture.querySelector("source").media];
         })(),
-        tops: ["h1", ".verdict", "#agreement", "#animation", ".key", ".files", "#rules"].map(
+        tops: ["h1", ".verdict", "#agreement", "#animation", ".key", ".files", "#made"].map(
             selector => place(document.querySelector(selector)).top),
         opening: place(document.querySelector("#animation img")).bottom,
         wider: document.documentElement.scrollWidth - innerWidth,
@@ -89,6 +89,9 @@ async function look() {
         smallest: Math.min(...all("p, td, th, figcaption, li").map(
             element => parseFloat(getComputedStyle(element).fontSize))),
         links: all("a").map(link => link.getAttribute("href")),
+        anchors: all("a[href^='#']").map(link => place(document.querySelector(link.hash)).top),
+        opened: all("details[open] > summary").length,
+        numbers: all(".numbers").map(table => [...table.tBodies].map(body => body.rows.length)),
         rules: all("#rules text").map(text => text.textContent),
         last: document.querySelector("main").lastElementChild.id,
     };
@@ -243,12 +246,19 @@ def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
     drawn |= {*(complete.path / "results" / "figures").glob("*.png")}
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)
     assert all(width > 100 and len(text) > 20 for width, text in front["thumbnails"])
-    linked = [link for link in front["links"] if link.endswith(".pdf")]
-    assert "six/figures/volume.pdf" in linked
+    assert {"six/figures/volume.pdf", "six/figures/volume.png"} <= {*front["links"]}
 
 
 def test_the_animation_can_be_paused(front):
     assert front["paused"] == ["Pause", "Play", "all"]
+
+
+def test_it_begins_with_all_mean_times_and_its_contents(front, complete):
+    # Six events at each of six radii, two at each of two.
+    assert front["numbers"] == [[1 + 6] * 6, [1 + 2] * 2]
+    assert front["opened"] == 2
+    assert front["anchors"] == sorted(front["anchors"])
+    assert len(front["anchors"]) == 5  # mean times, two scenes, studies, how it was made
 
 
 def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front):
@@ -256,7 +266,7 @@ def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front)
     assert heading < verdict < table
     assert max(table, movie) < rest[0]
     assert rest == sorted(rest)
-    assert front["last"] == "rules"
+    assert front["last"] == "made"
     assert front["wider"] <= 0
     assert front["hidden"] <= 0, "the table of agreement has to be pushed aside"
     assert front["smallest"] >= 13
@@ -266,8 +276,9 @@ def test_the_order_is_the_same_in_any_window_and_nothing_is_wider_than_it(front)
 
 def test_links_of_the_report_lead_to_files(front, complete):
     results = complete.path / "results"
-    assert [link for link in front["links"] if not (results / link).is_file()] == []
-    assert {"paper.pdf", "report-workflow.html", "six/check.csv"} <= set(front["links"])
+    files = {link for link in front["links"] if not link.startswith("#")}
+    assert [link for link in files if not (results / link).is_file()] == []
+    assert {"paper.pdf", "six/check.csv"} <= files
     assert {"monte_carlo", "dynamics", "table", "check", "figure"} <= set(front["rules"])
 
 

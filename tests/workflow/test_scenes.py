@@ -18,8 +18,6 @@ BLOCKS = {path.stem: read(path) for path in FILES}
 ALWAYS = {"check", "configuration", "manifest", "provenance"}
 OF_REPORT = {"report"}
 
-DRAWINGS = {name for name, figure in FIGURES.items() if not figure.needs}
-
 
 def showing(quantity):
     """Return the names of the figures that show a quantity."""
@@ -93,8 +91,6 @@ def test_every_subset_of_what_is_watched(unbuilt, tmp_path, effects):
         rules, tables, figures = (set().union(*part) for part in zip(*parts, strict=True))
         if effects:
             figures -= {"pressure"}  # there is none in a field
-        else:
-            figures |= DRAWINGS
         if tables:
             rules |= {"table"}
             tables |= {"check", "cost"}

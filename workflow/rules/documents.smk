@@ -89,7 +89,7 @@ rule report:
                 if name != "report"
             ],
             [list(FILES.tables(scene).values()) for scene in CONFIGURED],
-            [list(FILES.figures(scene).values()) for scene in CONFIGURED],
+            [FILES.shown(scene) for scene in CONFIGURED],
             [list(FILES.animation(scene)) for scene in CONFIGURED],
         ],
         configuration=rules.configuration.output.json,

@@ -153,6 +153,18 @@ class Measurement:
         -------
         (float, float) or None
             Its ends, None without an error.
+
+        Raises
+        ------
+        InputError
+            For a confidence that is not between 0 and 1.
+
+        Examples
+        --------
+        >>> volume = td.sample(scene, 1e6, seed=1)["volume"]
+        >>> low, high = volume.interval(0.99)
+        >>> low < volume.value < high
+        True
         """
         half = normal_quantile(confidence)
         if self.stderr is None or self.value is None:
@@ -198,6 +210,11 @@ class Measurement:
         -------
         tuple of str
             Quantity, estimate, error, exact value, unit, z, count and status.
+
+        Examples
+        --------
+        >>> td.sample(scene, 1e6, seed=1)["volume"].cells()
+        ('volume', '0.23605', '0.00021', '0.23611', 'length⁴', '-0.31', '568219', 'sampled')
         """
         value, error = _with_error(self.value, self.stderr)
         if self.value is None and self.bound is not None:
@@ -356,7 +373,7 @@ class Measurements(Result, Mapping[str, Measurement]):
     def __init__(self, kind, scene, rows, settings, kept, stream=None, note=None):
         self.kind, self.scene, self.rows = kind, scene, rows
         self.settings, self.kept, self.note = settings, kept, note
-        found = (_measurement(scene, row, stream) for row in rows)
+        found = (measurement(scene, row, stream) for row in rows)
         self._measurements = Quantities((one.quantity, one) for one in found)
 
     def __getitem__(self, name: str) -> Measurement:
@@ -408,6 +425,12 @@ class Measurements(Result, Mapping[str, Measurement]):
         ------
         InputError
             For an argument that is not among the ``settings`` of this result.
+
+        Examples
+        --------
+        >>> some = td.simulate(scene, duration=1e3, seed=1, events="any_wall")
+        >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
+        True
         """
         changes = {"error": error, "budget": budget, "samples": samples, "duration": duration}
         return self._again(changes, cores, progress)
@@ -423,6 +446,12 @@ class Measurements(Result, Mapping[str, Measurement]):
         DataFrame
             One row per quantity, which the index names, with the columns of the pipeline's table:
             mean_times.csv, or volume.csv and areas.csv.
+
+        Examples
+        --------
+        >>> table = td.simulate(scene, duration=1e3, seed=1).frame()
+        >>> table.loc["vertical_hop_time", ["estimate", "stderr", "exact"]].round(3).to_list()
+        [1.328, 0.008, 1.338]
         """
         return _frame(rows_by_quantity(self.rows), index="quantity")
 
@@ -437,7 +466,8 @@ def _streams(kind, stream):
     return frozenset() if stream is None else frozenset([(kind, stream)])
 
 
-def _measurement(scene, row, stream):
+def measurement(scene, row, stream=None):
+    """Return the ``Measurement`` of a row of a table; ``stream`` is the seed of its randomness."""
     quantity = quantity_of(row)
     return Measurement(
         quantity,
@@ -578,6 +608,17 @@ class Intervals(Result):
         -------
         Intervals
             The result.
+
+        Raises
+        ------
+        InputError
+            For a number that is no integer from 1 on.
+
+        Examples
+        --------
+        >>> some = td.intervals(scene, "vertical_hop", 1e5, seed=1)
+        >>> some.more(2e5) == td.intervals(scene, "vertical_hop", 2e5, seed=1)
+        True
         """
         return self._again({"number": number}, cores, progress)
 
@@ -596,6 +637,12 @@ class Intervals(Result):
         -------
         DataFrame
             One row per bin, by its left end, with the columns right, count, density and stderr.
+
+        Examples
+        --------
+        >>> bins = td.intervals(scene, "vertical_hop", 1e5, seed=1).frame()
+        >>> list(bins.columns)
+        ['right', 'count', 'density', 'stderr']
         """
         names = "left", "right", "count", "density", "stderr"
         return _frame([{n: row[n] for n in names} for row in self._bins], index="left")

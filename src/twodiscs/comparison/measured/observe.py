@@ -85,6 +85,12 @@ class Observed:
         DataFrame
             One row per time. The columns are mean and stderr, numbered if there are several, or
             <name> and <name>_stderr for each of ``names``.
+
+        Examples
+        --------
+        >>> ring = td.Scene(1.5, 1.0, 0.2, periodic="x")
+        >>> td.diffusion(ring, [1, 2], 4096, seed=1).frame().columns[:2].to_list()
+        ['squared_displacement', 'diffusion']
         """
         import pandas as pd
 
@@ -100,7 +106,7 @@ class Observed:
 
     def __str__(self) -> str:
         note = f"\n\n{self.note}" if self.note else ""
-        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame()}{note}"
+        return f"{self.scene}, {self.replicas} replicas\n\n{self.frame().to_string()}{note}"
 
     __repr__ = __str__
 

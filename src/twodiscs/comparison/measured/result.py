@@ -73,6 +73,12 @@ class Result:
         -------
         dict
             Numbers, texts, lists and dicts.
+
+        Examples
+        --------
+        >>> content = td.simulate(scene, duration=1e3, seed=7).to_dict()
+        >>> content["kind"], content["settings"]["seed"]
+        ('simulate', 7)
         """
         return {
             "twodiscs": self.version,
@@ -97,6 +103,13 @@ class Result:
         ------
         InputError
             For a path that cannot be written.
+
+        Examples
+        --------
+        >>> md = td.simulate(scene, duration=1e3, seed=1)
+        >>> md.save("md.json")
+        >>> td.load_result("md.json") == md
+        True
         """
         text = json.dumps(self.to_dict(), allow_nan=False) + "\n"
         with writing_to(path):

@@ -108,6 +108,12 @@ class Scan(Result, Sequence[Measurements]):
         ------
         InputError
             For an argument that is not among the ``settings`` of this scan.
+
+        Examples
+        --------
+        >>> some = td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall")
+        >>> [part["any_wall_time"].count > 1e4 for part in some.more(duration=1e4)]
+        [True, True]
         """
         asked = {"cores": cores, "progress": progress, "duration": duration}
         return Scan([result.more(error, budget, **asked) for result in self.results])
@@ -119,6 +125,12 @@ class Scan(Result, Sequence[Measurements]):
         -------
         dict
             Numbers, texts, lists and dicts.
+
+        Examples
+        --------
+        >>> content = td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall").to_dict()
+        >>> content["kind"], len(content["results"])
+        ('scan', 2)
         """
         return {
             "twodiscs": self.version,
@@ -133,6 +145,11 @@ class Scan(Result, Sequence[Measurements]):
         -------
         DataFrame
             One row per radius and quantity, the index, with the columns of mean_times.csv.
+
+        Examples
+        --------
+        >>> td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall").frame().index.names
+        FrozenList(['radius', 'quantity'])
         """
         import pandas as pd
 

@@ -89,6 +89,12 @@ class Trajectory(pd.DataFrame):
         InputError
             For other times, and if columns of the trajectory are missing, or rows in between, as in
             a selection of events.
+
+        Examples
+        --------
+        >>> states = td.trajectory(scene, 5, seed=1).states_at([0.1, 0.3])
+        >>> states["x1"].round(4)
+        array([-0.1522, -0.1876])
         """
         names = components(self.scene)
         missing = [name for name in ("time", *names) if name not in self]
@@ -137,6 +143,11 @@ class Trajectory(pd.DataFrame):
         ------
         InputError
             As ``states_at``.
+
+        Examples
+        --------
+        >>> td.trajectory(scene, 5, seed=1).positions([0.1, 0.3, 0.5]).shape  # time, disc, axis
+        (3, 2, 2)
         """
         return self._along_axes(times, "xyz")
 
@@ -157,6 +168,12 @@ class Trajectory(pd.DataFrame):
         ------
         InputError
             As ``states_at``.
+
+        Examples
+        --------
+        >>> v = td.trajectory(scene, 5, seed=1).velocities([0.1, 0.3, 0.5])
+        >>> (v**2).sum(axis=(1, 2)).round(12)  # the energy is 1/2
+        array([1., 1., 1.])
         """
         return self._along_axes(times, "uvw")
 
@@ -200,6 +217,12 @@ class Trajectory(pd.DataFrame):
         ------
         InputError
             As ``states_at``, and for a path that cannot be written.
+
+        Examples
+        --------
+        >>> td.trajectory(scene, 5, seed=1).to_xyz("two.xyz", [0, 1, 2])
+        >>> len(open("two.xyz").readlines())  # three frames, each of two lines and two discs
+        12
         """
         scene = self.scene
         at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))

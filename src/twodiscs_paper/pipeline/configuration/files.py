@@ -51,6 +51,16 @@ class Files:
             if entry.is_called(request.quantities.names, request.effects)
         }
 
+    def shown(self, scene):
+        """Return the files of the figures of a scene that a report on it shows.
+
+        Drawings show the sides of a box only. They are built for the manuscript, or by name.
+        """
+        drawings = "paper" in self.configuration.shared
+        return [
+            files for name, files in self.figures(scene).items() if drawings or FIGURES[name].needs
+        ]
+
     def animation(self, scene):
         """Return the files of the animation of a scene, () if the scene has no trajectory."""
         request = self.scenes[scene]

@@ -196,11 +196,11 @@ def _scene(block, path, common):
     box = _box(block, path)
     radii = _radii(block["radii"], box, f"{path}.radii")
     scene = box.scene(radii[0])
-    watched = block.get("watch")
-    if watched is None:
-        watched = dict.fromkeys(Quantities.__dataclass_fields__, True)
-        watched["trajectory"] = bool(_hops(scene))
-        watched["hop_histogram"] = (
+    watched = block["watch"]
+    if isinstance(watched, bool):
+        watched = dict.fromkeys(Quantities.__dataclass_fields__, watched)
+        watched["trajectory"] &= bool(_hops(scene))
+        watched["hop_histogram"] &= (
             bool(_hops(scene)) and _is_smooth(scene) and "discs" not in box.calls_for
         )
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")

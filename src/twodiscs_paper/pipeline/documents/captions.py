@@ -26,6 +26,13 @@ def _has_value(row):
     return any(row.get(value) for value in ("exact", "estimate", "bound"))
 
 
+def box_of(scene):
+    """Return the ``Box`` of a scene with its "width", "height" and "effects", ``discs`` in them."""
+    effects = dict(scene.get("effects", ()))
+    discs = effects.pop("discs", 2)
+    return Box(scene["width"], scene["height"], effects, discs)
+
+
 def caption_parts(entry, results, scene):
     """Return the caption of a figure, and apart from it the sentences that other captions share.
 
@@ -33,9 +40,7 @@ def caption_parts(entry, results, scene):
     "width" and "height", and its "effects" if there are any, with "discs" if these are more than
     two. A figure without a scene takes the first scene.
     """
-    effects = dict(scene.get("effects", ()))
-    discs = effects.pop("discs", 2)
-    box = Box(scene["width"], scene["height"], effects, discs)
+    box = box_of(scene)
     rows = _rows(entry, results, scene)
     quantities = frozenset(name for name, some in rows.items() if any(map(_has_value, some)))
     return entry.caption_parts(

@@ -1,7 +1,7 @@
-"""The main report: verdict, agreement, a section for each scene, links to Snakemake's report.
+"""The main report: verdict, mean times, agreement, and a section for each scene.
 
-It is one HTML file with its pictures in it; tables, figures as PDF and Snakemake's report are links
-to the files beside it.
+It is one HTML file with its pictures in it; tables and figures are also links to the files beside
+it.
 """
 
 import json
@@ -15,18 +15,23 @@ from markupsafe import Markup, escape
 from PIL import Image
 
 from twodiscs.arguments import Parser, run
+from twodiscs.comparison.measured.measurements import measurement
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.exact import Grid
+from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.documents.captions import caption
+from twodiscs_paper.pipeline.documents.captions import box_of, caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: The large figures of a section, of a scene and of all scenes, and how many a scene has; if one is
 #: missing, another figure of the scene replaces it. All other figures are thumbnails.
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
+
+#: The report opens on all mean times if they have at most this number of rows.
+FEW = 60
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
@@ -62,6 +67,21 @@ def agreement(folder, scene):
     }
 
 
+def mean_times(folder, scene):
+    """Return [[radius, [[event, estimate, error, exact, z], …]], …] of a scene as texts.
+
+    Without an error it is the status of the estimate. The list is empty without mean_times.csv.
+    """
+    path = Path(folder, scene["name"], "mean_times.csv")
+    by_radius = {}
+    for row in MeanTimes.read(path) if path.exists() else ():
+        one = box_of(scene).scene(row["radius"])
+        quantity, value, error, exact, _, z, _, status = measurement(one, row).cells()
+        event = quantity.removesuffix("_time").replace("_", " ")
+        by_radius.setdefault(row["radius"], []).append([event, value, error or status, exact, z])
+    return [*by_radius.items()]
+
+
 def figure(folder, path, scenes):
     """Return title, caption and picture of the figure at ``path``, relative to ``folder``.
 
@@ -80,6 +100,7 @@ def figure(folder, path, scenes):
         "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
         "file": path.with_suffix(".gif" if entry == ANIMATION else ".pdf"),
         "name": path.stem,
+        "picture": path,
         "title": entry.title,
         "uri": _uri(data),
         "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
@@ -157,7 +178,10 @@ def contents(folder, files, scenes, graph):
         for name, scene in by_name.items()
     ]
     sections += [section(folder, of_all, by_name)] if of_all else []
+    measured = [[scene["name"], mean_times(folder, scene)] for scene in scenes]
     return {
+        "few": sum(len(rows) for _, radii in measured for _, rows in radii) <= FEW,
+        "measured": [[name, radii] for name, radii in measured if radii],
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "commit": commit(Path(__file__).parent),
         "date": date.today(),

@@ -1,4 +1,4 @@
-"""``twodiscs run`` and ``new``: Snakemake's own command line, and the last lines of a build.
+"""``twodiscs run``: Snakemake's own command line, and the last lines of a build.
 
 The Snakefile imports this, so it must be quick.
 """
@@ -34,41 +34,8 @@ SPACE = 10**8
 #: The path of the workflow of a wheel, below the folder of the installation.
 SHARED = "share/twodiscs/Snakefile"
 
-#: The file that ``twodiscs new`` writes: keys with a default are comments.
-NEW = """\
-# The configuration. config/README.md of the repository has every key, its unit and its default.
-# Lengths are in any one unit; masses are one and the total energy is 1/2, so times are lengths
-# over a speed of one.
-
-results: results # the folder that everything is built in
-# Another seed repeats every simulation independently.
-# seed: 1908
-# Documents and studies beside the scenes; [paper, report] for the manuscript and all studies.
-# shared: [report]
-
-scenes:
-  - name: mine # also the name of its folder in results
-    box: {width: 1.5, height: 1.0}
-    # The relative error of mean times: draft is 1e-2, paper 3e-4, reference 1e-4; or a number.
-    accuracy: draft
-    monte_carlo: {samples: 1e7}
-    # Without radii there is a grid of radii up to the largest that fits.
-    # radii: [0.1, 0.2, 0.3]
-    # Also mass_ratio, periodic: [x], field, moment_of_inertia; a depth in the box makes balls.
-    # effects: {radius_ratio: 0.5}
-    # Without watch, all quantities of the scene are computed.
-    # watch: {mean_times: true, trajectory: 0.24}
-"""
-
-
-def new(path):
-    """Write a commented configuration to ``path``; raise ``InputError`` if there is a file."""
-    try:
-        with open(path, "x", encoding="utf-8", newline="\n") as file:
-            file.write(NEW)
-    except FileExistsError:
-        raise InputError(f"{path} exists already and is not overwritten") from None
-    print(f"{path} is written. To build it: twodiscs run {shlex.quote(str(path))}")
+#: The target of a command without one: check, tables, figures and the report on them.
+DEFAULT = "report"
 
 
 def snakefile():
@@ -89,7 +56,8 @@ def snakefile():
 def command(path, targets, snakefile, cores=None, dry_run=False):
     """Return the words of the command that builds ``targets`` of the configuration at ``path``.
 
-    The command uses ``cores`` cores, or all. With ``dry_run`` it lists the jobs and does nothing.
+    Without ``targets`` it builds the report. The command uses ``cores`` cores, or all. With
+    ``dry_run`` it counts the jobs and does nothing.
     Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
     no integer ≥ 1.
     """
@@ -106,7 +74,7 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
     found = [] if here.exists() and here.samefile(snakefile) else ["--snakefile", str(snakefile)]
     words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
-    return [*words, "--", *targets] if targets else words
+    return [*words, "--", *(targets or [DEFAULT])]
 
 
 def report_of(words):
@@ -134,16 +102,25 @@ def check_targets(path, targets, configuration):
     """Raise ``InputError`` for a target without anything to build in a ``Configuration``."""
     files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
     for target in targets:
-        about_plain = target == "paper" or (target in STUDIES and STUDIES[target].about_plain)
+        about_plain = (
+            target == "paper"
+            or (target in STUDIES and STUDIES[target].about_plain)
+            or (target in FIGURES and not FIGURES[target].needs)
+        )
         if about_plain and configuration.main is None:
             raise InputError(f"{target} is about a scene without effects, and {path} has none")
         if target in FIGURES and not any(target in files.figures(name) for name in files.scenes):
-            raise InputError(f"{target} cannot be drawn: no scene of {path} has its quantities")
+            raise InputError(
+                f"{target} cannot be drawn: no scene of {path} has its quantities in `watch`"
+            )
 
 
 def build(path, targets, cores=None, dry_run=False):
     """Run ``command`` with these arguments in Snakemake; return its exit status."""
     from snakemake.cli import main as snakemake
+    from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
+
+    from twodiscs_paper.pipeline.jobs import lines
 
     try:
         configuration = load(read(path))
@@ -156,17 +133,29 @@ def build(path, targets, cores=None, dry_run=False):
     # The Snakefile prints the verdict only if it had something to do; here it is always printed.
     words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
+
     # Snakemake runs in this process, so a signal ends both. Its profile reads sys.argv.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    sys.argv = words
+    def interrupt(*signal_and_frame):
+        lines.INTERRUPTED.set()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
+    sys.argv = [*words]
+    if dry_run or not sys.stdout.isatty():
+        LoggerPluginRegistry().register_plugin("snakemake_logger_plugin_lines", lines)
+        sys.argv[1:1] = ["--logger", "lines"]
     folders = [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
     os.environ["PATH"] = os.pathsep.join(folders)  # jobs find the same python
     try:
         snakemake()
     except SystemExit as end:
         status = end.code
-    if status == 0 and not dry_run:
+    if lines.INTERRUPTED.is_set():
+        print("Interrupted. The same command goes on from here.")
+    elif status == 0 and not dry_run:
         print(closing(configuration.results), end="")
+        if "explorer" in targets:
+            print(f"The explorer is {Path(configuration.results, 'explorer.html').resolve()}")
     return status
 
 

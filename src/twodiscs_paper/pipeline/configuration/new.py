@@ -1,0 +1,48 @@
+"""``twodiscs new``: a commented configuration. It needs the standard library only."""
+
+import shlex
+
+from twodiscs.model.checks import InputError
+
+#: The file that ``twodiscs new`` writes: keys with a default are comments, RUN is the command.
+NEW = """\
+# RUN
+# builds mean times at each radius, their figures, a check against the exact theory, and the report
+# results/report.html. For more of a box, such as its volume, name it in `watch`. By name you get:
+# RUN explorer    a page in which the discs move and their events are counted
+# RUN tails       a study; twodiscs run --help lists all targets
+# RUN all         the report, with the origin of every file
+
+# Lengths are in any one unit. Disc 1 has mass 1 and the total energy is 1/2, so times are lengths
+# over a speed of one.
+
+results: results # the folder of everything that is built
+# Another seed repeats every simulation independently.
+# seed: 1908
+# Documents and studies beside the scenes; [paper, report] for the manuscript and all studies.
+# shared: [report]
+
+scenes:
+  - name: mine # also the name of its folder in results
+    box: {width: 1.5, height: 1.0}
+    radii: [0.1, 0.2, 0.3] # without radii there is a grid up to the largest radius that fits
+    # The relative error of mean times: draft is 1e-2, paper 3e-4, reference 1e-4; or a number.
+    accuracy: draft
+    # Only mean times without this line; also volume, areas, hop_histogram; true for everything.
+    # watch: {mean_times: true, trajectory: 0.24}
+    # Also mass_ratio, periodic: [x], field, moment_of_inertia; a depth in the box makes balls.
+    # effects: {radius_ratio: 0.5}
+    # Random configurations for volume and areas, at each radius.
+    # monte_carlo: {samples: 1e7}
+"""
+
+
+def new(path):
+    """Write a commented configuration to ``path``; raise ``InputError`` if there is a file."""
+    run = f"twodiscs run {shlex.quote(str(path))}"
+    try:
+        with open(path, "x", encoding="utf-8", newline="\n") as file:
+            file.write(NEW.replace("RUN", run))
+    except FileExistsError:
+        raise InputError(f"{path} exists already and is not overwritten") from None
+    print(f"{path} is written. To build it: {run}")

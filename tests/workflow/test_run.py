@@ -1,0 +1,54 @@
+"""``twodiscs run``: what it plans for a new configuration, and the lines that it prints."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from checkout import Checkout, first
+
+from twodiscs_paper.pipeline.configuration.new import new
+
+
+@pytest.fixture
+def place(unbuilt, tmp_path, monkeypatch):
+    """A folder with a new configuration, as a user has it."""
+    monkeypatch.chdir(tmp_path)
+    new("my.yaml")
+    return Checkout(tmp_path, unbuilt)
+
+
+def run(place, *words):
+    """Return the completed process of ``twodiscs run my.yaml`` and more ``words``."""
+    return subprocess.run(
+        [sys.executable, "-m", "twodiscs", "run", "my.yaml", *words],
+        cwd=place.path,
+        env=os.environ | {"PYTHONPATH": first(str(place.home.path / "src"))},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+
+
+def test_a_new_configuration_is_the_report_on_mean_times(place):
+    found = place.jobs("--configfile", "my.yaml", "--", "report")
+    assert len(found) == 15
+    rules = {rule for rule, _ in found}
+    assert rules == {"exact", "dynamics", "table", "figure", "check", "configuration", "report"}
+    assert {f"figure={name}" for name in ("mean_hop_time", "mean_collision_time")} < {
+        wildcard for _, wildcards in found for wildcard in wildcards
+    }
+
+
+def test_a_dry_run_counts_the_jobs_once(place):
+    counted = run(place, "--dry-run")
+    assert re.findall(r"^total +(\d+)$", counted.stderr, re.MULTILINE) == ["15"]
+    assert "rule dynamics:" not in counted.stderr
+    assert not (place.path / "results").exists()
+
+
+def test_a_job_is_a_line(place):
+    done = run(place, "results/mine/grid.csv").stderr.splitlines()
+    assert done[-1] == "1 of 1: exact scene=mine, table=grid"
+    assert len(done) <= 2  # Snakemake names its profile before it knows of our lines
