@@ -40,8 +40,13 @@ rule mine:
         "cp {{input}} {{output}}"
 """
 
-#: Distances of the study of passages, as it has them and as they are built: rare hops take long.
-DISTANCES = "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), range(3, 4)"
+#: (Study, text of its measurements, text in a checkout): numbers of rare hops, of particles on a
+#: lattice, of repetitions. They do not follow from the budget of a scene and take long.
+QUICKER = (
+    ("passages", "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), [3]"),
+    ("passages", "(1.0, 0.3, 0.1, 0.03, 0.01), 16, 256", "(1.0, 0.3, 0.1), 8, 32"),
+    ("stability", "REPETITIONS = 1600", "REPETITIONS = 400"),
+)
 
 #: For a module whose files are in a separate folder.
 BELOW = 'config:\n        config["discs"]\n    prefix:\n        "below"'
@@ -175,7 +180,8 @@ def fresh(path):
             shutil.copy2(source, target)
     shutil.copy(Path(__file__).with_name("six_radii.yaml"), path / "config" / "config.yaml")
     checkout = Checkout(path)
-    checkout.replace("src/twodiscs_paper/studies/passages/measure.py", *DISTANCES)
+    for study, *texts in QUICKER:
+        checkout.replace(f"src/twodiscs_paper/studies/{study}/measure.py", *texts)
     return checkout
 
 

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -12,8 +13,8 @@ from checkout import Checkout, fresh
 # Jobs start as `python`, as where the environment of the tests is activated.
 os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
 
-#: The scenes with effects that are built: each compiles another engine.
-EFFECTS = ("torus", "unequal")
+#: The scenes with effects that are built, at these radii: each compiles another engine.
+EFFECTS = {"torus": [0.1, 0.3], "unequal": [0.1, 0.3]}
 
 
 @pytest.fixture(scope="session")
@@ -41,7 +42,12 @@ def complete(tmp_path_factory):
             shutil.rmtree(path, ignore_errors=True)  # of a build that failed
             checkout = fresh(path)
             scenes = '("balls", "channel", "field", "rough", "torus", "unequal")'
-            checkout.replace("src/twodiscs_paper/studies/effects/study.py", scenes, repr(EFFECTS))
+            study = "src/twodiscs_paper/studies/effects/study.py"
+            checkout.replace(study, scenes, repr((*EFFECTS,)))
+            for name, radii in EFFECTS.items():
+                file = path / "config" / "scenes" / f"{name}.yaml"
+                text = re.sub(r"^( +radii: )\[.*\]", rf"\1{radii}", file.read_text(), flags=re.M)
+                file.write_text(text)
             checkout.snakemake("--cores", "2")
             done.touch()
     return Checkout(path)

@@ -97,32 +97,6 @@ def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
     assert not COUNTED & rules
 
 
-def test_edit_of_the_columns_of_a_study_makes_its_table_again(built):
-    built.edit("src/twodiscs_paper/studies/tails/table.py", CODE)
-    jobs = built.jobs()
-    assert {*expected(("study_table", "study=tails"), ("shared_figure", "figure=tails"))} <= {*jobs}
-    assert {rule for rule, _ in jobs} == {rule for rule, *_ in DOCUMENTS} | {
-        *("study_table", "shared_figure"),
-    }
-
-
-def test_edit_of_a_caption_counts_nothing_again(built):
-    built.replace(
-        "src/twodiscs_paper/studies/distributions/figure.py",
-        "(a) Rate of hops",
-        "(a) Rate of the hops",
-    )
-    jobs = built.jobs()
-    assert ("shared_figure", ("figure=distributions",)) in jobs
-    assert {rule for rule, _ in jobs} == {
-        "shared_figure",
-        "paper",
-        "report",
-        "manifest",
-        "provenance",
-    }
-
-
 @pytest.mark.parametrize("module", ["counting", "law"])
 def test_edit_of_the_engine_reruns_dynamics_and_what_follows(built, module):
     built.edit(f"src/twodiscs/dynamics/{module}.py", CODE)
