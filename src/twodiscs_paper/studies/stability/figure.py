@@ -41,7 +41,8 @@ def caption(shown):
     volume and areas in double precision below the largest radius, and (b) on both sides of the
     radii where a hop becomes blocked: closed forms, and the worst of volume, areas and mean times
     as computed here. (c) Accepted share of proposed configurations, by rejection from the prism and
-    by the conditioned sampler of initial states. (d) Residuals z of volume and areas by this sampler.
+    by the conditioned sampler of initial states. (d) Residuals z of volume and areas by this
+    sampler.
     """
     return text + shown.if_any(
         lambda row: row["part"] == "estimates" and row["status"] != "sampled",
