@@ -11,7 +11,7 @@ from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
 
 #: Inches: the panel of all intervals, the panel of short ones, the gap between, the space above.
-ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.42, 0.22
+ALL, SHORT, GAP, TOP = 1.75, 1.1, 0.42, 0.22
 
 #: The longest of the short intervals, in mean times.
 LONGEST_SHORT = 2.5

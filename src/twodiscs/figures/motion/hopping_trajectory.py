@@ -8,7 +8,7 @@ from twodiscs.figures.motion import many
 from twodiscs.model.events import AXIS
 
 #: Inches: each of the two panels, the gap between them and the space above.
-PANEL, GAP, TOP = 1.15, 0.42, 0.22
+PANEL, GAP, TOP = 1.05, 0.42, 0.22
 
 #: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
 #: of its width; and its longest time, over that of the upper panel.

@@ -22,8 +22,8 @@ from twodiscs.figures.kit.style import (
 from twodiscs.model.box import Box
 
 #: Inches: width of two columns, the height of a panel, margins and gaps.
-WIDTH, HEIGHT = 7.0, 2.1
-LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.4, 0.55, 0.62
+WIDTH, HEIGHT = 7.0, 1.6
+LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.36, 0.55, 0.58
 
 LEGEND = {"fontsize": 6.8, "handlelength": 1.8, "borderaxespad": 0.3, "labelspacing": 0.2}
 
@@ -67,7 +67,7 @@ def draw(box=None, *, tables):
             axes.xaxis.set_minor_formatter(NullFormatter())
         draw_panel(axes, rows)
         axes.yaxis.set_minor_formatter(NullFormatter())
-    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=14)
+    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=12)
     return figure
 
 

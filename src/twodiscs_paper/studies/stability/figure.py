@@ -13,7 +13,7 @@ from twodiscs.figures.kit.style import (
 )
 
 #: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
-WIDTH, HEIGHT = 7.0, 2.0
+WIDTH, HEIGHT = 7.0, 1.5
 RIGHT, BOTTOM, TOP, BETWEEN = 0.1, 0.36, 0.24, 0.6
 
 BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
