@@ -75,7 +75,7 @@ def caption(shown):
     """Return the caption."""
     return """
     The cost of a digit: true relative error against processor time on one core, root mean square
-    over repeated runs. Error bars are one standard error. Dashed lines ∝ t^(−1/2) are the law of
+    over repeated runs. Error bars are one standard error. Dashed lines ∝ 1/√t are the law of
     independent samples, with a fitted factor. (a) Volume by rejection sampling, by the conditioned
     sampler and by scrambled Sobol points. (b) Area of disc collisions by shells of thickness ε,
     whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance;
@@ -217,7 +217,7 @@ def _times(axes, rows):
     for series in _of(rows, "time", "time_step", quantity=quantity).values():
         _floor(axes, series, VERMILLION)
     low, high = axes.get_ylim()
-    axes.set_ylim(low / 30, 2 * high)
+    axes.set_ylim(low / 60, 2 * high)
     axes.legend(loc="lower left", **LEGEND)
     _title(axes, f"mean time of vertical hops, $r={series[0]['radius']:g}$")
 
