@@ -4,6 +4,7 @@ from itertools import pairwise
 from math import acos, asin, cos, degrees, pi, sin
 
 from matplotlib.patches import Arc, Polygon, Wedge
+from matplotlib.patheffects import withStroke
 
 from twodiscs.figures.kit import drawing
 from twodiscs.figures.kit.limits import limits
@@ -105,21 +106,21 @@ def _panel(axes, scene, points):
         drawing.line(axes, [(0, sigma), (0, high)], colour=VERMILLION, **thick)
 
     reach = min(sigma, 1.3 * wide)
-    _angle(axes, r"$\alpha$", alpha, 0.33 * reach, alpha < pi / 2)
-    _angle(axes, r"$\beta$", beta, 0.6 * reach, beta > 0)
+    if alpha < pi / 2:
+        _angle(axes, r"$\alpha$", alpha, 0.5 * reach, beta)
+    if beta > 0:
+        _angle(axes, r"$\beta$", beta, 0.75 * reach)
     _ends(axes, "$A$", wide, sigma, points, lambda x: (x, 0), lambda d: (d, -7))
     _ends(axes, "$B$", high, sigma, points, lambda y: (0, y), lambda d: (-8, d))
     drawing.label(axes, "$0$", (0, 0), (-5, -5))
 
 
-def _angle(axes, name, angle, radius, shown):
-    """Mark an angle at the origin, measured from the horizontal axis."""
-    if shown:
-        size = 2 * radius
-        axes.add_patch(Arc((0, 0), size, size, theta2=degrees(angle), lw=0.7, clip_on=False))
-        at = (radius * cos(angle / 2), radius * sin(angle / 2))
-        white = {"facecolor": "white", "edgecolor": "none", "pad": 0.4}
-        drawing.label(axes, name, at, (6, 0), bbox=white)
+def _angle(axes, name, angle, radius, above=0.0):
+    """Mark an angle at the origin, measured from the horizontal axis; its name is ``above`` one."""
+    size, middle = 2 * radius, (angle + above) / 2
+    axes.add_patch(Arc((0, 0), size, size, theta2=degrees(angle), lw=0.7, clip_on=False))
+    at = (radius * cos(middle), radius * sin(middle))
+    drawing.label(axes, name, at, (6, 0), path_effects=[withStroke(linewidth=2, foreground="w")])
 
 
 def _ends(axes, name, end, sigma, points, at, offset):

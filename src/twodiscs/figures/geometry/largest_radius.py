@@ -11,7 +11,7 @@ from twodiscs.model.box import Box
 
 #: Inches: the tallest drawing of the box, the space around it, the map beneath and its margins.
 TALLEST, LEFT, RIGHT, ABOVE, BENEATH = 1.75, 0.34, 0.58, 0.08, 0.42
-MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.42, 0.1, 0.36, 1.5
+MAP_LEFT, MAP_RIGHT, MAP_BOTTOM, MAP_HEIGHT = 0.48, 0.1, 0.36, 1.5
 
 
 def draw(box, tables):
@@ -103,7 +103,7 @@ def _map(axes, box):
         drawing.label(axes, f"${long}/{short}={shape:g}$", (last - 0.25, 0.46), (-4, 0), ha="right")
     axes.set(xlim=(1, last), ylim=(0, 0.6), xlabel=f"${long}/{short}$", ylabel=f"$r/{short}$")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
-    drawing.label(axes, "(b)", (1, 0.6), (5, -4), ha="left", va="top")
+    panels.letter(axes, "b")
     clear = 2.3 if shape > 2.45 else 2.9
     drawing.label(axes, "both hops", (clear, 0.125))
     drawing.label(axes, f"{hops} hops", (clear, 0.375))

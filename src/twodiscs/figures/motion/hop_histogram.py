@@ -11,7 +11,7 @@ from twodiscs.model.events import AXIS
 from twodiscs.theory import tails
 
 #: Inches: the panel of all intervals, the panel of short ones, the gap between, the space above.
-ALL, SHORT, GAP, TOP = 1.9, 1.2, 0.3, 0.22
+ALL, SHORT, GAP, TOP = 1.75, 1.1, 0.42, 0.22
 
 #: The longest of the short intervals, in mean times.
 LONGEST_SHORT = 2.5
@@ -61,9 +61,9 @@ def draw(box, tables):
     for axes, end in ((whole, last), (short, LONGEST_SHORT)):
         times = np.linspace(0, end, 60)
         axes.plot(times, np.exp(-times), color=BLACK, ls=(0, (4, 2)), label=r"$e^{-t/\tau}$")
-        axes.set(xlim=(0, end), ylabel=r"density $\tau\,p(t)$")
+        axes.set(xlim=(0, end), xlabel=r"interval $t/\tau$", ylabel=r"density $\tau\,p(t)$")
     whole.set(yscale="log", ylim=(low / 3, None))
-    short.set(ylim=(0, None), xlabel=r"interval $t/\tau$")
+    short.set_ylim(0, None)
     whole.legend(loc="upper right")
     panels.letter(whole, "a")
     panels.letter(short, "b")

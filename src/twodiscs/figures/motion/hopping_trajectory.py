@@ -8,7 +8,7 @@ from twodiscs.figures.motion import many
 from twodiscs.model.events import AXIS
 
 #: Inches: each of the two panels, the gap between them and the space above.
-PANEL, GAP, TOP = 1.15, 0.3, 0.22
+PANEL, GAP, TOP = 1.05, 0.42, 0.22
 
 #: The mean number of rows in the lower panel, which is lower if hops would be closer than ``APART``
 #: of its width; and its longest time, over that of the upper panel.
@@ -45,17 +45,14 @@ def draw(box, tables, radius=None):
     if gaps.size and gaps.min() < APART * length:
         length = max(gaps.min() / APART, length / 10)
         start, end = _crowded(hops, length, times[0], times[-1])
-    for axes, thick, mark in (
-        (whole, 0.3, {"marker": "o", "markersize": 2.2, "mew": 0}),
-        (close, 0.7, {"marker": "|", "markersize": 9, "mew": 0.9}),
-    ):
-        axes.set_ylabel(f"${axis}_2-{axis}_1$")
+    for axes, thick, size in ((whole, 0.3, 2.2), (close, 0.7, 3)):
+        axes.set(xlabel="time $t$", ylabel=f"${axis}_2-{axis}_1$")
         axes.axhline(0, color=GREY, lw=0.5, zorder=1)
         axes.plot(times, apart, color=BLUE, lw=thick, zorder=2)
-        axes.plot(hops, 0 * hops, ls="", color=VERMILLION, zorder=3, **mark)
+        axes.plot(hops, 0 * hops, "o", color=VERMILLION, markersize=size, mew=0, zorder=3)
     reach = 1.08 * np.abs(apart).max()
     whole.set(xlim=(times[0], times[-1]), ylim=(-reach, reach))
-    close.set(xlim=(start, end), ylim=(-reach, reach), xlabel="time $t$")
+    close.set(xlim=(start, end), ylim=(-reach, reach))
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
     whole.axvspan(start, end, color=ORANGE, alpha=0.45, lw=0, zorder=0, label="stretch in (b)")
@@ -76,7 +73,7 @@ def caption(shown):
     """
     if shown.any_row(lambda row: row["event"] == shown_hop(shown.box)):
         text += """
-        Dots in (a) and bars in (b) mark the hops, at which the separation changes sign. A hop is
+        Dots mark the hops, at which the separation changes sign. A hop is
         often undone soon, before collisions have scrambled the motion.
         """
     return text

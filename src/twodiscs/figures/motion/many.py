@@ -26,7 +26,7 @@ FEW = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 LOW, HIGH = 0.05, 0.95
 
 #: Inches: each of the two panels, the gap between them and the space above.
-PANEL, GAP, TOP = 1.45, 0.3, 0.22
+PANEL, GAP, TOP = 1.45, 0.42, 0.22
 
 #: Points: a line for each disc, in the upper panel and in the lower one.
 THIN, THICK = 0.5, 0.9
@@ -75,10 +75,9 @@ def world_lines(box, rows, radius=None):
         shown = places[:, times <= axes.get_xlim()[1]]
         goes_on = axis in box.effects.get("periodic", "")
         low, high = (shown.min(), shown.max()) if goes_on else (-side / 2, side / 2)
-        axes.set(ylabel=f"${axis}$", ylim=(low, high))
+        axes.set(xlabel="time $t$", ylabel=f"${axis}$", ylim=(low, high))
         for line, colour in zip(places, shades, strict=True):
             axes.plot(times, line, color=colour, lw=width)
-    close.set_xlabel("time $t$")
     for axes, name in ((whole, "a"), (close, "b")):
         panels.letter(axes, name)
     if box.discs <= NAMED:

@@ -68,7 +68,7 @@ def caption(shown):
     if shown.square and shown.shows("right_wall_time", "top_wall_time"):
         text += "In a square box both pressures are the same. "
     if shown.plain:
-        text += "Dashed lines in (a) are the leading laws below the largest radius. "
+        text += "Dashed lines in (a) are the limiting laws below the largest radius. "
     if shown.box is None or virial.weights(shown.box.tiny) is not None:
         text += """
         (b) The virials of the walls and of the collisions of the discs, divided by twice the mean

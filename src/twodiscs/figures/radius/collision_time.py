@@ -21,6 +21,6 @@ def caption(shown):
     if shown.plain:
         text += """
         Dashed lines are the first two orders of the law for small discs, which starts as
-        3wh/(8√2 r), and the leading law below the largest radius.
+        3wh/(8√2 r), and the limiting law below the largest radius.
         """
     return text

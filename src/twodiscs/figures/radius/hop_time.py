@@ -22,7 +22,7 @@ def caption(shown):
     if shown.plain:
         text += """
         Dashed lines in (a) are the laws for small discs, to first order in r. In (b) they are the
-        leading laws: if a hop becomes blocked before the discs jam, its time diverges as
+        limiting laws: if a hop becomes blocked before the discs jam, its time diverges as
         (r_c − r)⁻².
         """
     if shown.square and shown.shows("vertical_hop_time", "horizontal_hop_time"):

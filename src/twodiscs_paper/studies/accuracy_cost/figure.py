@@ -22,8 +22,8 @@ from twodiscs.figures.kit.style import (
 from twodiscs.model.box import Box
 
 #: Inches: width of two columns, the height of a panel, margins and gaps.
-WIDTH, HEIGHT = 7.0, 2.1
-LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.4, 0.55, 0.62
+WIDTH, HEIGHT = 7.0, 1.6
+LEFT, RIGHT, BOTTOM, TOP, ACROSS, BETWEEN = 0.5, 0.1, 0.36, 0.36, 0.55, 0.58
 
 LEGEND = {"fontsize": 6.8, "handlelength": 1.8, "borderaxespad": 0.3, "labelspacing": 0.2}
 
@@ -67,7 +67,7 @@ def draw(box=None, *, tables):
             axes.xaxis.set_minor_formatter(NullFormatter())
         draw_panel(axes, rows)
         axes.yaxis.set_minor_formatter(NullFormatter())
-    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=14)
+    name_box(figure.axes[0], Box(rows[0]["width"], rows[0]["height"]), up=12)
     return figure
 
 
@@ -75,16 +75,16 @@ def caption(shown):
     """Return the caption."""
     return """
     The cost of a digit: true relative error against processor time on one core, root mean square
-    over repeated runs. Error bars are one standard error. Numbers in the legends are fitted powers
-    of the time. (a) Volume by rejection sampling, by the conditioned sampler and by scrambled Sobol
-    points. (b) Area of disc collisions by shells of thickness ε, whose bias (dotted) no work
-    removes, and by shells with the ε at which bias and noise balance; by samples on the surface
-    itself and by Sobol points there. (c) Mean time between vertical hops by event-driven dynamics:
-    one trajectory at a time, many in lock step, and many in single precision; and by a search for
-    overlaps every Δt, whose error ∝ Δt (dotted) does not fall with time. The dashed line is the
-    smallest error of time steps with any Δt. The arrow compares the times to an error of 1e-3.
-    (d) Gauss quadrature along the arc against the number of its nodes, and exact evaluation; the
-    legend has their processor times.
+    over repeated runs. Error bars are one standard error. Dashed lines ∝ 1/√t are the law of
+    independent samples, with a fitted factor. (a) Volume by rejection sampling, by the conditioned
+    sampler and by scrambled Sobol points. (b) Area of disc collisions by shells of thickness ε,
+    whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance;
+    by samples on the surface itself and by Sobol points there. (c) Mean time between vertical hops
+    by event-driven dynamics: one trajectory at a time, many in lock step, and many in single
+    precision; and by a search for overlaps every Δt, whose error ∝ Δt (dotted) does not fall with
+    time. The dash-dotted line is the smallest error of time steps with any Δt. The arrow compares
+    the times to an error of 1e-3. (d) Gauss quadrature along the arc against the number of its
+    nodes, and exact evaluation; the legend has their processor times.
     """
 
 
@@ -96,13 +96,6 @@ def _of(rows, part, method, **where):
         if all(row[name] == value for name, value in where.items()):
             settings.setdefault(row["setting"], []).append(row)
     return dict(sorted(settings.items(), key=lambda item: -(item[0] or 0.0)))
-
-
-def _slope(row):
-    """Return the fitted slope of a row as text, its error in units of the last digit."""
-    if row["slope_stderr"] is None:
-        return ""
-    return f"${row['slope']:.2f}({max(1, round(100 * row['slope_stderr']))})$"
 
 
 def _points(axes, rows, look, label=None, style="-", full=False):
@@ -122,17 +115,39 @@ def _points(axes, rows, look, label=None, style="-", full=False):
         axes.errorbar(x, y, np.minimum(bars, 0.9 * y), ls="", color=colour, lw=0.6)
 
 
+def _law(axes, rows):
+    """Draw the law of independent samples, error² ∝ 1/time, through the errors of one method."""
+    seconds, error = (np.array([row[name] for row in rows]) for name in ("seconds", "error"))
+    law = np.exp(np.mean(np.log(error) + np.log(seconds) / 2)) / np.sqrt(seconds)
+    axes.plot(
+        seconds, law, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1, label=r"$\propto t^{-1/2}$"
+    )
+
+
+def _floor(axes, rows, colour):
+    """Draw the error that no work removes, from the first of ``rows`` to the edge of the panel."""
+    if rows[0]["floor"]:
+        ends = [rows[0]["seconds"], axes.get_xlim()[1]]
+        axes.plot(ends, [rows[0]["floor"]] * 2, color=colour, lw=0.6, ls=DOTTED)
+
+
+def _decades(axes):
+    """Let the abscissa end at powers of ten, which have labels."""
+    low, high = np.log10(axes.dataLim.intervalx)
+    axes.set_xlim(10 ** math.floor(low), 10 ** math.ceil(high))
+
+
 def _volume(axes, rows):
     radii = sorted({row["radius"] for row in rows if row["part"] == "volume"})
     for radius, style, full in zip(radii, ("-", (0, (4, 2))), (False, True), strict=False):
         for method in ("rejection", "conditioned"):
             (series,) = _of(rows, "volume", method, radius=radius).values()
-            label = f"{method}, $r={radius:g}$: {_slope(series[0])}"
-            _points(axes, series, LOOK[method], label, style, full)
+            _points(axes, series, LOOK[method], f"{method}, $r={radius:g}$", style, full)
     (series,) = _of(rows, "volume", "sobol").values()
-    _points(axes, series, LOOK["sobol"], f"Sobol points, $r={radii[0]:g}$: {_slope(series[0])}")
-    axes.set(xlim=(3e-7, 0.2), ylim=(5e-5, 1))
-    axes.legend(loc="lower left", **LEGEND)
+    _points(axes, series, LOOK["sobol"], f"Sobol points, $r={radii[0]:g}$")
+    _law(axes, next(iter(_of(rows, "volume", "rejection", radius=radii[0]).values())))
+    _decades(axes)
+    axes.legend(loc="best", **LEGEND)
     _title(axes, "volume")
 
 
@@ -140,21 +155,24 @@ def _area(axes, rows):
     shells = _of(rows, "area", "shell").items()
     for look, (thickness, series) in zip(SHELLS, shells, strict=False):
         _points(axes, series, look, rf"shells, $\varepsilon={thickness:.2g}$")
-        axes.axhline(series[0]["floor"], color=look[0], lw=0.6, ls=DOTTED)
     best = [row for series in _of(rows, "area", "balanced_shell").values() for row in series]
-    _points(axes, best, LOOK["balanced_shell"], rf"best $\varepsilon$: {_slope(best[0])}")
+    _points(axes, best, LOOK["balanced_shell"], r"best $\varepsilon$")
     for method, name in (("surface", "on the surface"), ("sobol", "same, Sobol")):
         (series,) = _of(rows, "area", method).values()
-        _points(axes, series, LOOK[method], f"{name}: {_slope(series[0])}")
-    axes.set(xlim=(1e-5, 20), ylim=(2e-4, 0.2))
-    axes.legend(loc="upper right", **LEGEND)
+        _points(axes, series, LOOK[method], name)
+    (series,) = _of(rows, "area", "surface").values()
+    _law(axes, series)
+    _decades(axes)
+    for look, (_, series) in zip(SHELLS, shells, strict=False):
+        _floor(axes, series, look[0])
+    axes.legend(loc="lower left", **LEGEND)
     _title(axes, f"area of collisions, $r={best[0]['radius']:g}$")
 
 
 def _quadrature(axes, rows):
     """Draw the errors of quadrature over the number of its nodes, and of the exact evaluation."""
     parts = (("volume", "volume", BLUE, "o"), ("area", "area", VERMILLION, "s"))
-    for part, name, colour, marker in parts:
+    for i, (part, name, colour, marker) in enumerate(parts):
         (nodes,) = _of(rows, part, "quadrature").values()
         (exact,) = _of(rows, part, "exact").values()
         error = np.maximum([row["error"] for row in nodes], ROUNDING)
@@ -165,7 +183,7 @@ def _quadrature(axes, rows):
         )  # fmt: skip
         micro = 1e6 * exact[0]["seconds"]
         axes.axhline(
-            max(exact[0]["error"], ROUNDING), color=colour, lw=0.8, ls=(0, (4, 2)),
+            max(exact[0]["error"], ROUNDING), color=colour, lw=0.8, ls=(5 * i, (4, 6)),
             label=rf"{name}, exact evaluation: ${micro:.0f}\,\mu$s",
         )  # fmt: skip
     axes.set(xlabel="number of nodes", ylim=(2e-17, 1))
@@ -184,18 +202,22 @@ def _times(axes, rows):
     }
     for method, name in names.items():
         (series,) = _of(rows, "time", method, quantity=quantity).values()
-        _points(axes, series, LOOK[method], f"{name}: {_slope(series[0])}")
+        _points(axes, series, LOOK[method], name)
     steps = _of(rows, "time", "time_step", quantity=quantity).items()
     for i, (step, series) in enumerate(steps):
         _points(axes, series, LOOK["time_step"], None if i else r"time steps $\Delta t$")
-        if series[0]["floor"]:
-            axes.axhline(series[0]["floor"], color=VERMILLION, lw=0.6, ls=DOTTED)
         at = series[-1]["seconds"], series[-1]["error"]
         text = rf"$\Delta t=2^{{{round(math.log2(step))}}}$"
         style = {"ha": "left", "va": "bottom", "fontsize": 6.8, "color": VERMILLION}
         drawing.label(axes, text, at, (5, 1), **style)
     _gain(axes, rows, quantity)
-    axes.set(xlim=(4e-4, 200), ylim=(1e-5, 0.4))
+    (series,) = _of(rows, "time", "lockstep", quantity=quantity).values()
+    _law(axes, series)
+    _decades(axes)
+    for series in _of(rows, "time", "time_step", quantity=quantity).values():
+        _floor(axes, series, VERMILLION)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low / 60, 2 * high)
     axes.legend(loc="lower left", **LEGEND)
     _title(axes, f"mean time of vertical hops, $r={series[0]['radius']:g}$")
 
@@ -211,15 +233,15 @@ def _gain(axes, rows, quantity):
         (row["error"] ** 2 - row["bias"] ** 2) * row["seconds"] * row["setting"] for row in runs
     ]
     noise = np.median(noise)
-    seconds = np.geomspace(1e-3, 1e3)
-    # At a given time, (bias Δt)² + noise/(seconds Δt) is least for this Δt.
-    best = (noise / (2 * bias**2 * seconds)) ** (1 / 3)
-    error = np.sqrt((bias * best) ** 2 + noise / (seconds * best))
-    axes.plot(seconds, error, color=GREY, lw=0.8, ls=(0, (4, 2)), label=r"best $\Delta t$: $-1/3$")
-
+    # At a given time, (bias Δt)² + noise/(seconds Δt) is least, 3 (bias Δt)², for one Δt.
+    best = LEVEL / (math.sqrt(3) * bias)
+    end = noise / (2 * bias**2 * best**3)
     (engine,) = _of(rows, "time", "lockstep", quantity=quantity).values()
-    price = np.median([row["error"] ** 2 * row["seconds"] for row in engine])
-    start, end = price / LEVEL**2, np.interp(-LEVEL, -error, seconds)
+    start = np.median([row["error"] ** 2 * row["seconds"] for row in engine]) / LEVEL**2
+    seconds = np.array([min(row["seconds"] for row in runs), 3 * end])
+    style = {"color": GREY, "lw": 0.8, "ls": (0, (6, 1.5, 1, 1.5))}
+    error = LEVEL * (end / seconds) ** (1 / 3)
+    axes.plot(seconds, error, label=r"best $\Delta t$, $\propto t^{-1/3}$", **style)
     drawing.arrow(axes, (start, LEVEL), (end, LEVEL), "<|-|>", width=0.6, size=6)
     middle = math.sqrt(start * end), LEVEL
     times = float(f"{end / start:.2g}")

@@ -11,7 +11,7 @@ from twodiscs.theory.exact import event_rate, mean_times
 
 #: Inches: the width of the figure; heights of the panels of the times and of their ratios to a
 #: Poisson process; widths of these panels and of the panel of single precision.
-WIDTH, TIMES, RATIOS, ACROSS, SINGLE = 7.0, 2.1, 1.0, 3.72, 2.1
+WIDTH, TIMES, RATIOS, ACROSS, SINGLE = 7.0, 1.7, 1.0, 3.72, 2.1
 
 #: The smallest relative distance of a curve from the radius where its event ends.
 CLOSEST = 1e-3
@@ -81,7 +81,7 @@ def _times(axes, ratios, rows):
     panels.mark((axes, ratios), ends)
     axes.set(yscale="log", ylim=(5e-4, 1e4))
     axes.tick_params(labelbottom=False)
-    axes.set_ylabel("processor time for an error of $10^{-3}$ (s)")
+    axes.set_ylabel("time for an error of $10^{-3}$ (s)")
     axes.legend(loc="upper left", ncols=2, columnspacing=0.7, handlelength=0.9, handletextpad=0.4)
     panels.name_box(axes, box)
     ratios.axhline(1, color=BLACK)

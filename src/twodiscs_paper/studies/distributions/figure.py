@@ -24,6 +24,9 @@ DASH = 0.0, 0.3
 #: Hazards whose χ² or trend has a smaller p than this are not constant.
 SMALLEST_P = 1e-3
 
+#: The line of a fitted rate, {whether the hazards are constant: style}.
+DASHES = {True: "-", False: (0, (1, 1))}
+
 
 def draw(box, tables):
     """Draw the rows of distributions.csv on its first scene; without rows only name ``box``."""
@@ -69,6 +72,7 @@ def _rates(axes, rows):
     limit = box.threshold(event)
     radii = list(dict.fromkeys(row["radius"] for row in rows if row["event"] == event))
     radii = [radius for radius in radii if radius < FARTHEST * limit]
+    kinds = set()
     for radius, (colour, marker) in zip(radii, SERIES, strict=False):
         own = [row for row in rows if (row["event"], row["radius"]) == (event, radius)]
         mean = own[0]["exact_mean"]
@@ -88,13 +92,15 @@ def _rates(axes, rows):
         constant = all(row["p"] > SMALLEST_P for row in tests)
         for row in tests[:1]:
             ends = row["first"] / mean, min(row["last"] / mean, LONGEST)
-            fit = {"ls": "-" if constant else (0, (1, 1)), "zorder": 2}
+            fit = {"ls": DASHES[constant], "zorder": 2}
+            kinds.add(constant)
             axes.plot(ends, [row["estimate"] * mean] * 2, color=colour, lw=1.4, **fit)
         zero = mean * tails.density_at_zero(box.scene(radius), event)
         axes.plot(DASH, [zero] * 2, color=colour, lw=1.8, clip_on=False, zorder=5)
     axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)), label="exponential")
-    for ls, name in (("-", "constant rate"), ((0, (1, 1)), "constant rate, rejected")):
-        axes.plot([], [], color=GREY, lw=1.4, ls=ls, label=name)
+    for constant in sorted(kinds, reverse=True):
+        name = "constant rate" if constant else "constant rate, rejected"
+        axes.plot([], [], color=GREY, lw=1.4, ls=DASHES[constant], label=name)
     late = np.linspace(6, LONGEST, 40)
     axes.plot(late, 3 / late, color=GREY, lw=0.9, ls=(0, (6, 1.5, 1, 1.5)), label=r"$3\tau/t$")
     axes.set(xlim=(0, LONGEST), ylim=(0, None), xlabel=r"time since the last hop $t/\tau$")

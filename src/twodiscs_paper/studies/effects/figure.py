@@ -24,7 +24,7 @@ from twodiscs_paper.studies.effects.curves import SHOWN_EVENTS
 #: margins and gaps; heights of the panels of curves and of residuals, and of the legend.
 WIDTH, ACROSS, COST, NAMES = 7.0, 1.56, 0.96, 0.7
 LEFT, BOTTOM, TOP, GAP, JOINT = 0.42, 0.34, 0.36, 0.06, 0.07
-MAIN, LOWER, LEGEND = 1.95, 0.75, 0.5
+MAIN, LOWER, LEGEND = 1.95, 0.75, 0.4
 
 #: Names of events in this figure, if they differ from those in other figures.
 NAMES_OF = {"any_wall": "wall hits"}

@@ -13,7 +13,7 @@ from twodiscs.figures.kit.style import (
 )
 
 #: Inches: the width of two columns, the height of a panel, margins, the gap between panels.
-WIDTH, HEIGHT = 7.0, 2.0
+WIDTH, HEIGHT = 7.0, 1.5
 RIGHT, BOTTOM, TOP, BETWEEN = 0.1, 0.36, 0.24, 0.6
 
 BOUND = {"color": GREY, "lw": 0.6, "ls": (0, (4, 2)), "zorder": 0}
@@ -36,14 +36,18 @@ def draw(box, tables):
 
 def caption(shown):
     """Return the caption."""
-    return """
+    text = """
     Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative error of
     volume and areas in double precision below the largest radius, and (b) on both sides of the
     radii where a hop becomes blocked: closed forms, and the worst of volume, areas and mean times
     as computed here. (c) Accepted share of proposed configurations, by rejection from the prism and
-    by the draws of initial states. (d) Residuals z of volume and areas estimated by these draws.
-    Rows without a symbol were not run.
+    by the conditioned sampler of initial states. (d) Residuals z of volume and areas by this
+    sampler.
     """
+    return text + shown.if_any(
+        lambda row: row["part"] == "estimates" and row["status"] != "sampled",
+        "A radius without symbols has too few samples in its shells for an error bar.",
+    )
 
 
 def by_part(rows):
@@ -129,8 +133,8 @@ def _shares(axes, rows):
     """Draw the accepted shares below the largest radius."""
     rows = select(rows, case="largest radius")
     for method, look, name in (
-        ("conditioned", SERIES[0], "as drawn here"),
-        ("prism", SERIES[1], "from the prism"),
+        ("conditioned", SERIES[0], "conditioned"),
+        ("prism", SERIES[1], "rejection"),
     ):
         points = sorted((-row["distance"], row["value"]) for row in select(rows, method=method))
         x, y = zip(*points, strict=True) if points else ([], [])

@@ -56,14 +56,14 @@ def caption(shown):
     """Return the caption."""
     text = """
     The dynamics in hard cases; dashed lines are the required bounds. (a) Largest values in a long
-    run: error of the energy, overlap of the discs, distance of centres beyond their range. (b)
-    Worst error of predicted times to a contact (circles) and to a wall (squares), against 50
-    digits, for many kinds of approach. (c) Velocities are reversed after n events: error of return
-    after n more events, against the binary digits that the Lyapunov exponent λ per event costs; the
-    line is one rounding that grows at this rate. The legend has the number of events after which
-    half of the digits are lost, and in brackets the number that λ predicts. (d) Share of 95 %
-    intervals that contain the exact mean time, over independent repetitions. Rows without a symbol
-    were not run.
+    run: error of the energy, overlap of the discs, distance of centres beyond their range. Symbols
+    at 0 are exact zeros. (b) Worst error of predicted times to a contact (circles) and to a wall
+    (squares), against 50 digits, for many kinds of approach. (c) Velocities are reversed after n
+    events: error of return after n more events, against the binary digits that the Lyapunov
+    exponent λ per event costs; the line is one rounding that grows at this rate. The legend has the
+    number of events after which half of the digits are lost, and in brackets the number that λ
+    predicts. (d) Share of 95 % intervals that contain the exact mean time, over independent
+    repetitions.
     """
     return text + shown.if_any(
         lambda row: row["part"] == "coverage" and row["value"] is None,
@@ -117,7 +117,7 @@ def _times(axes, rows):
 
 def _reversal(axes, rows):
     """Draw the error of return against the digits that the exponent predicts to be lost."""
-    looks = (*SERIES, (ORANGE, "o"))
+    looks = (*SERIES, (ORANGE, "v"))
     radii = sorted({row["radius"] for row in select(rows, quantity="return_error")})
     bits = np.array([0.0, 36.0])
     axes.plot(bits, 2.0 ** (bits - 53), color=BLACK, lw=0.7, zorder=1)

@@ -46,7 +46,7 @@ def draw(box, tables):
     full = {"ls": "", "marker": "o", "markersize": 3.7}
     hops.plot([], [], "x", color=BLACK, markersize=3, label="first passages")
     hops.plot([], [], color=BLACK, label="exact")
-    hops.plot([], [], color=BLACK, lw=0.7, ls=(0, (4, 2)), label="leading law")
+    hops.plot([], [], color=BLACK, lw=0.7, ls=(0, (4, 2)), label="limiting law")
     for axes in (hops, ratios):
         axes.plot([], [], color=BLACK, label="from strips", **full)
     _slopes(hops)
@@ -57,7 +57,7 @@ def draw(box, tables):
     ratios.set_yticks([1, 2, 5], ["1", "2", "5"])
     ratios.yaxis.set_minor_formatter("")
     hops.set_ylabel("time between hops")
-    ratios.set_ylabel(r"time / leading law $\tau_0\,\delta^\gamma$")
+    ratios.set_ylabel(r"time / limiting law $\tau_0\,\delta^\gamma$")
     for axes in (hops, ratios):
         axes.set_xlabel(r"distance from the limit $\delta/r_{\rm c}$")
     hops.legend(loc="upper right", ncols=2)
@@ -73,12 +73,12 @@ def caption(shown):
     return """
     Mean times near the radius at which their event ends, r = r_c − δ. For vertical hops r_c = w/4,
     for horizontal ones h/4, and for all other events the largest radius. (a) Times between hops by
-    event-driven molecular dynamics (circles and squares), exact (lines) and by their leading laws ∝
-    δ⁻² (dashed), and mean first passages from a random moment (crosses). Grey lines have the slopes
-    of inertial and of diffusive motion. (b) Times divided by their leading laws, which have the
-    exponent −2 for hops that become blocked and 1 for events that end with the largest radius. Full
-    symbols come from initial states in a strip around the surface of the hop, where the flux is
-    measured and not the waiting time. Error bars are one standard error.
+    event-driven molecular dynamics (circles and squares), exact (lines) and by their limiting laws
+    ∝ δ⁻² (dashed), and mean first passages from a random moment (crosses). Grey lines have the
+    slopes of inertial and of diffusive motion. (b) Times divided by their limiting laws, which have
+    the exponent −2 for hops that become blocked and 1 for events that end with the largest radius.
+    Full symbols come from initial states in a strip around the surface of the hop, where the flux
+    is measured and not the waiting time. Error bars are one standard error.
     """
 
 
