@@ -32,7 +32,7 @@ class Study:
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}
-    families: tuple = ("plain", "effects")
+    families: tuple = ("plain",)
     parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()

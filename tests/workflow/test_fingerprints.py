@@ -99,6 +99,18 @@ def test_an_edit_for_one_family_reruns_its_points_alone(floor, family):
     assert all(job.endswith(f" of {family}") for job in found)
 
 
+def test_an_edit_for_one_family_reruns_the_studies_of_its_scenes_alone():
+    found = reruns()
+    many = {"study more_discs", "study passages"}
+    of_three = {"twodiscs.theory.many.three", "twodiscs.theory.many.rates"}  # a virial coefficient
+    for name, jobs in found.items():
+        studies = {job for job in jobs if job.startswith("study ")}
+        if "many" in name.split(".")[:-1] or name.endswith("families.many"):
+            assert studies == many | ({"study agreement"} if name in of_three else set()), name
+    effects = {job for job in found["twodiscs.theory.weighted"] if job.startswith("study ")}
+    assert effects == {"study effects", "study passages"}
+
+
 def test_a_module_that_all_points_share_reruns_all_of_them():
     found = reruns()
     for name in ("model.scene", "sampling.jit", "sampling.streams", "sampling.blocks.rounds"):

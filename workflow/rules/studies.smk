@@ -99,7 +99,15 @@ rule effects_cost:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
     threads: ALL_CORES
     params:
-        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
+        # The benchmarks of many discs are not part of it.
+        code=code(
+            "twodiscs_paper.benchmark",
+            *family_modules("dynamics", "plain", "effects"),
+            without=(
+                "twodiscs.dynamics.many.kernels",
+                "twodiscs.dynamics.many.lockstep",
+            ),
+        ),
     shell:
         "python -P -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
         " --output {output.table:q} > {log:q} 2>&1"

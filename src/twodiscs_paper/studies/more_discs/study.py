@@ -16,7 +16,7 @@ def _parameters(configuration):
 
 STUDY = Study(
     "more_discs",
-    families=("plain", "effects", "many"),
+    families=("many",),
     builds="mean times of three, four and eight discs",
     tables=(MoreDiscs,),
     seconds=10.0,
