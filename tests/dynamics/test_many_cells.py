@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.ensemble import relative_errors
+from twodiscs.dynamics.families.many import mean_interval
 from twodiscs.dynamics.many import cells as many_cells
-from twodiscs.dynamics.many import kernels
+from twodiscs.dynamics.many import kernels, path
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
@@ -147,6 +148,62 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     kernels.advance_scene(scene, states, laps, duration)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
+
+
+@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3]], ids=repr)
+def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
+    """In the same order, hops as well, before roundings have grown; also past a full log."""
+    state = initial.states(scene, 1, 1)[:, 0]
+    if scene.periodic:
+        state[3] += 2 * scene.width
+    duration = many.replica_duration(scene, 5 * scene.discs)
+    monkeypatch.setattr(kernels, "ENTRIES", 50)
+    found = [*path.events_of(scene, state, duration)]
+    monkeypatch.setattr(path, "large_grid", lambda scene: None)
+    other = [*path.events_of(scene, state, duration)]
+    assert len(found) > 5 * scene.discs
+    assert [row[1:4] for row in found] == [row[1:4] for row in other]
+    for (time, *_, now), (same, *_, then) in zip(found, other, strict=True):
+        assert time == pytest.approx(same, abs=1e-7)
+        assert now == pytest.approx(then, abs=1e-7 * scene.width)
+
+
+@pytest.mark.parametrize(
+    ("scene", "hop"),
+    [(BORDER[0], "vertical_hop"), (BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
+    ids=repr,
+)
+def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):
+    """Those of each chain, from the same states, before roundings have grown."""
+    mean = mean_interval(scene, hop)
+    bins = mean / 16, np.arange(65) // 8 + 65
+    given = scene, hop, 3, 2, 4, 20, 8 * mean, bins
+    sums, other = np.zeros((2, 3, 74), np.int64)
+    monkeypatch.setattr(kernels, "ENTRIES", 50)
+    found = kernels.record_intervals(*given, sums, np.ones(1, np.bool_))
+    monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
+    same = kernels.record_intervals(*given, other, np.ones(1, np.bool_))
+    assert found == pytest.approx(same, rel=1e-6)
+    assert np.array_equal(found[1], same[1])
+    assert found[1].sum() > 20
+    # A rounding may move an interval across the border of a bin.
+    assert np.abs(sums - other)[0].sum() <= 2
+    assert np.array_equal(sums[0, :65].sum(), found[1].sum())
+
+
+def test_each_row_of_256_discs_is_where_it_says():
+    """The energy stays, discs are level at hops, and touch at collisions."""
+    scene = Scene(8.0, 4.0, 0.1, discs=256)
+    rows = [*path.events_of(scene, initial.states(scene, 1, 1)[:, 0], path.usual_duration(scene))]
+    assert len(rows) > 1500
+    for _, name, first, second, state in rows:
+        x, y, u, v = np.split(state, 4)
+        assert np.sum(u * u + v * v) == pytest.approx(1, abs=1e-12)
+        if name == "vertical_hop":
+            assert y[first - 1] == pytest.approx(y[second - 1], abs=1e-9)
+        if name == "disc_collision":
+            i, j = first - 1, second - 1
+            assert math.hypot(x[i] - x[j], y[i] - y[j]) == pytest.approx(0.2, abs=1e-9)
 
 
 #: Roundings of the box that an overlap may be, and |E − 1/2| after 1e8 events.

@@ -106,7 +106,7 @@ class IntervalRun:
         require_room(scene)
         if not self._blocks:
             raise InputError(
-                f"budget must allow for {CHAINS * RETURNS} intervals, at radius {scene.radius!r} "
+                f"budget must allow for {self._each} intervals, at radius {scene.radius!r} "
                 f"of {self._events:.2g} events each, not {self.budget!r}"
             )
 
@@ -115,9 +115,15 @@ class IntervalRun:
         return of_family(self.scene, "dynamics", "events_per_interval")(self.scene, self.event)
 
     @property
+    def _each(self):
+        """The number of intervals of a block."""
+        of_chain = of_family(self.scene, "dynamics", "intervals_of_chain")
+        return CHAINS * of_chain(self.scene, self.event)
+
+    @property
     def _blocks(self):
-        wanted = -(-self.intervals // (CHAINS * RETURNS))
-        return min(wanted, int(self.budget / (CHAINS * RETURNS * self._events)))
+        wanted = -(-self.intervals // self._each)
+        return min(wanted, int(self.budget / (self._each * self._events)))
 
     @property
     def _grain(self):
@@ -151,7 +157,7 @@ class IntervalRun:
             return sums, np.array(moments, object)
 
         ratio = of_family(self.scene, "dynamics", "interval_cost")(self.scene)
-        return {"all": fixed(work, self._blocks, CHAINS * RETURNS * self._events, ratio)}
+        return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
     def point(self, outcomes):
         """Return the ``IntervalsPoint``, given {"all": its ``Outcome``}."""

@@ -12,8 +12,10 @@ from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import note_of_number
 from twodiscs.comparison.measured.states import with_aliases
 from twodiscs.dynamics.counting import expected_event_rate
+from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, new_wraps, unwrap
 from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
+from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
     from twodiscs.model.scene import Scene
 
-#: Replicas with one random stream.
+#: Replicas with one random stream; fewer where a family has smaller blocks than ``REPLICAS``.
 BLOCK = 4096
 
 
@@ -157,14 +159,14 @@ def _values(function, start, now):
     return values.astype(float)
 
 
-def _check_finite(values, times, done):
-    """Raise ``InputError`` for NaN and infinity in the ``values`` of block ``done``."""
+def _check_finite(values, times, first):
+    """Raise ``InputError`` for NaN and infinity in ``values``, from the replica ``first`` on."""
     if not np.isfinite(values).all():
         replica, time, *_ = np.argwhere(~np.isfinite(values))[0]
         value = values[replica, time][~np.isfinite(values[replica, time])].flat[0]
         raise InputError(
             f"function must return finite numbers, not {value} at the time {times[time]:g} of the "
-            f"replica {(done - 1) * BLOCK + replica}"
+            f"replica {first + replica}"
         )
 
 
@@ -180,7 +182,8 @@ def observe(
     stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must take two arrays of states, not be {quote(function)}")
-    blocks = -(-check_count("replicas", replicas, most=10**9) // BLOCK)
+    each = BLOCK * of_family(scene, "dynamics", "block_replicas")(scene) // REPLICAS
+    blocks = -(-check_count("replicas", replicas, most=10**9) // each)
     rate = expected_event_rate(scene)
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
@@ -190,7 +193,7 @@ def observe(
 
     def snapshots(block):
         """Yield the states of a block at time 0, then at all ``times``."""
-        filled, wraps = states(scene, BLOCK, stream, block), new_wraps(scene, BLOCK)
+        filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
         yield with_aliases(as_records(scene, filled))
         for step in np.diff(times, prepend=0.0):
             if step:
@@ -204,16 +207,16 @@ def observe(
         every = in_threads(lambda b: [*snapshots(b)], ((b,) for b in range(blocks)), cores)
         for done, (start, *later) in enumerate(every, 1):
             values = np.stack([_values(function, start, now) for now in later], axis=1)
-            _check_finite(values, times, done)
+            _check_finite(values, times, (done - 1) * each)
             values = over_times(values)
             own, spread = values.mean(axis=0), ((values - values.mean(axis=0)) ** 2).sum(axis=0)
             if mean is None:
-                total, mean, square = BLOCK, own, spread
+                total, mean, square = each, own, spread
             else:
                 # The mean and the sum of squares of two samples together (Chan et al., 1979).
-                n, apart = total + BLOCK, own - mean
-                square = square + spread + apart**2 * (total * BLOCK / n)
-                mean, total = mean + apart * (BLOCK / n), n
+                n, apart = total + each, own - mean
+                square = square + spread + apart**2 * (total * each / n)
+                mean, total = mean + apart * (each / n), n
             if progress is not None:
                 progress(done, blocks)
     stderr = np.sqrt(square / (total - 1) / total)

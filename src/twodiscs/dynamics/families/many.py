@@ -10,6 +10,7 @@ from twodiscs.dynamics.many.path import (
     events_of,
     new_wraps,
     state_of,
+    trajectory_rate,
     unwrap,
     usual_duration,
 )
@@ -19,9 +20,10 @@ from twodiscs.sampling.many.initial import LARGE
 
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
-    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost", "mean_interval",
-    "new_wraps", "planned", "rare_hops", "record_intervals", "replica_duration", "run_blocks",
-    "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
+    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
+    "intervals_of_chain", "mean_interval", "new_wraps", "planned", "rare_hops", "record_intervals",
+    "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
+    "work_per_event",
 ]  # fmt: skip
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
@@ -34,7 +36,8 @@ PAIR = 0.8
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
 TOUCHED, COMPARED = 50.0, 0.25
 
-trajectory_rate = expected_event_rate
+#: The most by which the window of a chain of ``LARGE`` numbers of discs is longer.
+LONGER = 64
 
 
 def expected_rate(scene, event):
@@ -76,9 +79,7 @@ def cost_ratio(scene):
     return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
 
 
-def interval_cost(scene):
-    """Return the time of an event over the plain one for intervals, which compare all pairs."""
-    return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
+interval_cost = cost_ratio
 
 
 def mean_interval(scene, hop):
@@ -92,16 +93,31 @@ def mean_interval(scene, hop):
 
 
 def _window(scene, hop):
-    """Return a time in which ``RETURNS`` intervals begin, or up to twice as many."""
-    return 2.0 ** math.ceil(math.log2(RETURNS * mean_interval(scene, hop)))
+    """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
+
+    For ``LARGE`` numbers of discs it is that of a replica, if this is longer by ``LONGER`` at most:
+    the initial state takes as much time.
+    """
+    window = 2.0 ** math.ceil(math.log2(RETURNS * mean_interval(scene, hop)))
+    if scene.discs < LARGE:
+        return window
+    return min(max(window, replica_duration(scene)), LONGER * window)
+
+
+def intervals_of_chain(scene, hop):
+    """Return a number of intervals; up to twice as many begin in the window of a chain."""
+    return max(RETURNS, int(_window(scene, hop) / mean_interval(scene, hop) / 2))
 
 
 def events_per_interval(scene, hop):
-    """Return the wall and disc events per interval, as if a chain had ``RETURNS`` of them."""
-    return _window(scene, hop) * expected_event_rate(scene) / RETURNS
+    """Return the wall and disc events per interval, as if there were ``intervals_of_chain``."""
+    window = _window(scene, hop)
+    return window * expected_event_rate(scene) / intervals_of_chain(scene, hop)
 
 
 def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):
     """Record the intervals between hops, see ``many.lockstep.record_intervals``."""
     window = _window(scene, hop)
-    return lockstep.run_intervals(scene, hop, seed, first, stop, chains, window, bins, sums, going)
+    return kernels.record_intervals(
+        scene, hop, seed, first, stop, chains, window, bins, sums, going
+    )

@@ -22,6 +22,7 @@ from twodiscs.dynamics.two.returns import (
     INTERVAL_SUMS,
     events_per_interval,
     interval_cost,
+    intervals_of_chain,
     mean_interval,
 )
 from twodiscs.dynamics.two.strip import planned, rare_hops
@@ -32,10 +33,10 @@ from twodiscs.theory.exact import event_rate as expected_event_rate
 
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
-    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost", "mean_interval",
-    "new_wraps", "planned", "rare_hops", "rare_run", "rare_summary", "record_intervals",
-    "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
-    "work_per_event",
+    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
+    "intervals_of_chain", "mean_interval", "new_wraps", "planned", "rare_hops", "rare_run",
+    "rare_summary", "record_intervals", "replica_duration", "run_blocks", "state_of",
+    "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
 ]  # fmt: skip
 
 

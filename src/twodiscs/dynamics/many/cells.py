@@ -13,13 +13,16 @@ cannot meet another disc before.
 A hop of two discs is a change of sign of their separation. Both move straight from the later of
 their last events on, so all hops of a disc are found at its events: one comparison for each of the
 other discs. If no hop is counted, there are no comparisons.
+
+A ``Log`` has the times of all this, but hops are not in order in it. At the end of a stretch all
+discs are advanced to the same time, so no earlier hop is missing.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses
+from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
     ABOVE,
     BESIDE,
@@ -69,6 +72,71 @@ class Motion(NamedTuple):
     events: np.ndarray
     tree: np.ndarray
     places: Places
+
+
+class Log(NamedTuple):
+    """What happens in a stretch of time, ``size[0]`` entries.
+
+    An entry has its time after ``origin[0]``'s zero, its class, and its two discs, the same one
+    twice at a wall. Its ``states`` (n, 2, 4) are x, y, u and v of both right after an event; hops
+    have none. On a ring x goes on beyond the cell.
+    """
+
+    times: np.ndarray
+    classes: np.ndarray
+    discs: np.ndarray
+    states: np.ndarray
+    size: np.ndarray
+    origin: np.ndarray
+
+
+def new_log(discs, entries):
+    """Return an empty ``Log`` for about a number of ``entries``.
+
+    When it is full, each pair of discs may still have a hop of each kind to enter.
+    """
+    entries += discs * discs
+    return Log(
+        np.empty(entries), np.empty(entries, np.int64), np.empty((entries, 2), np.int64),
+        np.empty((entries, 2, 4)), np.zeros(1, np.int64), np.zeros(1),
+    )  # fmt: skip
+
+
+@optional(lambda discs, log: False)
+def is_full(discs, log):
+    """Return whether there is no room for another event and all hops that may come with it."""
+    return log.size[0] + discs * discs > log.times.size
+
+
+@optional(lambda time, kind, i, k, log: None)
+def note_hop(time, kind, i, k, log):
+    """Enter a hop of a class ``kind`` of discs ``i`` and ``k``."""
+    n = log.size[0]
+    log.times[n], log.classes[n] = log.origin[0] + time, kind
+    log.discs[n, 0], log.discs[n, 1] = i, k
+    log.size[0] = n + 1
+
+
+@optional(lambda time, kind, i, j, motion, laps, ring, log: None)
+def note_event(time, kind, i, j, motion, laps, ring, log):
+    """Enter an event of a class ``kind`` of discs ``i`` and ``j``, which have come to it."""
+    note_hop(time, kind, i, j, log)
+    states = log.states[log.size[0] - 1]
+    for k, disc in enumerate((i, j)):
+        states[k, 0], states[k, 1] = beyond(motion.x[disc], laps[disc], ring), motion.y[disc]
+        states[k, 2], states[k, 3] = motion.u[disc], motion.v[disc]
+
+
+@optional(lambda x, laps, ring: x)
+def beyond(x, laps, ring):
+    """Return ``x`` after a number of ``laps`` around a ring."""
+    return x + laps * ring[0]
+
+
+@optional(lambda time, log: None)
+def go_on(time, log):
+    """Let the times of a log begin later by ``time``."""
+    log.origin[0] += time
 
 
 @compiled
@@ -170,35 +238,38 @@ def first_disc(tree):
 # Events -------------------------------------------------------------------------------------------
 
 
-@optional(lambda i, at, now, positions, velocities, times, hops: 0)
-def hops_of(i, at, now, positions, velocities, times, hops):
+@optional(lambda i, at, now, positions, velocities, times, kind, log, hops: 0)
+def hops_of(i, at, now, positions, velocities, times, kind, log, hops):
     """Return with how many discs disc ``i`` has changed order, which is ``at`` that place now."""
     start, speed, since, count = positions[i], velocities[i], times[i], 0
     # It has not changed order with itself.
     positions[i] = -NEVER
     for k in range(positions.size):
         last = max(since, times[k])
-        then = positions[k] + velocities[k] * (last - times[k])
         there = positions[k] + velocities[k] * (now - times[k])
-        count += 1 if crosses(start + speed * (last - since) - then, at - there) else 0
+        apart = start + speed * (last - since) - (positions[k] + velocities[k] * (last - times[k]))
+        if crosses(apart, at - there):
+            count += 1
+            note_hop(last + crossing_time(apart, speed - velocities[k]), kind, i, k, log)
     positions[i] = start
     return count
 
 
 @inlined
-def put(i, x, y, now, motion, counts, hops, hops_x):
+def put(i, x, y, now, motion, counts, log, hops, hops_x):
     """Put disc ``i`` at (x, y), where it has come by now, and count its hops."""
-    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, motion.time, hops)
-    counts[HORIZONTAL] += hops_of(i, x, now, motion.x, motion.u, motion.time, hops_x)
+    times = motion.time
+    counts[VERTICAL] += hops_of(i, y, now, motion.y, motion.v, times, VERTICAL, log, hops)
+    counts[HORIZONTAL] += hops_of(i, x, now, motion.x, motion.u, times, HORIZONTAL, log, hops_x)
     motion.x[i], motion.y[i], motion.time[i] = x, y, now
 
 
 @inlined
-def fly(i, now, motion, counts, hops, hops_x):
+def fly(i, now, motion, counts, log, hops, hops_x):
     """Advance disc ``i`` to the time ``now``."""
     lag = now - motion.time[i]
     x, y = motion.x[i] + motion.u[i] * lag, motion.y[i] + motion.v[i] * lag
-    put(i, x, y, now, motion, counts, hops, hops_x)
+    put(i, x, y, now, motion, counts, log, hops, hops_x)
 
 
 @inlined
@@ -229,7 +300,7 @@ def is_wall(ahead, columns, ring):
     return False
 
 
-@inlined
+@compiled
 def start_from(states, replica, motion, grid, law):
     """Begin with a column of ``states`` (4N, replicas)."""
     discs = motion.x.size
@@ -248,10 +319,12 @@ def start_from(states, replica, motion, grid, law):
 
 
 @compiled
-def follow(duration, epoch, motion, laps, grid, law, counts, hops, hops_x):
+def follow(duration, epoch, motion, laps, grid, law, counts, log, hops, hops_x):
     """Follow the discs for a ``duration`` and add to ``counts`` (n,) what happens.
 
-    On a ring the rounds of the discs are added to ``laps`` (N,).
+    On a ring the rounds of the discs are added to ``laps`` (N,). A ``log``, which may be None, gets
+    all events and counted hops; the discs stop when it is full. Returns the time that is left. All
+    discs have come to the same time, from which they can be followed on.
     """
     discs, tree = motion.x.size, motion.tree
     columns, rows = grid.x.size - 1, grid.y.size - 1
@@ -259,6 +332,8 @@ def follow(duration, epoch, motion, laps, grid, law, counts, hops, hops_x):
         end = min(duration, epoch)
         while True:
             now = tree[1]
+            full = is_full(discs, log)
+            end = min(end, now) if full else end
             if not now < end:
                 break
             i = first_disc(tree)
@@ -291,23 +366,26 @@ def follow(duration, epoch, motion, laps, grid, law, counts, hops, hops_x):
                     y = grid.y[rows if step > 0 else 0]
                 else:
                     x = grid.x[columns if step > 0 else 0]
-                put(i, x, y, now, motion, counts, hops, hops_x)
+                put(i, x, y, now, motion, counts, log, hops, hops_x)
                 if upwards:
                     motion.v[i] = -motion.v[i]
                     counts[ABOVE] += 1
+                    note_event(now, ABOVE, i, i, motion, laps, law.ring, log)
                 else:
                     motion.u[i] = -motion.u[i]
                     counts[BESIDE] += 1
+                    note_event(now, BESIDE, i, i, motion, laps, law.ring, log)
                 motion.events[i] += 1
             else:
                 j = motion.partner[i]
                 if motion.events[j] == motion.seen[i]:
-                    fly(i, now, motion, counts, hops, hops_x)
-                    fly(j, now, motion, counts, hops, hops_x)
+                    fly(i, now, motion, counts, log, hops, hops_x)
+                    fly(j, now, motion, counts, log, hops, hops_x)
                     collide(i, j, motion, law)
                     motion.events[i] += 1
                     motion.events[j] += 1
                     counts[COLLISIONS] += 1
+                    note_event(now, COLLISIONS, i, j, motion, laps, law.ring, log)
                 else:
                     j = i
             while True:
@@ -317,16 +395,19 @@ def follow(duration, epoch, motion, laps, grid, law, counts, hops, hops_x):
                 if i == j:
                     break
                 i = j
-        if end == duration:
-            break
-        duration -= end
+        done = full | (end == duration)
+        if done:
+            for i in range(discs):
+                fly(i, end, motion, counts, log, hops, hops_x)
         for i in range(discs):
             motion.time[i] -= end
             motion.contact[i] -= end
             motion.border[i] -= end
             enlist(i, motion)
-    for i in range(discs):
-        fly(i, duration, motion, counts, hops, hops_x)
+        duration -= end
+        go_on(end, log)
+        if done:
+            return duration
 
 
 @compiled
@@ -345,7 +426,7 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
         for replica in range(replicas):
             count[:] = 0
             start_from(states, replica, motion, grid, law)
-            follow(duration, epoch, motion, laps, grid, law, count, hops, hops_x)
+            follow(duration, epoch, motion, laps, grid, law, count, None, hops, hops_x)
             for e in range(N):
                 sums[e] += count[e]
                 for f in range(e, N):
@@ -364,7 +445,7 @@ def advance_all(states, laps, time, epoch, law, grid):
     for replica in range(replicas):
         rounds[:] = 0.0
         start_from(states, replica, motion, grid, law)
-        follow(time, epoch, motion, rounds, grid, law, counts, None, None)
+        follow(time, epoch, motion, rounds, grid, law, counts, None, None, None)
         for i in range(discs):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]

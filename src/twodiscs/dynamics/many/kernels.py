@@ -2,9 +2,13 @@
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES
+from twodiscs.dynamics.ensemble import LANES, RETURNS
 from twodiscs.dynamics.many import cells, lockstep
-from twodiscs.sampling.many.initial import initial_of, large_grid
+from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid
+from twodiscs.sampling.streams import open_stream
+
+#: Entries of a log before it is read.
+ENTRIES = 2**14
 
 
 def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES, hops=True):
@@ -35,3 +39,62 @@ def advance_scene(scene, states, laps, time):
     if grid is None:
         return lockstep.advance_states(states, laps, time, law)
     return cells.advance_all(states, laps, time, lockstep.epoch_of(scene), law, grid)
+
+
+class Followed:
+    """One trajectory of ``LARGE`` numbers of discs, whose log is read in the order of time.
+
+    ``counted`` names the hops that are logged.
+    """
+
+    def __init__(self, scene, counted):
+        self.scene, self.law, self.grid = scene, lockstep.law_of(scene), large_grid(scene)
+        self.epoch, self.laps = lockstep.epoch_of(scene), np.zeros(scene.discs)
+        self.motion = cells.new_motion(scene.discs, self.grid)
+        self.log, self.counts = cells.new_log(scene.discs, ENTRIES), np.zeros(lockstep.N, np.int64)
+        self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
+
+    def start(self, state):
+        """Begin with a ``state``, a column of 4N numbers."""
+        self.log.origin[0] = self.laps[:] = 0.0
+        cells.start_from(state, 0, self.motion, self.grid, self.law)
+
+    def go_on(self, duration):
+        """Yield the log, and the order of its entries, of one stretch after the other."""
+        while duration > 0.0:
+            self.log.size[0] = 0
+            duration = cells.follow(
+                duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
+                self.log, *self.hops,
+            )  # fmt: skip
+            yield self.log, np.argsort(self.log.times[: self.log.size[0]], kind="stable")
+
+
+def record_intervals(scene, hop, seed, first, stop, chains, window, bins, sums, going):
+    """Record the intervals between hops of any pair, see ``lockstep.record_intervals``."""
+    if large_grid(scene) is None:
+        return lockstep.run_intervals(
+            scene, hop, seed, first, stop, chains, window, bins, sums, going
+        )
+    (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
+    totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((4 * scene.discs, 1))
+    for chain in range(totals.shape[1]):
+        if chain % chains == 0:
+            stream = open_stream(np.uint64(seed), first + chain // chains)
+        draw_states(stream, initial, state)
+        path.start(state)
+        times, step = np.zeros(0), window
+        # If there is a hop in the window, also the first one after it ends an interval.
+        while step == window or (times.size and times[-1] < window):
+            for log, order in path.go_on(step):
+                if not going[0]:
+                    return totals
+                hops = order[log.classes[order] < lockstep.COLLISIONS]
+                times = np.append(times, log.times[hops])
+            step = window / RETURNS
+        intervals = np.diff(times)[times[:-1] < window]
+        index = np.minimum((intervals / width).astype(int), wide.size - 1)
+        counts = np.bincount(np.append(index, wide[index]), minlength=sums.shape[1])
+        totals[:, chain] = intervals.sum(), intervals.size
+        sums += counts, counts**2, counts * intervals.size
+    return totals

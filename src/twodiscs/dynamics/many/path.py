@@ -4,23 +4,28 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
-from twodiscs.dynamics.many.kernels import advance_scene
+from twodiscs.dynamics.many.kernels import Followed, advance_scene
 from twodiscs.dynamics.many.lockstep import (
+    BESIDE,
+    COLLISIONS,
+    HORIZONTAL,
+    VERTICAL,
     N,
     advance,
     expected_event_rate,
+    expected_rates,
     find_events,
     law_of,
 )
 from twodiscs.dynamics.trajectory import ROUNDING, no_state
 from twodiscs.model.checks import InputError
+from twodiscs.model.events import HOPS
 from twodiscs.model.scene import ENERGY
+from twodiscs.sampling.many.initial import large_grid
 from twodiscs.sampling.starts import components
 
-#: Events that a trajectory lasts: its rows are long, and some pair often hops.
-LONGEST_TRAJECTORY = 1500
-
-event_rate = expected_event_rate
+#: Wall and disc events that a trajectory lasts, and the most rows, with hops: rows are long.
+LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
 
 
 def advance_all(scene, states, wraps, time):
@@ -39,9 +44,19 @@ def unwrap(scene, columns, wraps):
         columns[f"x{disc}"] += scene.width * laps
 
 
+def trajectory_rate(scene):
+    """Return the rows of a trajectory per time: wall hits, collisions and hops."""
+    known = expected_rates(scene)
+    return expected_event_rate(scene) + sum(known.get(hop, 0.0) for hop in HOPS)
+
+
 def usual_duration(scene):
     """Return the time of some ``LONGEST_TRAJECTORY`` events, a power of two."""
-    return nearest_power_of_two(LONGEST_TRAJECTORY / event_rate(scene))
+    times = (
+        LONGEST_TRAJECTORY / expected_event_rate(scene),
+        MOST_ROWS / trajectory_rate(scene),
+    )
+    return nearest_power_of_two(min(times))
 
 
 def events_of(scene, state, duration):
@@ -49,6 +64,9 @@ def events_of(scene, state, duration):
 
     ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.
     """
+    if large_grid(scene) is not None:
+        yield from _logged(scene, np.array(state), duration)
+        return
     n, law, time = scene.discs, law_of(scene), 0.0
     x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
     ring = law.ring[0] if law.ring else None
@@ -88,6 +106,35 @@ def events_of(scene, state, duration):
         elif code > 0:
             disc = (code - 1) // 2 + 1
             yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
+
+
+def _logged(scene, state, duration):
+    """Yield the ``events_of`` a scene whose kernel has a log; only the state needs all discs."""
+    path = Followed(scene, scene.events)
+    rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
+    inside = state.copy()
+    inside[: scene.discs] -= rounds * scene.width
+    path.start(inside[:, None])
+    path.laps[:] = rounds
+    # Each disc was here at its time.
+    at, since = np.reshape(state, (4, scene.discs)).copy(), np.zeros(scene.discs)
+    names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop", COLLISIONS: "disc_collision"}
+    yield 0.0, "start", None, None, state
+    for log, order in path.go_on(duration):
+        for k in order:
+            time, kind, (i, j) = float(log.times[k]), int(log.classes[k]), log.discs[k].tolist()
+            if kind not in (VERTICAL, HORIZONTAL):
+                at[:, i], at[:, j] = log.states[k]
+                since[[i, j]] = time
+            first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
+            name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
+            yield time, name, first, second, _then(at, time - since)
+    yield float(duration), "end", None, None, _then(at, duration - since)
+
+
+def _then(at, lag):
+    """Return the state, 4N numbers, of discs that were ``at`` (4, N) places ``lag`` (N,) ago."""
+    return np.concatenate([np.ravel(at[:2] + at[2:] * lag), at[2], at[3]])
 
 
 def state_of(scene, start):

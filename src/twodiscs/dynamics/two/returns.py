@@ -5,6 +5,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import (
     LANES,
     PASSES,
+    RETURNS,
     across,
     find_events,
     new_rows,
@@ -125,6 +126,11 @@ def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums,
 def mean_interval(scene, hop):
     """Return the mean time between two hops of one kind, exactly."""
     return exact.mean_times(scene)[hop]
+
+
+def intervals_of_chain(scene, hop):
+    """Return the number of intervals that a chain records."""
+    return RETURNS
 
 
 def interval_cost(scene):
