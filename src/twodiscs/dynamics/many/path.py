@@ -23,7 +23,7 @@ LONGEST_TRAJECTORY = 1500
 event_rate = expected_event_rate
 
 
-def advance_all(scene, states, wraps, time):
+def advance_all(scene, states, wraps, time, kicks):
     """Advance the columns of ``states``, see ``trajectory.advance_all``."""
     advance_scene(scene, states, wraps, time)
 
@@ -31,6 +31,10 @@ def advance_all(scene, states, wraps, time):
 def new_wraps(scene, number):
     """Return the counts of rounds for ``number`` states: none."""
     return np.zeros((scene.discs, number))
+
+
+def kicks_of(scene, number, seed, block=0):
+    """Return None: more than two discs have no friction."""
 
 
 def unwrap(scene, columns, wraps):
@@ -44,7 +48,7 @@ def usual_duration(scene):
     return nearest_power_of_two(LONGEST_TRAJECTORY / event_rate(scene))
 
 
-def events_of(scene, state, duration):
+def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of more than two discs.
 
     ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.
