@@ -8,6 +8,7 @@ SCENES = {
     "channel": Scene(1.5, 1.0, 0.2, periodic="x"),
     "field": Scene(1.5, 1.0, 0.2, field=0.4),
     "rough": Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5),
+    "friction": Scene(1.5, 1.0, 0.2, friction=5.0),
     "balls": Scene(1.5, 1.0, 0.2, depth=1.2),
     "combination": Scene(
         1.5, 1.0, 0.15, depth=0.9, radius_ratio=1.4, mass_ratio=0.3, periodic="x", field=0.3

@@ -412,7 +412,7 @@ def test_intervals_of_one_kind_of_hop_are_drawn_together():
         (
             lambda some: td.exact_table(1.5, 1, [0.1], gravity=1),
             "gravity is no effect; effects must be some of depth, radius_ratio, mass_ratio, "
-            "periodic, field, moment_of_inertia; did you mean field?",
+            "periodic, field, moment_of_inertia, friction; did you mean field?",
         ),
         (lambda some: td.Scene(1.5, 1, 0.1, periodic="x,y"), "axes x and y (z needs a depth), "),
         (lambda some: td.Scene(1.5, 1, 0.2, discs=20), "20 discs in a box of 1.5 × 1.0 need a "),

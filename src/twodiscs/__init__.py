@@ -55,6 +55,7 @@ if TYPE_CHECKING:
         periodic: str | Sequence[Axis]
         field: float
         moment_of_inertia: float | None
+        friction: float
         discs: int
 
     Function = TypeVar("Function", bound=Callable)

@@ -54,7 +54,17 @@ def test_the_past_is_as_the_future():
     for side in (states, np.where(np.arange(12)[:, None] < 4, states, -states)):
         sums, none = np.zeros((512, passages.SUMS, 4), np.int64), np.zeros(1, np.int64)
         passages.follow_hops(
-            side, LANES, np.array(TIMES), 0.0, law_of(scene), True, True, sums, none
+            side,
+            LANES,
+            np.array(TIMES),
+            0.0,
+            law_of(scene),
+            True,
+            True,
+            sums,
+            none,
+            np.uint64(5),
+            0,
         )
         found.append(by_time(sums))
     for future, past in zip(*found, strict=True):

@@ -14,7 +14,8 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.law import first_event, meeting
+from twodiscs.dynamics.kicks import before_kick, renew_kicks
+from twodiscs.dynamics.law import first_event, meeting, redrawn
 from twodiscs.sampling.jit import inlined, optional
 
 LANES = 64
@@ -93,9 +94,10 @@ def put_state(rows, i, state, law):
 
 
 @inlined
-def find_events(rows, remaining, times, codes, law):
+def find_events(rows, remaining, times, codes, law, kicks=None):
     """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time.
 
+    A flight that a kick ends has the code of the end of time, and ``kick_lanes`` has to follow.
     Two loops, so that more of a processor's instructions do not wait for one another. Between them
     ``times`` and ``codes`` hold the quotients of the discs' meetings.
     """
@@ -103,8 +105,25 @@ def find_events(rows, remaining, times, codes, law):
         times[i], codes[i] = meeting(state_at(rows, i, law), law)
     for i in range(times.size):
         times[i], codes[i] = first_event(
-            state_at(rows, i, law), remaining[i], times[i], codes[i], law
+            state_at(rows, i, law), before_kick(remaining[i], i, kicks), times[i], codes[i], law
         )
+
+
+@optional(lambda state, i, time, law, kicks: state)
+def kicked(state, i, time, law, kicks):
+    """Return the ``state`` of lane ``i`` after a flight of ``time``, kicked if that is due."""
+    kicks.waits[i] -= time
+    if kicks.waits[i] <= 0.0:
+        state = redrawn(state, kicks.streams[i], kicks.direction, kicks.velocity, law.friction)
+        renew_kicks(i, kicks)
+    return state
+
+
+@optional(lambda rows, times, law, kicks: None)
+def kick_lanes(rows, times, law, kicks):
+    """Kick the lanes whose kick is due after flights of ``times`` (lanes,)."""
+    for i in range(times.size):
+        put_state(rows, i, kicked(state_at(rows, i, law), i, times[i], law, kicks), law)
 
 
 @inlined

@@ -18,13 +18,14 @@ import math
 from typing import NamedTuple
 
 from twodiscs.sampling.jit import inlined, optional
+from twodiscs.sampling.prism import PrismSampler, draw_velocities, prism_of
 
 #: The event that ended a free flight. Codes are floats because they travel in the same registers
 #: as the state. To leave a periodic cell and come back on its other side is no event: those codes
-#: are negative.
+#: are negative, and so is the code of a kick, which ends a flight as the end of time does.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
-WRAP_X, WRAP_Y, WRAP_Z = -1.0, -2.0, -3.0
+WRAP_X, WRAP_Y, WRAP_Z, KICK = -1.0, -2.0, -3.0, -4.0
 
 #: Normal speeds of approach below this (four roundings of the speed scale, 1) are rest. A collision
 #: at such a speed would be lost in the rounding of the velocities, and happen again and again.
@@ -36,6 +37,15 @@ VANISHING = 1e-280
 
 #: The gap of discs that separate.
 NEVER = math.inf
+
+
+class Friction(NamedTuple):
+    """The rate of kicks, masses m, moments of inertia κm (0 if smooth), and the draw of a kick."""
+
+    rate: float
+    masses: tuple
+    inertias: tuple
+    prism: PrismSampler
 
 
 class Law(NamedTuple):
@@ -60,6 +70,7 @@ class Law(NamedTuple):
     gravity: float | None = None
     weights: tuple | None = None  # 2 m2/M, 2 m1/M of unequal masses
     rough: tuple | None = None  # κ/(1 + κ), 1/(1 + κ) with κ = I/(m r²)
+    friction: Friction | None = None  # see ``kicks``
 
 
 def divided(whole, first, second):
@@ -100,9 +111,15 @@ def law_of(scene):
         gravity=scene.field or None,
         weights=None if m1 == m2 else divided(2.0, m2, m1),
         rough=None if inertia is None else divided(1.0, inertia, 1.0),
+        friction=_friction_of(scene) if scene.friction else None,
         **walls,
         **wraps,
     )
+
+
+def _friction_of(scene):
+    inertias = tuple((scene.moment_of_inertia or 0.0) * mass for mass in scene.masses)
+    return Friction(scene.friction, scene.masses, inertias, prism_of(scene))
 
 
 # Effects: an absent effect (None, the last argument) is compiled to nothing ----------------------
@@ -257,6 +274,68 @@ def rough_wall_collision(u, v, s, u_before, v_before, on_x, on_y, turn, spin):
     s -= 2.0 * spin * side_x * slip_y if on_x else 0.0
     s += 2.0 * spin * side_y * slip_x if on_y else 0.0
     return u, v, s
+
+
+@optional(lambda state, velocity, depth: None)
+def put_deep_velocities(state, velocity, depth):
+    """Put w1 and w2 into ``velocity``."""
+    velocity[2], velocity[6] = state[10], state[11]
+
+
+@optional(lambda state, velocity, depth: ())
+def redrawn_deep(state, velocity, depth):
+    """Return what balls append to a state with a new ``velocity``."""
+    return state[8], state[9], velocity[2], velocity[6]
+
+
+@optional(lambda state, velocity, inertia: None)
+def put_spins(state, velocity, inertia):
+    """Put the spins into ``velocity``."""
+    velocity[3], velocity[7] = state[8], state[9]
+
+
+@optional(lambda velocity, inertia: ())
+def redrawn_spins(velocity, inertia):
+    """Return what rough discs append to a state with a new ``velocity``."""
+    return velocity[3], velocity[7]
+
+
+@inlined
+def redrawn(state, stream, direction, velocity, friction):
+    """Return a ``state`` after a kick: its velocities and spins are drawn anew from a ``stream``.
+
+    They are uniform on the sphere of the kinetic energy of this moment at the conserved momenta, in
+    velocities scaled by the roots of masses and moments of inertia. ``direction`` (6) and
+    ``velocity`` (8) are overwritten.
+    """
+    prism, (m1, m2) = friction.prism, friction.masses
+    velocity[:] = 0.0
+    velocity[0], velocity[1], velocity[4], velocity[5] = state[4], state[5], state[6], state[7]
+    put_deep_velocities(state, velocity, prism.depth)
+    put_spins(state, velocity, prism.inertia)
+    s1, s2 = velocity[3], velocity[7]
+    square = friction.inertias[0] * s1 * s1 + friction.inertias[1] * s2 * s2
+    drift_x = drift_y = drift_z = 0.0
+    for axis in range(3):
+        p1, p2 = velocity[axis], velocity[axis + 4]
+        square += m1 * p1 * p1 + m2 * p2 * p2
+        if prism.conserved[axis]:
+            drift = (m1 * p1 + m2 * p2) / (m1 + m2)
+            square -= (m1 + m2) * drift * drift
+            drift_x = drift if axis == 0 else drift_x
+            drift_y = drift if axis == 1 else drift_y
+            drift_z = drift if axis == 2 else drift_z
+    draw_velocities(stream, prism, math.sqrt(max(square, 0.0)), -1, direction, velocity)
+    for disc in (0, 4):
+        velocity[disc] += drift_x
+        velocity[disc + 1] += drift_y
+        velocity[disc + 2] += drift_z
+    plain = (
+        state[0], state[1], state[2], state[3],
+        velocity[0], velocity[1], velocity[4], velocity[5],
+    )  # fmt: skip
+    deep = redrawn_deep(state, velocity, prism.depth)
+    return plain + deep + redrawn_spins(velocity, prism.inertia)
 
 
 # The law ----------------------------------------------------------------------------------------

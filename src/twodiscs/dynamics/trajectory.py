@@ -51,12 +51,21 @@ def new_wraps(scene, number):
     return of_family(scene, "dynamics", "new_wraps")(scene, number)
 
 
-def advance_all(scene, states, wraps, time):
+def kicks_of(scene, number, seed, block=0):
+    """Return the kicks of ``number`` states for ``advance_all``; None without friction.
+
+    They come from the streams of ``seed`` for the states of a ``block`` of this ``number``.
+    """
+    return of_family(scene, "dynamics", "kicks_of")(scene, number, seed, block)
+
+
+def advance_all(scene, states, wraps, time, kicks=None):
     """Advance the columns of ``states`` by a ``time`` > 0; each centre stays in its cell.
 
     ``wraps`` (``new_wraps``) counts how often a centre was moved back along a periodic axis.
+    ``kicks`` (``kicks_of``) go on from one call to the next.
     """
-    of_family(scene, "dynamics", "advance_all")(scene, states, wraps, time)
+    of_family(scene, "dynamics", "advance_all")(scene, states, wraps, time, kicks)
 
 
 def unwrap(scene, columns, wraps):
@@ -64,13 +73,14 @@ def unwrap(scene, columns, wraps):
     of_family(scene, "dynamics", "unwrap")(scene, columns, wraps)
 
 
-def events_of(scene, state, duration):
+def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of all that happens within ``duration``.
 
     ``state`` is one of ``starts.states`` as a tuple or column. The first event is "start", the last
-    one "end"; hops are events, walls are named by axis and disc, "wall_x1" say.
+    one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With friction
+    "kick" is an event, because a path turns there; kicks come from the streams of ``seed``.
     """
-    return of_family(scene, "dynamics", "events_of")(scene, state, duration)
+    return of_family(scene, "dynamics", "events_of")(scene, state, duration, seed)
 
 
 def state_of(scene, start):
@@ -93,9 +103,9 @@ def no_state(names, start):
     return InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
 
 
-def follow(scene, state, duration):
+def follow(scene, state, duration, seed=0):
     """Yield the rows of ``columns`` of ``events_of``, with the same arguments."""
-    for time, event, first, second, now in events_of(scene, state, duration):
+    for time, event, first, second, now in events_of(scene, state, duration, seed):
         yield _row(scene, time, event, first, second, now)
 
 
@@ -133,7 +143,7 @@ def followed(scene, seed, start=None, duration=None, progress=None):
         start = tuple(map(float, states(scene, 1, seed)[: len(components(scene)), 0]))
     else:
         start = state_of(scene, start)
-    rows, events = [], events_of(scene, start, float(duration))
+    rows, events = [], events_of(scene, start, float(duration), seed)
     for some in in_threads(lambda: [*islice(events, ROWS)], repeat(())):
         rows += some
         if progress is not None:

@@ -116,6 +116,16 @@ EFFECTS = {
             "Collisions with each other and with walls reverse the tangential velocity of their"
             " surfaces too.",
         ),
+        Effect(
+            "friction",
+            0.0,
+            SHORTEST,
+            LONGEST,
+            "1/time",
+            "the rate of random times at which all velocities are drawn anew",
+            r"$\gamma={:g}$",
+            "Energy and conserved momenta stay, and so does every mean time.",
+        ),
     )
 }
 

@@ -5,8 +5,8 @@ has mass one and the total energy is 1/2. The speed of disc 1 is then at most on
 lengths over that speed.
 
 The plain scene has two equal, smooth discs between walls. A scene may have effects: unequal radii
-or masses, periodic axes, a uniform field along −y, rough discs, a third dimension (then the discs
-are balls); or more discs than two. Absent effects are neither simulated nor compiled.
+or masses, periodic axes, a uniform field along −y, rough discs, friction, a third dimension (then
+the discs are balls); or more discs than two. Absent effects are neither simulated nor compiled.
 """
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
 from twodiscs.model.families.two import ENERGY
 from twodiscs.model.family import of_family
+
+#: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
+MOST_KICKS = 1e6
 
 #: The regimes, named by the hops that are open.
 REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
@@ -68,6 +71,9 @@ class Scene:
     moment_of_inertia : float, optional
         I/(m r²) of rough discs, in (0, 1]. Collisions of rough discs, with each other and with
         walls, also reverse the tangential velocity of the surfaces. Without it discs are smooth.
+    friction : float, default 0
+        The rate γ of a Poisson process, in 1/time. At its times all velocities and spins are drawn
+        anew, uniformly on the sphere of the same kinetic energy and the same conserved momenta.
     discs : int, default 2
         The number of discs, from 2 to 1024.
 
@@ -93,6 +99,7 @@ class Scene:
     periodic: str | Sequence[str] = ""
     field: float = 0.0
     moment_of_inertia: float | None = None
+    friction: float = 0.0
     discs: int = 2
 
     def __post_init__(self):
@@ -129,6 +136,12 @@ class Scene:
             )
         if self.moment_of_inertia is not None:
             self._check_roughness()
+        shortest = min(map(self.side, self.axes))
+        if self.friction * shortest > MOST_KICKS:
+            raise InputError(
+                f"friction must not exceed {MOST_KICKS:g} over the shortest side, which is "
+                f"{MOST_KICKS / shortest!r}, not {self.friction!r}"
+            )
 
     def _check_roughness(self):
         if self.depth is not None:

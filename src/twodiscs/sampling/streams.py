@@ -64,6 +64,27 @@ def signed_uniform(state):
 
 
 @compiled
+def exponential(state):
+    """Return a random number with the density e⁻ˣ, by comparisons of uniform ones alone.
+
+    A run u₁ > u₂ > … > uₙ of uniform numbers that descend has an odd length n with the probability
+    e^(−u₁) for given u₁. After each run of even length 1 is added (von Neumann, 1951).
+    """
+    whole = 0.0
+    while True:
+        first = uniform(state)
+        last, odd = first, True
+        while True:
+            value = uniform(state)
+            if value >= last:
+                break
+            last, odd = value, not odd
+        if odd:
+            return whole + first
+        whole += 1.0
+
+
+@compiled
 def largest_of(state, n):
     """Return the largest of ``n`` uniform numbers: its density is n sⁿ⁻¹ on [0, 1)."""
     largest = uniform(state)

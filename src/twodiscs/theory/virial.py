@@ -63,7 +63,7 @@ def weights(scene):
     from ``many.rates``; they need no exact volume. Raises ``InputError`` for anything that is not a
     ``Scene``.
     """
-    if check_scene(scene).effects.keys() - {"moment_of_inertia"}:
+    if check_scene(scene).effects.keys() - {"moment_of_inertia", "friction"}:
         return None
     per_rate = 1 / constant(scene.velocity_components)
     pairs = math.sqrt(2) * scene.discs

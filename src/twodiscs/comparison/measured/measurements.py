@@ -809,7 +809,7 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Intervals`` between hops (see the face)."""
     check_choice("hop", hop, HOPS)
-    if check_scene(scene).moment_of_inertia is not None:
+    if check_scene(scene).moment_of_inertia is not None and not scene.friction:
         raise InputError(
             "scene must have smooth discs, because rough discs in a box are not ergodic and their "
             f"intervals have no exact mean, but moment_of_inertia is {scene.moment_of_inertia!r}"

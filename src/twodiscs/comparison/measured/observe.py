@@ -13,7 +13,7 @@ from twodiscs.comparison.measured.result import note_of_number
 from twodiscs.comparison.measured.states import with_aliases
 from twodiscs.dynamics.counting import expected_event_rate
 from twodiscs.dynamics.ensemble import REPLICAS
-from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, new_wraps, unwrap
+from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
 from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene
@@ -194,10 +194,11 @@ def observe(
     def snapshots(block):
         """Yield the states of a block at time 0, then at all ``times``."""
         filled, wraps = states(scene, each, stream, block), new_wraps(scene, each)
+        kicks = kicks_of(scene, each, stream, block)
         yield with_aliases(as_records(scene, filled))
         for step in np.diff(times, prepend=0.0):
             if step:
-                advance_all(scene, filled, wraps, step)
+                advance_all(scene, filled, wraps, step, kicks)
             now = as_records(scene, filled)
             unwrap(scene, now, wraps)
             yield with_aliases(now)

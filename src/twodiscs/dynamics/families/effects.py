@@ -11,6 +11,7 @@ from twodiscs.dynamics.two.lockstep import (
 from twodiscs.dynamics.two.path import (
     advance_all,
     events_of,
+    kicks_of,
     new_wraps,
     state_of,
     unwrap,
@@ -33,7 +34,7 @@ from twodiscs.theory.exact import event_rate as expected_event_rate
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
-    "intervals_of_chain", "mean_interval", "new_wraps", "planned", "rare_hops", "rare_run",
-    "rare_summary", "record_intervals", "replica_duration", "run_blocks", "state_of",
+    "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
+    "rare_run", "rare_summary", "record_intervals", "replica_duration", "run_blocks", "state_of",
     "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
 ]  # fmt: skip

@@ -8,6 +8,7 @@ from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duratio
 from twodiscs.dynamics.many.path import (
     advance_all,
     events_of,
+    kicks_of,
     new_wraps,
     state_of,
     trajectory_rate,
@@ -21,7 +22,8 @@ from twodiscs.sampling.many.initial import LARGE
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
-    "intervals_of_chain", "mean_interval", "new_wraps", "planned", "rare_hops", "record_intervals",
+    "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
+    "record_intervals",
     "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
     "work_per_event",
 ]  # fmt: skip

@@ -28,7 +28,7 @@ from twodiscs.sampling.starts import components
 LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
 
 
-def advance_all(scene, states, wraps, time):
+def advance_all(scene, states, wraps, time, kicks):
     """Advance the columns of ``states``, see ``trajectory.advance_all``."""
     advance_scene(scene, states, wraps, time)
 
@@ -36,6 +36,10 @@ def advance_all(scene, states, wraps, time):
 def new_wraps(scene, number):
     """Return the counts of rounds for ``number`` states: none."""
     return np.zeros((scene.discs, number))
+
+
+def kicks_of(scene, number, seed, block=0):
+    """Return None: more than two discs have no friction."""
 
 
 def unwrap(scene, columns, wraps):
@@ -59,7 +63,7 @@ def usual_duration(scene):
     return nearest_power_of_two(min(times))
 
 
-def events_of(scene, state, duration):
+def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of more than two discs.
 
     ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.

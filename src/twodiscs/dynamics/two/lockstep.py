@@ -11,11 +11,13 @@ from twodiscs.dynamics.ensemble import (
     PASSES,
     REPLICAS,
     find_events,
+    kick_lanes,
     nearest_power_of_two,
     new_rows,
     put_state,
     state_at,
 )
+from twodiscs.dynamics.kicks import new_kicks, open_kicks
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -166,7 +168,7 @@ def count_blocks(
     packed, more = np.zeros(lanes), np.zeros(lanes)
     counts, replica_counts = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    busy = np.zeros(lanes, np.bool_)
+    busy, kicks = np.zeros(lanes, np.bool_), new_kicks(lanes, law.friction)
     block, used, running, looks = first, replicas, 0, 0
     tracked = hops, walls, rest, True
 
@@ -191,6 +193,7 @@ def count_blocks(
                 block, used = block + 1, 0
             if used < replicas:
                 put_state(rows, i, initial_states[:, used], law)
+                open_kicks(i, seed, (block - 1) * replicas + used, kicks)
                 remaining[i] = duration
                 busy[i] = True
                 running += 1
@@ -199,7 +202,7 @@ def count_blocks(
             return sums, products
 
         for _ in range(PASSES):
-            find_events(rows, remaining, times, codes, law)
+            find_events(rows, remaining, times, codes, law, kicks)
             for i in range(lanes):
                 # Everything is loaded before anything is stored.
                 before, code, first_count = state_at(rows, i, law), codes[i], packed[i]
@@ -214,6 +217,7 @@ def count_blocks(
                     more[i] = second_word(
                         second_count, code, before, after, identical, law.gravity, tracked
                     )
+            kick_lanes(rows, times, law, kicks)
         looks += 1
         if looks == LOOKS:
             looks = 0

@@ -33,7 +33,16 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import LANES, across, find_events, new_rows, put_state, state_at
+from twodiscs.dynamics.ensemble import (
+    LANES,
+    across,
+    find_events,
+    kick_lanes,
+    new_rows,
+    put_state,
+    state_at,
+)
+from twodiscs.dynamics.kicks import new_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     WRAP_X,
@@ -89,7 +98,7 @@ def draw_initial_states(seed, first, stop, prism, surface, states):
 
 
 @compiled
-def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes):
+def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes, seed, first):
     """Follow the hops from the ``states`` (``COMPONENTS``, replicas), along x or y.
 
     The hops are those along y, or along x if ``horizontal`` is True instead of None. If ``hopping``
@@ -98,8 +107,9 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
     ascending ``times`` are added to ``sums`` (blocks of replicas, ``SUMS``, times; int64), where
     n = Σ s_0 s_k is over the hops after time 0 and N their number. With a ``gap`` replicas are
     followed forwards and backwards, and the sizes of their clusters are counted in ``sizes``
-    (int64), the last of which takes all that are larger. Returns the number of wall and disc
-    events.
+    (int64), the last of which takes all that are larger. Kicks come from the streams of ``seed``
+    (uint64), for replicas from the ``first`` on, and are independent in both directions of time.
+    Returns the number of wall and disc events.
     """
     rows, reverse = new_rows(lanes, law), np.zeros((COMPONENTS, lanes))
     flights, codes, remaining = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -107,6 +117,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
     replica, due, events = np.full(lanes, -1), np.zeros(lanes, np.int64), np.zeros(lanes)
     most = np.float64(sizes.size - 1) if gap > 0.0 else np.inf
     wrap = WRAP_Y if horizontal is None else WRAP_X
+    kicks = new_kicks(lanes, law.friction)
     total, per_block = states.shape[1], states.shape[1] // sums.shape[0]
     started, running = 0, 0
 
@@ -117,6 +128,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
             if replica[i] >= 0:
                 if gap > 0.0 and due[i] == 0:
                     put_state(rows, i, reverse[:, i], law)
+                    renew_kicks(i, kicks)
                     due[i], remaining[i] = 1, gap
                     # The hop at time 0 has been counted.
                     hops[i] -= 1.0 if across(state_at(rows, i, law), horizontal)[1] < 0.0 else 0.0
@@ -139,6 +151,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
             if started == total:
                 continue
             put_state(rows, i, states[:, started], law)
+            open_kicks(i, seed, first + started, kicks)
             for k in range(COMPONENTS):
                 value = states[k, started]
                 reverse[k, i] = -value if law_reverses(k, law) else value
@@ -154,7 +167,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
             return np.int64(events.sum())
 
         for _ in range(PASSES):
-            find_events(rows, remaining, flights, codes, law)
+            find_events(rows, remaining, flights, codes, law, kicks)
             for i in range(lanes):
                 before, time, code = state_at(rows, i, law), flights[i], codes[i]
                 after = after_event(before, time, code, law)
@@ -169,6 +182,7 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
                 left = left if hop & (gap > 0.0) else remaining[i] - time
                 remaining[i] = left if hops[i] < most else 0.0
                 events[i] += 1.0 if code > END_OF_TIME else 0.0
+            kick_lanes(rows, flights, law, kicks)
 
 
 # From a scene to the arguments of the kernel ----------------------------------------------------
@@ -220,7 +234,17 @@ def _followed(scene, hop, blocks, seed, first, times, gap, sums, sizes, on_surfa
         own = sums[start : start + number]
         events += int(
             follow_hops(
-                states, LANES, times, gap, law_of(scene), on_surface, horizontal, own, sizes
+                states,
+                LANES,
+                times,
+                gap,
+                law_of(scene),
+                on_surface,
+                horizontal,
+                own,
+                sizes,
+                np.uint64(seed),
+                (first + start) * REPLICAS,
             )
         )
     return events

@@ -4,10 +4,18 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.ensemble import across, nearest_power_of_two, put_state, state_at
+from twodiscs.dynamics.ensemble import (
+    across,
+    kicked,
+    nearest_power_of_two,
+    put_state,
+    state_at,
+)
+from twodiscs.dynamics.kicks import before_kick, new_kicks, open_all
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
+    KICK,
     WALL_X1,
     WALL_X2,
     WALL_Y1,
@@ -44,6 +52,7 @@ _NAMES = {
     DISC: ("disc_collision", 1, 2),
     WALL_Z1: ("wall_z1", 1, None),
     WALL_Z2: ("wall_z2", 2, None),
+    KICK: ("kick", None, None),
 }
 
 #: The axis of the periodic separation that jumps at the end of a flight, by code.
@@ -52,7 +61,7 @@ _JUMPS = {WRAP_X: "x", WRAP_Y: "y", WRAP_Z: "z"}
 
 @compiled
 def advance(state, law):
-    """Return the state after the next event, and the time and code of that event."""
+    """Return the state after the next event, and the time and code of that event, without kicks."""
     time, code = next_event(state, math.inf, law)
     return after_event(state, time, code, law), time, code
 
@@ -61,7 +70,8 @@ def advance(state, law):
 def time_to_next(state, law, hop, longest):
     """Return the time to the next vertical hop, or to the next disc collision if not ``hop``.
 
-    If it is more than ``longest``, the returned time is only known to be longer than that.
+    If it is more than ``longest``, the returned time is only known to be longer than that. There
+    are no kicks.
     """
     elapsed = 0.0
     while elapsed <= longest:
@@ -81,18 +91,25 @@ def deep_separation(state, present):
     return state[8] - state[9]
 
 
+@optional(lambda left, kicks: False)
+def goes_on(left, kicks):
+    """Say whether time is left after a flight that ended without an event."""
+    return left > 0.0
+
+
 @compiled
-def advance_states(states, wraps, time, law):
+def advance_states(states, wraps, time, law, kicks):
     """Advance the columns of ``states`` (``COMPONENTS``, n) by a ``time`` > 0.
 
     Jumps of a periodic separation along x, y, z are added to ``wraps`` (3, n), with the sign of the
-    separation before.
+    separation before. ``kicks`` are those of the columns, None without friction.
     """
     for i in range(states.shape[1]):
         state, left, code = state_at(states, i, law), time, 1.0
-        while code != END_OF_TIME:
-            flight, code = next_event(state, left, law)
+        while code != END_OF_TIME or goes_on(left, kicks):
+            flight, code = next_event(state, before_kick(left, i, kicks), law)
             state = after_event(state, flight, code, law)
+            state = kicked(state, i, flight, law, kicks)
             left -= flight
             if code == WRAP_X:
                 wraps[0, i] -= math.copysign(1.0, state[0] - state[2])
@@ -103,14 +120,22 @@ def advance_states(states, wraps, time, law):
         put_state(states, i, state, law)
 
 
-def advance_all(scene, states, wraps, time):
+def advance_all(scene, states, wraps, time, kicks):
     """Advance the columns of ``states``, see ``trajectory.advance_all``."""
-    advance_states(states, wraps, time, law_of(scene))
+    advance_states(states, wraps, time, law_of(scene), kicks)
 
 
 def new_wraps(scene, number):
     """Return the counts of jumps for ``number`` states: none."""
     return np.zeros((3, number))
+
+
+def kicks_of(scene, number, seed, block=0):
+    """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
+    kicks = new_kicks(number, law_of(scene).friction)
+    if kicks is not None:
+        open_all(np.uint64(seed), block * number, kicks)
+    return kicks
 
 
 def unwrap(scene, columns, wraps):
@@ -146,19 +171,21 @@ class Jumps:
         return tuple(columns.values())
 
 
-def events_of(scene, state, duration):
+def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of all that happens within ``duration``.
 
     ``state`` of the ``Scene`` is as in ``law``. Hops are events here, reported where they occur in
-    a flight; walls are named by axis and disc; ``first`` and ``second`` are the discs that the
-    event is of, None where there is none. The first row is the start, the last one the end. Along
-    periodic axes centres go on beyond the cell.
+    a flight, and so are kicks, from the streams of ``seed``; walls are named by axis and disc;
+    ``first`` and ``second`` are the discs that the event is of, None where there is none. The first
+    row is the start, the last one the end. Along periodic axes centres go on beyond the cell.
     """
-    law, time = law_of(scene), 0.0
+    law, time, kicks = law_of(scene), 0.0, kicks_of(scene, 1, seed)
     jumps = Jumps(scene, law)
     yield time, "start", None, None, state
     while True:
-        flight, code = next_event(state, duration - time, law)
+        left = duration - time
+        until_kick = before_kick(left, 0, kicks)
+        flight, code = next_event(state, until_kick, law)
         after = after_event(state, flight, code, law)
         hops = []
         for name, horizontal in (("vertical_hop", None), ("horizontal_hop", True)):
@@ -169,7 +196,8 @@ def events_of(scene, state, duration):
         for until, name in sorted(hops):
             at_hop = after_event(state, until, END_OF_TIME, law)
             yield time + until, name, 1, 2, jumps.undone(at_hop)
-        time, state = time + flight, after
+        time, state = time + flight, kicked(after, 0, flight, law, kicks)
+        code = KICK if code == END_OF_TIME and until_kick < left else code
         jumps.see(code, state)
         if code in _NAMES:
             yield time, *_NAMES[code], jumps.undone(state)

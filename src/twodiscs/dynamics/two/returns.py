@@ -8,10 +8,12 @@ from twodiscs.dynamics.ensemble import (
     RETURNS,
     across,
     find_events,
+    kick_lanes,
     new_rows,
     put_state,
     state_at,
 )
+from twodiscs.dynamics.kicks import new_kicks, open_kicks
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
@@ -50,7 +52,7 @@ def record_returns(
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    endless = np.full(lanes, np.inf)
+    endless, kicks = np.full(lanes, np.inf), new_kicks(lanes, law.friction)
     age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     chain, finished, lane_of = (
         np.full(lanes, -1),
@@ -81,6 +83,7 @@ def record_returns(
                 state = open_stream(seed, first + started // chains)
             start_on_surface(state, draw, surface, start, prism)
             put_state(rows, i, start[:, 0], law)
+            open_kicks(i, seed, first * chains + started, kicks)
             chain[i], elapsed[i], age[i] = started, 0.0, 0.0
             # A start with Δ̇ < 0 crosses the surface at time 0 by its sign; that is not a return.
             _, rising = across(state_at(rows, i, law), horizontal)
@@ -91,7 +94,7 @@ def record_returns(
             return totals
 
         for _ in range(PASSES):
-            find_events(rows, endless, times, codes, law)
+            find_events(rows, endless, times, codes, law, kicks)
             for i in range(lanes):
                 before, time, waited = state_at(rows, i, law), times[i], age[i]
                 after = after_event(before, time, codes[i], law)
@@ -105,6 +108,7 @@ def record_returns(
                 elapsed[i] += interval if recorded else 0.0
                 age[i] = time - until if hop else waited + time
                 left[i] = to_come - 1.0 if hop else to_come
+            kick_lanes(rows, times, law, kicks)
             n = 0
             for i in range(lanes):
                 finished[n], lane_of[n] = intervals[i], i

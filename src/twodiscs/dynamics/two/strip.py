@@ -25,10 +25,12 @@ from twodiscs.dynamics.ensemble import (
     LANES,
     REPLICAS,
     across,
+    kick_lanes,
     new_rows,
     put_state,
     state_at,
 )
+from twodiscs.dynamics.kicks import before_kick, new_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.family import of_family
@@ -190,7 +192,7 @@ def count_hops(
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, near, slow = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    sums = np.zeros((3, PARTS, sizes[2]), np.int64)
+    sums, kicks = np.zeros((3, PARTS, sizes[2]), np.int64), new_kicks(lanes, law.friction)
     block, used, running, events = first, replicas, 0, 0
 
     while True:
@@ -199,6 +201,7 @@ def count_hops(
                 continue
             if legs[i] == 1:
                 put_state(rows, i, origin[:, i], law)
+                renew_kicks(i, kicks)
                 remaining[i] = time
                 legs[i] = 2
                 continue
@@ -215,6 +218,7 @@ def count_hops(
                 block, used = block + 1, 0
             if used < replicas:
                 put_state(rows, i, initial_states[:, used], law)
+                open_kicks(i, seed, (block - 1) * replicas + used, kicks)
                 separation, speed = across(initial_states[:, used], horizontal)
                 speed /= math.sqrt(kinetic_fraction_at(initial_states, used, prism))
                 near[i] = min(np.int64(abs(separation) / sizes[0]), PARTS - 1)
@@ -233,7 +237,8 @@ def count_hops(
 
         for _ in range(PASSES):
             for i in range(lanes):
-                times[i], codes[i] = next_event(state_at(rows, i, law), remaining[i], law)
+                left = before_kick(remaining[i], i, kicks)
+                times[i], codes[i] = next_event(state_at(rows, i, law), left, law)
             for i in range(lanes):
                 before, code, count = state_at(rows, i, law), codes[i], packed[i]
                 after = after_event(before, times[i], code, law)
@@ -243,6 +248,7 @@ def count_hops(
                 hop = crosses(across(before, horizontal)[0], separation)
                 count += HOP if hop else 0.0
                 packed[i] = count + (1.0 if code > END_OF_TIME else 0.0)
+            kick_lanes(rows, times, law, kicks)
 
 
 @compiled
@@ -282,7 +288,8 @@ def run_of(scene, hop, target, budget, seed):
         fractions_of(scene, hop, strip),
     )
     hops = REPLICAS * 2 * strip.time * exact.rate(scene, hop) / strip.fraction
-    margin = MARGIN_OF_ROUGH if scene.moment_of_inertia else MARGIN_OF_COUNTS
+    wanders = scene.moment_of_inertia or scene.friction
+    margin = MARGIN_OF_ROUGH if wanders else MARGIN_OF_COUNTS
     events = max(1.0, LASTING * expected_events(scene, hop, strip))
     proposals = 1 / acceptance(scene, hop, strip) / events
 

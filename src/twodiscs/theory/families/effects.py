@@ -1,4 +1,9 @@
-"""The exact theory of two discs in scenes with effects."""
+"""The exact theory of two discs in scenes with effects.
+
+Friction changes none of it. A kick draws velocities from the law that they have in the invariant
+measure, for given centres and conserved momenta, so the measure stays invariant. A rate is the flux
+of this measure through a surface, and so it is the same with and without kicks.
+"""
 
 from twodiscs.model.events import DECLARED
 from twodiscs.theory import weighted
@@ -14,6 +19,9 @@ __all__ = [
 
 #: Crossings of the periodic cell between two events that the usual cost of an event includes.
 PASSES_PER_EVENT = 64
+
+#: The time of a kick over the time of an event.
+KICK = 4
 
 
 def volume_and_areas(scene):
@@ -36,10 +44,12 @@ def work_per_event(scene, event_rate):
     """Return an upper bound on the cost of an event over the usual cost, 1 between walls.
 
     On a periodic axis discs leave their cell between two events, very often if they are small. The
-    usual cost includes ``PASSES_PER_EVENT`` such crossings.
+    usual cost includes ``PASSES_PER_EVENT`` such crossings. A kick by friction costs about as much
+    as ``KICK`` events.
     """
     passes = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
-    return max(1.0, passes / PASSES_PER_EVENT / event_rate)
+    usual = max(1.0, passes / PASSES_PER_EVENT / event_rate)
+    return usual + KICK * scene.friction / event_rate
 
 
 def shells(scene):

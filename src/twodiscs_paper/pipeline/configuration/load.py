@@ -201,7 +201,7 @@ def _scene(block, path, common):
         watched = dict.fromkeys(Quantities.__dataclass_fields__, watched)
         watched["trajectory"] &= bool(_hops(scene))
         watched["hop_histogram"] &= (
-            bool(_hops(scene)) and _is_smooth(scene) and "discs" not in box.calls_for
+            bool(_hops(scene)) and _is_ergodic(scene) and "discs" not in box.calls_for
         )
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     quantities = Quantities(
@@ -276,8 +276,8 @@ def _hops(scene):
     return [hop for hop in HOPS if hop in scene.events]
 
 
-def _is_smooth(scene):
-    return scene.moment_of_inertia is None
+def _is_ergodic(scene):
+    return scene.moment_of_inertia is None or scene.friction > 0
 
 
 def _histogram(asked, box, scene, path):
@@ -292,7 +292,7 @@ def _histogram(asked, box, scene, path):
     event = asked.get("event", next(iter(hops), None))
     if asked.get("radii") == []:
         return {**asked, "radii": (), "event": event}
-    if not _is_smooth(scene):
+    if not _is_ergodic(scene):
         raise ConfigError(
             f"{path} must be false, because rough discs in a box are not ergodic and their "
             "intervals have no exact mean; watch mean_times instead"

@@ -1,0 +1,70 @@
+"""Friction: the times of kicks, at which all velocities are drawn anew, and their random numbers.
+
+Kicks come at the times of a Poisson process, so that the time to the next one does not depend on
+the past. A kick leaves the invariant measure as it is, and it satisfies detailed balance with
+reversed velocities: the past of a state is the future of the reversed state, with kicks that are
+independent of those in its own future.
+
+A kick ends a flight, as the end of time does. Each replica has its own stream of random numbers,
+keyed by its number, so bits do not depend on lanes, processors or shards. The seeds of jobs are
+below 2⁶³, those of kicks above. Without friction the kicks are None, and nothing is compiled.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.streams import exponential, open_stream
+
+#: The bit that makes the seed of kicks of the seed of a job.
+SEED = np.uint64(1 << 63)
+
+
+class Kicks(NamedTuple):
+    """The rate of kicks, and for each lane the time to the next one and its stream.
+
+    ``direction`` and ``velocity`` are the working memory of a draw.
+    """
+
+    rate: float
+    waits: np.ndarray  # (lanes,)
+    streams: np.ndarray  # (lanes, 4), uint64
+    direction: np.ndarray
+    velocity: np.ndarray
+
+
+@optional(lambda lanes, friction: None)
+def new_kicks(lanes, friction):
+    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
+
+    ``friction`` has a ``rate``.
+    """
+    streams = np.zeros((lanes, 4), np.uint64)
+    return Kicks(friction.rate, np.zeros(lanes), streams, np.zeros(6), np.zeros(8))
+
+
+@optional(lambda i, seed, replica, kicks: None)
+def open_kicks(i, seed, replica, kicks):
+    """Begin the kicks of a ``replica`` of the streams of ``seed`` (uint64) in lane ``i``."""
+    kicks.streams[i] = open_stream(seed ^ SEED, replica)
+    kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate
+
+
+@optional(lambda i, kicks: None)
+def renew_kicks(i, kicks):
+    """Draw the time to the next kick in lane ``i`` anew: another path begins with its replica."""
+    kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate
+
+
+@optional(lambda remaining, i, kicks: remaining)
+def before_kick(remaining, i, kicks):
+    """Return the ``remaining`` time of lane ``i``, or the time to its next kick if it is less."""
+    return min(remaining, kicks.waits[i])
+
+
+@compiled
+def open_all(seed, first, kicks):
+    """Begin the kicks of the replicas from the ``first`` on, one a lane."""
+    for i in range(kicks.waits.size):
+        open_kicks(i, seed, first + i, kicks)

@@ -1,0 +1,172 @@
+"""Friction: kicks draw all velocities anew, and no mean time changes.
+
+Statistical comparisons allow five standard errors, some 40 of them.
+"""
+
+import math
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from dynamics.rates import check_rates
+from effect_scenes import SCENES
+
+import twodiscs as td
+from twodiscs.dynamics import counting, trajectory
+from twodiscs.dynamics.ensemble import kicked, new_rows, put_state
+from twodiscs.dynamics.kicks import new_kicks, open_kicks
+from twodiscs.dynamics.law import law_of
+from twodiscs.model.checks import InputError
+from twodiscs.model.events import EVENTS, HOPS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.starts import components, states
+from twodiscs.theory import exact, virial
+
+PLAIN = Scene(1.5, 1.0, 0.2)
+ALL = Scene(
+    1.5, 1.0, 0.2, periodic="x", field=0.3, radius_ratio=1.2, mass_ratio=2.0, moment_of_inertia=0.4
+)
+
+
+@compiled
+def kick_again(state, number, seed, law):
+    """Return the states after each of a ``number`` of kicks, one a column."""
+    kicks, rows = new_kicks(1, law.friction), new_rows(number, law)
+    open_kicks(0, seed, 0, kicks)
+    for i in range(number):
+        state = kicked(state, 0, kicks.waits[0], law, kicks)
+        put_state(rows, i, state, law)
+    return rows
+
+
+def momenta_and_energy(scene, state):
+    """Return ({axis: total momentum}, kinetic energy) of columns of states."""
+    of = dict(zip(components(scene), state, strict=True))
+    momenta, energy = {}, 0.0
+    for axis, name in zip("xyz", "uvw", strict=True):
+        if f"{name}1" in of:
+            pairs = [(m, of[f"{name}{i}"]) for i, m in enumerate(scene.masses, 1)]
+            momenta[axis] = sum(m * v for m, v in pairs)
+            energy = energy + sum(m * v * v for m, v in pairs) / 2
+    if scene.moment_of_inertia:
+        for i, m in enumerate(scene.masses, 1):
+            energy = energy + m * scene.moment_of_inertia * of[f"s{i}"] ** 2 / 2
+    return momenta, energy
+
+
+@pytest.mark.parametrize("name", ["friction", "torus", "field", "rough", "combination"])
+def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
+    """The momentum along a periodic axis stays what it is, 0 in the ensemble and not 0 here."""
+    scene = replace(SCENES[name], friction=1.0)
+    start = states(scene, 1, 5)[: len(components(scene)), 0]
+    start[components(scene).index("u1")] += 0.3
+    found = np.array(kick_again(tuple(start), 50, np.uint64(1), law_of(scene)))
+    names = components(scene)
+    for row, name, value in zip(found, names, start, strict=True):
+        if name[0] in "xyz":
+            assert np.all(row == value)
+        else:
+            assert len(set(row)) == 50
+    before, after = momenta_and_energy(scene, start[:, None]), momenta_and_energy(scene, found)
+    assert np.allclose(after[1], before[1], rtol=1e-13)
+    for axis in scene.axes:
+        same = np.abs(after[0][axis] - before[0][axis]) < 1e-14
+        assert np.all(same) if axis in scene.conserved else not np.any(same)
+
+
+@pytest.mark.parametrize("rate", [0.5, 20.0])
+@pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])
+def test_no_mean_time_changes(scene, rate):
+    both = scene, replace(scene, friction=rate)
+    assert both[1].family == "effects"
+    times, other = (exact.mean_times(one) for one in both)
+    for event, time in times.items():
+        assert other[event] == (time if time is None else pytest.approx(time, rel=1e-13))
+    assert exact.volume(both[1]) == pytest.approx(exact.volume(scene), rel=1e-13)
+    assert both[1].velocity_components == scene.velocity_components
+    check_rates(both[1], seed=6, blocks=16)
+
+
+def test_rare_hops_have_their_exact_rate():
+    """In a strip, with kicks before and after a start: none, one or several hops."""
+    for rate in (3.0, 100.0):
+        scene, hop = Scene(1.5, 1.0, 0.2495, friction=rate), "horizontal_hop"
+        point = counting.count_events(scene, {hop: 0.02}, 10**8, 7)
+        found = point.strip(hop).estimate()
+        assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
+        assert found.relative_stderr < 0.025
+
+
+def test_intervals_have_their_exact_mean():
+    """Rough discs have none without friction, because they are not ergodic."""
+    for scene in (PLAIN, ALL):
+        hop, scene = "vertical_hop", replace(scene, friction=2.0)
+        found = td.intervals(scene, hop, 2**16, seed=3).mean
+        assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
+
+
+def test_bits_do_not_depend_on_shards_or_lanes():
+    scene = replace(ALL, friction=2.0)
+
+    def counts(first, stop, lanes=64):
+        return counting.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
+
+    whole, halves = counts(0, 4), [counts(0, 1), counts(1, 4)]
+    for total, *shards, other in zip(whole, *halves, counts(0, 4, 7), strict=True):
+        assert np.array_equal(total, sum(shards))
+        assert np.array_equal(total, other)
+
+
+@pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])
+def test_a_trajectory_has_the_kicks_of_the_ensemble(scene):
+    """It has the same events as a replica of the ensemble, and kicks at random times."""
+    scene, time = replace(scene, friction=4.0), 256.0
+    start = tuple(map(float, states(scene, 1, 3)[: len(components(scene)), 0]))
+    rows = list(trajectory.events_of(scene, start, time, seed=3))
+    names = Counter(row[1] for row in rows)
+    sums, _ = counting.run_blocks(scene, EVENTS, 3, 0, 1, time, replicas=1, lanes=1)
+    counts = dict(zip(EVENTS, sums.tolist(), strict=True))
+    for event in {*HOPS, "disc_collision"} & {*scene.events}:
+        assert counts[event] == names[event]
+    walls = sum(n for name, n in names.items() if name.startswith("wall"))
+    assert (counts["any_wall"], rows[-1][1]) == (walls, "end")
+    assert abs(names["kick"] - 4 * time) <= 5 * math.sqrt(4 * time)
+    for (before, *_, old), (at, event, *_, new) in pairwise(rows):
+        if event == "kick":
+            velocities = [i for i, name in enumerate(components(scene)) if name[0] in "uvs"]
+            assert all(old[i] != new[i] for i in velocities)
+            assert at > before
+    # Another seed has the same start and other kicks.
+    other = list(trajectory.events_of(scene, start, time, seed=4))
+    assert other[0] == rows[0]
+    assert other[-1][-1] != rows[-1][-1]
+
+
+def test_velocities_forget_at_the_rate_of_kicks():
+    """⟨v(0)·v(t)⟩ is e^(−γt) of what it is without collisions: here the discs are small."""
+    scene, times = Scene(100.0, 100.0, 1e-3, friction=2.0), [0.1, 0.5, 1.0]
+
+    def product(start, now):
+        return start["u1"] * now["u1"]
+
+    found = td.observe(scene, product, times, 2**15, seed=1)
+    for time, mean, error in zip(times, found.mean, found.stderr, strict=True):
+        assert abs(mean - 0.25 * math.exp(-2.0 * time)) <= 5 * error + 0.02 * 0.25
+    together = td.observe(scene, product, times[-1:], 2**15, seed=1)
+    assert together.mean[0] == pytest.approx(found.mean[-1], rel=1e-12)
+
+
+def test_the_virial_theorem_holds():
+    scene = replace(PLAIN, friction=5.0)
+    assert virial.weights(scene) == virial.weights(PLAIN)
+
+
+def test_too_many_kicks_are_refused():
+    for bad in (2e6, math.inf, -1.0, "1"):
+        with pytest.raises(InputError, match=r"^friction must"):
+            Scene(1.5, 1.0, 0.2, friction=bad)
+    with pytest.raises(InputError, match="friction must be left out with 3 discs"):
+        Scene(1.5, 1.0, 0.1, friction=1.0, discs=3)
