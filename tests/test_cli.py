@@ -201,6 +201,14 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
     assert Path("my.yaml").read_text() == text
 
 
+def test_a_new_configuration_needs_no_package_of_the_workflow(tmp_path):
+    absent = "import sys; sys.modules |= dict.fromkeys(('snakemake', 'yaml', 'jsonschema'));"
+    program = f"{absent} from twodiscs.cli import main; main()"
+    words = [sys.executable, "-c", program, "new", "my.yaml"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout == "my.yaml is written. To build it: twodiscs run my.yaml\n"
+
+
 def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = build.command("my.yaml", ["volume", "results/check.passed"], Path("/a/Snakefile"))
