@@ -15,7 +15,7 @@ A scene and the amount of work may be positional arguments, all others are keywo
 
 The random streams of a result depend on the ``seed``, the method, the box and the radius. With the
 ``name`` of a scene in a configuration and the configured seed, results are those of the pipeline,
-bit for bit. The tutorial is docs/python.md.
+bit for bit. The tutorial is docs/python.md of the repository.
 """
 
 from __future__ import annotations

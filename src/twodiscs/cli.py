@@ -4,6 +4,7 @@ import argparse
 import csv
 import json
 import sys
+from contextlib import suppress
 
 import argcomplete
 
@@ -92,7 +93,8 @@ def _parser():
     text = "build a configuration with Snakemake, or some of it, on all cores"
     some = commands.add_parser("run", help=text, description=f"{text[0].upper()}{text[1:]}.")
     if sys.argv[1:2] == ["run"]:
-        some.epilog = f"Targets: {', '.join(_targets())}."
+        with suppress(InputError):  # the workflow is not installed
+            some.epilog = f"Targets: {', '.join(_targets())}."
     file = some.add_argument("configuration", help="a YAML file; twodiscs new writes one")
     file.completer = argcomplete.FilesCompleter(("yaml", "yml"))
     targets = some.add_argument(
