@@ -188,6 +188,12 @@ class Transmission(Result):
         -------
         Transmission
             The result.
+
+        Examples
+        --------
+        >>> some = td.transmission(td.Scene(1.5, 1.0, 0.246), "horizontal_hop", 2**12, seed=1)
+        >>> some.more(2**13).coefficient.stderr < some.coefficient.stderr
+        True
         """
         return self._again({"hops": hops}, cores, progress)
 
@@ -210,6 +216,12 @@ class Transmission(Result):
         -------
         DataFrame
             One row per time, with the columns kappa and stderr.
+
+        Examples
+        --------
+        >>> found = td.transmission(td.Scene(1.5, 1.0, 0.246), "horizontal_hop", 2**12, seed=1)
+        >>> found.frame().shape
+        (21, 2)
         """
         import pandas as pd
 
