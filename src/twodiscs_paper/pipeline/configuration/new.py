@@ -30,7 +30,8 @@ scenes:
     accuracy: draft
     # Only mean times without this line; also volume, areas, hop_histogram; true for everything.
     # watch: {mean_times: true, trajectory: 0.24}
-    # Also mass_ratio, periodic: [x], field, friction, moment_of_inertia; a depth of the box makes balls.
+    # Also mass_ratio, periodic: [x], field, friction, moment_of_inertia. With a depth of the box
+    # the discs are balls.
     # effects: {radius_ratio: 0.5}
     # Random configurations for volume and areas, at each radius.
     # monte_carlo: {samples: 1e7}
