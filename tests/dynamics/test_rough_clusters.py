@@ -82,14 +82,6 @@ def test_a_run_waits_for_crowds_that_its_budget_can_show():
     assert abs(enough["disc_collision"].z) < 5
 
 
-def test_an_error_that_is_smaller_than_asked_needs_its_own_initial_states():
-    """The first round is far better than half of the mean time, and may have missed bursts."""
-    scene = td.Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5)
-    assert replicas_needed(scene, "disc_collision", 0.5) < 1000
-    row = td.simulate(scene, error=0.5, events=["disc_collision"], seed=0)["disc_collision"]
-    assert (row.status, row.stderr, row.z) == ("too-few", None, None)
-
-
 def scenes():
     """Return 20 scenes within 3 % of a threshold, ten on a ring and ten between walls."""
     rng = np.random.default_rng(36)
