@@ -128,6 +128,7 @@ MUTANTS = [
     ("twodiscs_paper/pipeline/results/audit.py", "damaged shards", 'for kind in ("points", "shards"):', 'for kind in ("points",):'),
     ("twodiscs_paper/pipeline/cost.py", "days of some radii", "taken * len(keys) / max(1, len(some)) / DAY", "taken / DAY"),
     ("twodiscs_paper/studies/distributions/measure.py", "error of a hazard", "math.sqrt(1 / rest - 1 / alive)", "math.sqrt(1 / rest + 1 / alive)"),
+    ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),
 ]
 # fmt: on
 
