@@ -129,6 +129,7 @@ MUTANTS = [
     ("twodiscs_paper/pipeline/cost.py", "days of some radii", "taken * len(keys) / max(1, len(some)) / DAY", "taken / DAY"),
     ("twodiscs_paper/studies/distributions/measure.py", "error of a hazard", "math.sqrt(1 / rest - 1 / alive)", "math.sqrt(1 / rest + 1 / alive)"),
     ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),
+    ("twodiscs_paper/studies/agreement/measure.py", "counts of strips in a sum", 'of_event.items() if row["starts"] == "invariant"', "of_event.items()"),
 ]
 # fmt: on
 
