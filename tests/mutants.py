@@ -130,6 +130,7 @@ MUTANTS = [
     ("twodiscs_paper/studies/distributions/measure.py", "error of a hazard", "math.sqrt(1 / rest - 1 / alive)", "math.sqrt(1 / rest + 1 / alive)"),
     ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),
     ("twodiscs_paper/studies/agreement/measure.py", "counts of strips in a sum", 'of_event.items() if row["starts"] == "invariant"', "of_event.items()"),
+    ("sampling/prism.py", "energy in the measure of proposals", " else measure * neck.most ** (prism.components / 2 - 1)", " else measure"),
 ]
 # fmt: on
 
