@@ -115,6 +115,22 @@ MUTANTS = [
     ("twodiscs_paper/pipeline/documents/numbers/number.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
     ("twodiscs_paper/pipeline/documents/numbers/number.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
     ("twodiscs_paper/pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
+    ("theory/weighted.py", "kinks of a thick shell", "np.clip([0.0, *touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
+    ("theory/exact.py", "range of a disc in the free fraction", "else 2 * radius)\n        for axis in scene.axes", "else radius)\n        for axis in scene.axes"),
+    ("sampling/blocks/rounds.py", "one block beyond the budget", "min(blocks, math.floor(affordable * done))", "min(blocks, math.ceil(affordable * done))"),
+    ("points/estimates.py", "misses resolved by units", "max(0.0, spread) * min(unit, samples)", "max(0.0, spread) * samples"),
+    ("points/estimates.py", "error of a straight line at 0", "math.hypot(3 * error, other) / 2", "math.hypot(3 * error, other)"),
+    ("points/intervals.py", "sign of a varying number", 'weights |= {"all": -per_chain * count / self.intervals}', 'weights |= {"all": per_chain * count / self.intervals}'),
+    ("points/monte_carlo.py", "volume and area in a ratio", '| {"volume": -1 / volume}', '| {"volume": 1 / volume}'),
+    ("points/monte_carlo.py", "fewest hits of both walls", "enough = min(self.sampled(wall).enough for wall in WALL_AREAS)", "enough = max(self.sampled(wall).enough for wall in WALL_AREAS)"),
+    ("comparison/check.py", "one event of the sum rule is enough", "enough = all(replicas >= replicas_needed(", "enough = any(replicas >= replicas_needed("),
+    ("comparison/tables/mean_times.py", "error asked instead of reached", "error = min(target, estimate.relative_stderr) if estimate else target", "error = target"),
+    ("twodiscs_paper/pipeline/results/audit.py", "damaged shards", 'for kind in ("points", "shards"):', 'for kind in ("points",):'),
+    ("twodiscs_paper/pipeline/cost.py", "days of some radii", "taken * len(keys) / max(1, len(some)) / DAY", "taken / DAY"),
+    ("twodiscs_paper/studies/distributions/measure.py", "error of a hazard", "math.sqrt(1 / rest - 1 / alive)", "math.sqrt(1 / rest + 1 / alive)"),
+    ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),
+    ("twodiscs_paper/studies/agreement/measure.py", "counts of strips in a sum", 'of_event.items() if row["starts"] == "invariant"', "of_event.items()"),
+    ("sampling/prism.py", "energy in the measure of proposals", " else measure * neck.most ** (prism.components / 2 - 1)", " else measure"),
 ]
 # fmt: on
 

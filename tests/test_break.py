@@ -34,6 +34,10 @@ KINDS = {
     "rough": lambda draw: {"moment_of_inertia": draw(0.003, 1.0)},
     "rough ring": lambda draw: {"moment_of_inertia": draw(0.003, 1.0), "periodic": "x"},
     "torus": lambda draw: {"periodic": "xy", "mass_ratio": draw(0.2, 5.0)},
+    "friction": lambda draw: {"friction": draw(0.1, 10.0), "mass_ratio": draw(0.2, 5.0)},
+    "rough with friction": lambda draw: {
+        "friction": draw(0.1, 10.0), "moment_of_inertia": draw(0.003, 1.0),
+    },
     "three": lambda draw: {"discs": 3},
     "channel of many": lambda draw: {"discs": round(draw(4, 8)), "width": draw(3.0, 6.0)},
 }  # fmt: skip

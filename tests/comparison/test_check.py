@@ -17,6 +17,7 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
+from twodiscs.model.scene import Scene
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 
@@ -189,6 +190,15 @@ def test_the_sum_rule_sees_collisions_that_were_missed(laws, theory):
     point = law.dynamics(np.random.default_rng(3))
     found = table_of({"dynamics": [point]}, theory)
     assert ("sum_rule", "mean_times", 0.2) in failed(found)
+
+
+@pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "counted")])
+def test_the_sum_rule_needs_the_initial_states_of_all_its_events(replicas, status):
+    """Collisions and the top wall of these rough discs need 45411, the right wall 19254."""
+    scene = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5)
+    point = Laws(scene).dynamics(np.random.default_rng(3), replicas, 1e-2)
+    rows = check.comparisons(Box.of(scene), [], [], [], [], [point])
+    assert [row["status"] for row in rows if row["comparison"] == "sum_rule"] == [status]
 
 
 def test_what_is_blocked_must_not_be_seen(points, theory):

@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, Laws, theory_rows
+from factory import BOX, Laws, counts_point, rows_of, theory_rows
 from scipy.special import ndtri, stdtr
 
 import twodiscs as td
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.box import Box
+from twodiscs.model.scene import Scene
+from twodiscs.theory.exact import replicas_needed
 
 
 def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
@@ -30,6 +33,22 @@ def test_the_bound_of_a_wall_never_hit_counts_no_copy_twice():
     for row in possible:
         assert row["status"] == "none-seen"
         assert row["bound"] == pytest.approx(due, rel=1e-12), row["event"]
+
+
+@pytest.mark.parametrize(("replicas", "status"), [(2**15, "too-few"), (2**16, "reached")])
+def test_an_error_smaller_than_asked_needs_its_own_initial_states(replicas, status):
+    """Half of the mean time needs 119 states of rough discs, the error of these counts 45411."""
+    scene, event = Scene(1.5, 1.0, 0.245, moment_of_inertia=0.5), "disc_collision"
+    assert replicas_needed(scene, event, 0.5) < replicas
+    total = 1000 * replicas
+    point = counts_point(
+        scene.radius, event, total, 1010 * total,
+        replicas=replicas, target={event: 0.5}, status={event: "reached"},
+    )  # fmt: skip
+    theory = rows_of({(scene.radius, f"{event}_time"): 1.0})
+    (row,) = MeanTimes.rows(Box.of(scene), theory, {"dynamics": [point]})
+    assert row["status"] == status
+    assert (row["stderr"] is None) == (status == "too-few")
 
 
 @pytest.mark.parametrize("chains", [100, 150])

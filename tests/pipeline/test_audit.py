@@ -7,6 +7,7 @@ from commands import command
 from factory import BOX
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.points.digests import write_json
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.jobs.point import monte_carlo
 from twodiscs_paper.pipeline.jobs.table import rows_of
@@ -103,6 +104,16 @@ def test_a_table_that_was_edited_before_the_manifest_was_written_is_named(
     lines[1] = lines[1].replace("sampled", "too-few")
     path.write_text("\n".join(lines) + "\n")
     certify(results)
+    assert run(monkeypatch) == 1
+    assert f"{path} is not what its job wrote" in capsys.readouterr().out
+
+
+def test_a_shard_that_was_edited_is_named(results, monkeypatch, capsys):
+    path = results / "small" / "shards" / "monte_carlo" / "0.1" / "all-0-1.json"
+    path.parent.mkdir(parents=True)
+    write_json(path, {"sums": [17]})
+    assert run(monkeypatch) == 0
+    path.write_text(path.read_text().replace("17", "18"))
     assert run(monkeypatch) == 1
     assert f"{path} is not what its job wrote" in capsys.readouterr().out
 

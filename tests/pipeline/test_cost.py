@@ -61,6 +61,14 @@ def test_days_are_those_of_the_jobs():
     assert cost.days([scene()]) < 0.1
 
 
+def test_days_of_many_radii_are_those_of_some_times_their_number(monkeypatch):
+    radii = [round(0.1 + 0.001 * i, 3) for i in range(21)]
+    request = scene(accuracy=1e-7, event_budget=1e15, radii=radii, watch={"mean_times": True})
+    whole = cost.days([request])
+    monkeypatch.setattr(cost, "SOME", 7)
+    assert cost.days([request]) == pytest.approx(whole, rel=0.1)
+
+
 def test_what_one_job_can_do_has_no_shards():
     assert cost.shards(scene(), "dynamics", 0.24) == []
     # The budget allows for more than a shard, and the accuracy does not take it.

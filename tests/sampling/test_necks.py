@@ -2,10 +2,20 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.prism import neck_of
+from twodiscs.sampling.jit import compiled
+from twodiscs.sampling.prism import (
+    fraction_if_accepted,
+    neck_of,
+    prism_of,
+    propose_anywhere,
+    proposed_measure,
+)
+from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import weighted
 
 
 @pytest.mark.parametrize("mass_ratio", [0.25, 1.0, 4.0])
@@ -28,3 +38,24 @@ def test_the_lighter_disc_on_top_has_the_most_energy_left(mass_ratio, radius_rat
     assert max(left) <= most + 1e-12
     if radius_ratio == 1:
         assert most == pytest.approx(max(left), rel=1e-12)
+
+
+@compiled
+def accepted(state, prism, proposals):
+    """Return how many of some proposals in a neck are accepted."""
+    count = 0
+    for _ in range(proposals):
+        _, y1, _, dx, dy, dz = propose_anywhere(state, prism, prism.neck)
+        fraction = fraction_if_accepted(state, prism, y1, dx, dy, dz, prism.components - 2)
+        count += fraction >= 0.0
+    return count
+
+
+def test_proposals_in_a_neck_are_accepted_as_their_measure_says():
+    """In a field the energy of the lower places of a neck counts in the measure; at 5 sigma."""
+    scene, within, proposals = Scene(1.5, 1.0, 0.24, field=0.4), 0.02, 200_000
+    prism = prism_of(scene, "horizontal_hop", within)
+    assert prism.neck.most < 0.7
+    expected = weighted.volume_near(scene, "horizontal_hop", within) / proposed_measure(prism)
+    found = accepted(open_stream(np.uint64(1), 0), prism, proposals) / proposals
+    assert abs(found - expected) < 5 * math.sqrt(expected * (1 - expected) / proposals)

@@ -118,6 +118,20 @@ def test_rounds_end_where_the_error_is_reached_or_the_budget_spent(budget):
     assert known[-1][0] <= known[-1][1]
 
 
+@pytest.mark.parametrize("budget", [325, 1005, 12345])
+def test_a_budget_has_as_many_whole_blocks_as_it_can_pay(budget):
+    """A block has ten events, and the error is never reached."""
+    run = rounds.SequentialRun(
+        lambda first, stop: (np.array([stop - first]),),
+        lambda sums, blocks: np.array([1e9]),
+        lambda sums: 10 * int(sums[0][0]),
+        10,
+        budget,
+        planned=1,
+    )
+    assert rounds.in_rounds(run).blocks == budget // 10
+
+
 @pytest.mark.parametrize("cores", [1, 3])
 @pytest.mark.parametrize("call", [1000, 7000, rounds.CALL])
 def test_an_error_asked_for_later_has_the_sums_of_one_asked_for_at_once(monkeypatch, cores, call):

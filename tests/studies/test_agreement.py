@@ -6,6 +6,7 @@ import pytest
 from factory import written
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.agreement import measure
 from twodiscs_paper.studies.agreement.table import Agreement
 from twodiscs_paper.studies.effects.table import Effects
@@ -111,6 +112,19 @@ def test_the_density_at_zero_is_that_of_a_parabola(rows):
 def test_effects_whose_count_is_a_sum_of_others_are_no_tests(rows):
     assert one(rows, quantity="effects") == (2, 1.5, None)
     assert measure.tests_of_effects([]) is None
+
+
+def test_a_count_from_a_strip_is_no_part_of_a_sum():
+    """It has trajectories of its own: 30 = 20 + 10 is a coincidence."""
+    counts = {"horizontal_hop": 10, "right_wall": 20, "any_wall": 30}
+    rows = [
+        {"scene": "a", "radius": 0.1, "quantity": f"{event}_time", "count": count, "z": 1.0}
+        | {"starts": "strip" if event in HOPS else "invariant", "status": "reached"}
+        for event, count in counts.items()
+    ]
+    assert measure.tests_of_effects(rows)["count"] == 3
+    together = [row | {"starts": "invariant"} for row in rows]
+    assert measure.tests_of_effects(together)["count"] == 2
 
 
 def test_without_comparisons_there_is_little_to_say(tmp_path):

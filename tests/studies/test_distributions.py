@@ -107,6 +107,18 @@ def test_density_at_zero_of_a_parabola():
     assert spread == pytest.approx(found[0].stderr, rel=5 / math.sqrt(2 * 2000) + 0.01)
 
 
+def test_errors_of_hazards_are_what_they_say():
+    """Bins are independent, given those before: the mean square of scores is 1, at 5 sigma."""
+    rng, z = np.random.default_rng(8), []
+    for _ in range(40):
+        counts = np.bincount((rng.exponential(2.0, 10**4) / 0.25).astype(int), minlength=30)
+        z += [
+            (row.rate - 0.5) / row.error for row in distributions.hazard(counts[:30], 10**4, 0.25)
+        ]
+    assert len(z) > 500
+    assert abs(np.mean(np.square(z)) - 1) < 5 * math.sqrt(2 / len(z))
+
+
 def test_hazard_of_an_exponential_is_its_rate():
     rng = np.random.default_rng(3)
     counts = np.bincount((rng.exponential(2.0, 10**5) / 0.25).astype(int), minlength=60)

@@ -18,7 +18,7 @@ from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.scene import Scene
-from twodiscs.points.estimates import mean_of
+from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import (
@@ -310,3 +310,18 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
         for module in (figure, figure_diffusion):
             for some in (rows, lattice, []):
                 assert module.draw(Box(1.0, 4.0), {"passages": some})
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inertia):
+    effects = {} if inertia is None else {"moment_of_inertia": inertia}
+    kappas, found = [Estimate(0.3, 0.02, 100), Estimate(0.2, 0.01, 100)], []
+    for n, kappa in enumerate(kappas, 5):
+        scene = Box(1.5, 1.0, effects).scene(measure.radius_at(0.25, n))
+        found.append((measure.NearThreshold("a", scene, "horizontal_hop", n, 1), kappa))
+    (row,) = measure.exponents(found)
+    values = [k.value if inertia else 1 - k.value for k in kappas]
+    errors = [k.stderr / v for k, v in zip(kappas, values, strict=True)]
+    x = [-n * math.log(2) for n in (5, 6)]
+    slope = LinearFit(x, [math.log(v) for v in values], errors).slope
+    assert (row["estimate"], row["stderr"]) == pytest.approx((slope.value, slope.stderr))
