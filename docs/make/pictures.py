@@ -28,6 +28,7 @@ PANELS = {
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
     "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
+    "cost": ("accuracy_cost", 2, "processor time (s)"),
     "passages": ("passages", 1, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
