@@ -132,7 +132,7 @@ def _described(line):
 #: Tables of which only some rows are expected: Python draws the figures of these.
 FEW_ROWS = {"hop_histogram", "trajectory"}
 
-#: What Python draws, by the tables that a figure reads.
+#: The results that Python draws, by the tables that a figure reads.
 RESULTS = {
     (): "td.Box(1.5, 1.0)",
     ("mean_times",): "td.scan(1.5, 1.0, [0.1, 0.2], error=0.05, budget=1e6)",

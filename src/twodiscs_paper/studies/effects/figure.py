@@ -80,8 +80,8 @@ def caption(shown):
     text = """
     Mean times of scenes with one effect or two, divided by the mean times of plain discs in the
     same box at the same radius (of disc 1) and total energy, up to the largest radius of plain
-    discs: exact (lines) and by event-driven molecular dynamics (symbols), for (a) vertical hops,
-    (b) disc collisions and (c) hits of any disc on any wall. Error bars are one standard error;
+    discs, for (a) vertical hops, (b) disc collisions and (c) hits of any disc on any wall: exact
+    (lines) and by event-driven molecular dynamics (symbols). Error bars are one standard error;
     they are hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where
     hops of plain discs become blocked, and their largest radius. The torus has neither hops nor
     walls. Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor
