@@ -1,4 +1,4 @@
-"""What Sphinx is told of the site, see website.py."""
+"""The settings of Sphinx for the site, see website.py."""
 
 from latex2mathml.converter import convert
 

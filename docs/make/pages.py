@@ -2,9 +2,9 @@
 
     python docs/make/pages.py
 
-renews config/README.md, config/schema.json for editors, the end of results/README.md, the rows of
-studies in docs/pipeline.md, the names that editors complete in src/twodiscs/__init__.py, and what
-`twodiscs` prints in the pages of docs, in the folder where it is called.
+renews, in the folder where it is called: config/README.md, config/schema.json for editors, the end
+of results/README.md, the rows of studies in docs/pipeline.md, the names that editors complete in
+src/twodiscs/__init__.py, and the output of `twodiscs` in the pages of docs.
 """
 
 import json

@@ -2,8 +2,8 @@
 
     python docs/make/pictures.py results docs
 
-draws them from a finished build, to which ``snakemake explorer`` has added; the first page of the
-manuscript, the top of the report and the explorer are taken with ``pdftoppm`` and ``chromium``.
+draws them from a finished build, to which ``snakemake explorer`` has added. ``pdftoppm`` takes the
+first page of the manuscript, ``chromium`` the top of the report and the explorer.
 """
 
 import json
@@ -28,6 +28,7 @@ PANELS = {
     "hazard": ("distributions", 0, ""),
     "effects": ("effects", 0, "radius $r$"),
     "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
+    "cost": ("accuracy_cost", 2, "processor time (s)"),
     "passages": ("passages", 1, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
@@ -39,7 +40,7 @@ WHOLE = ("model",)
 HEIGHT, TOP, DPI = 2.5, 0.3, 200
 
 
-#: What brings the explorer to where its picture is taken.
+#: The script that brings the explorer to the moment of its picture.
 AT_A_HOP = """
 runs.advance(2e7);
 while (!(drawn.time > 3 && drawn.flash && drawn.time - drawn.flash.since < 0.05)) move(0.02);

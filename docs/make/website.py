@@ -24,9 +24,10 @@ from twodiscs.arguments import Parser, run
 from twodiscs.comparison import check
 from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
+from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.pipeline.documents import explorer
+from twodiscs_paper.pipeline.documents import captions, explorer
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
 from twodiscs_paper.pipeline.jobs.study import read_tables
 
@@ -44,6 +45,7 @@ PAGES = {
 
 #: The box of the pictures, that of the scene whose tables are expected.
 BOX = Box(1.5, 1.0)
+SCENE = {"name": "paper", "width": BOX.width, "height": BOX.height}
 
 
 #: The pages by their titles' places in the site.
@@ -127,7 +129,10 @@ def _described(line):
     return f"### td.{name}\n\n```{{eval-rst}}\n.. {kind}:: twodiscs.{name}{below}\n```\n\n"
 
 
-#: What Python draws, by the tables that a figure reads.
+#: Tables of which only some rows are expected: Python draws the figures of these.
+FEW_ROWS = {"hop_histogram", "trajectory"}
+
+#: The results that Python draws, by the tables that a figure reads.
 RESULTS = {
     (): "td.Box(1.5, 1.0)",
     ("mean_times",): "td.scan(1.5, 1.0, [0.1, 0.2], error=0.05, budget=1e6)",
@@ -155,7 +160,7 @@ def in_python(name):
 def picture(name):
     """Return a small picture of a figure of the expected tables, None without all of them.
 
-    Two tables keep only some of their rows there: the figures of these are drawn by Python.
+    The figures of ``FEW_ROWS`` are drawn by Python.
     """
     entry, folders = ENTRIES[name], (EXPECTED / "paper", EXPECTED)
     wanted = (*entry.tables, *entry.main_tables)
@@ -164,7 +169,7 @@ def picture(name):
         return None
     image = io.BytesIO()
     with style.context():
-        if {"hop_histogram", "trajectory"} & set(wanted):
+        if FEW_ROWS & set(wanted):
             figure = eval(in_python(name), {"td": twodiscs})
         else:
             figure = draw_figure(
@@ -185,7 +190,9 @@ def gallery(pictures):
         lines.append(f"## {entry.title}")
         if name in pictures:
             lines.append(f"![{entry.title}]({pictures[name]})")
-        lines.append(entry.caption().replace("|", "\\|").replace("<", "&lt;"))
+        own = FEW_ROWS & {*entry.tables}
+        caption = entry.caption(Shown(BOX)) if own else captions.caption(entry, EXPECTED, SCENE)
+        lines.append(caption.replace("|", "\\|").replace("<", "&lt;"))
         lines.append(f"```text\nsnakemake --cores 2 {name}\n```")
         if line := in_python(name):
             lines.append(f"```python\n{line}\n```")
@@ -195,9 +202,8 @@ def gallery(pictures):
 def live_explorer():
     """Return the explorer with the points that are expected."""
     tables = {path.stem: path for path in (EXPECTED / "paper").glob("*.csv")}
-    scene = {"name": "paper", "width": BOX.width, "height": BOX.height}
     parts = {path.name: path.read_text("utf-8") for path in (ROOT / "workflow/explorer").iterdir()}
-    data = explorer.data_of([scene | {"points": explorer.points(tables)}], seed=1908)
+    data = explorer.data_of([SCENE | {"points": explorer.points(tables)}], seed=1908)
     return explorer.explorer(parts, data)
 
 

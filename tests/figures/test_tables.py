@@ -13,10 +13,10 @@ from figure_cases import PAPER, bars, draw, points, tables_of
 from twodiscs.comparison.measured.transmission import box_time
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
-from twodiscs.figures.kit import style
+from twodiscs.figures.kit import curves, style
 from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.events import HOPS, SHELLS
-from twodiscs.theory import laws, virial
+from twodiscs.theory import exact, laws, virial
 from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
@@ -260,9 +260,111 @@ def test_the_panels_of_stability_are_those_of_the_table():
         due = [row["z"] for row in estimates if (row["quantity"] == "volume") == is_volume]
         shown = points(drawn("stability")["d"], *look)
         assert sorted(z for z, _ in shown) == sorted(due)
-    energies = of(rows, part="dynamics", quantity="energy_error")
-    shown = points(drawn("stability_of_runs")["a"], style.BLUE, "o")
-    assert {x for x, _ in shown} == {max(row["value"], 1e-17) for row in energies}
+    theory, end = of(rows, part="theory"), "largest radius"
+    for panel, own in (
+        ("a", of(theory, case=end)),
+        ("b", [row for row in theory if row["case"] != end]),
+    ):
+        for look, series in (
+            ((style.VERMILLION, "s"), of(own, method="closed-form", quantity="volume")),
+            ((style.ORANGE, "D"), of(own, method="closed-form", quantity="areas")),
+            (volume, of(own, method="stable")),
+        ):
+            worst = {}
+            for row in series:
+                errors = worst.setdefault(abs(row["distance"]), [1e-17])
+                errors.append(row["value"])
+            due = {(distance, max(errors)) for distance, errors in worst.items()}
+            assert points(drawn("stability")[panel], *look) == due != set()
+
+
+def test_the_panels_of_stability_of_runs_are_those_of_the_table():
+    rows, axes = table("stability"), drawn("stability_of_runs")
+    for quantity, sign, colour, marker in (
+        ("energy_error", 1, style.BLUE, "o"),
+        ("smallest_gap", -1, style.VERMILLION, "s"),
+        ("excess", 1, style.GREEN, "^"),
+    ):
+        due = {max(sign * row["value"], 1e-17) for row in of(rows, quantity=quantity)}
+        assert {x for x, _ in points(axes["a"], colour, marker)} == due != set()
+    for quantity, look in zip(("contact_time", "wall_time"), style.SERIES, strict=False):
+        due = {row["value"] for row in of(rows, part="times", quantity=quantity)}
+        assert {x for x, _ in points(axes["b"], *look)} == due != set()
+    returns = of(rows, part="reversal", quantity="return_error")
+    radii = sorted({row["radius"] for row in returns})
+    for radius, look in zip(radii, (*style.SERIES, (style.ORANGE, "v")), strict=True):
+        (exponent,) = of(rows, radius=radius, quantity="exponent", case="separation")
+        due = {
+            (exponent["value"] * row["count"] / math.log(2), row["value"])
+            for row in of(returns, radius=radius)
+        }
+        assert points(axes["c"], *look) == due
+
+
+def test_tails_are_those_of_the_table_with_their_laws():
+    rows = table("tails")
+    for (event, radius), look in zip(
+        dict.fromkeys((row["event"], row["radius"]) for row in rows), tails.LOOKS, strict=False
+    ):
+        own = of(rows, event=event, radius=radius)
+        shown = [
+            (row["time"] / row["exact_mean"], row["estimate"], row["law"])
+            for row in of(own, quantity="survival")
+            if row["stderr"] and row["stderr"] < 0.3 * row["estimate"]
+        ]
+        rates = of(own, quantity="rate")
+        axes = drawn("tails")[2 if rates else 0]
+        assert points(axes, *look) == {(t, p) for t, p, _ in shown}
+        line = next(n for n in axes.lines if n.get_color() == look[0] and n.get_marker() == "None")
+        times, values = line.get_data()
+        if rates:
+            (rate,) = rates
+            fall = rate["estimate"] * rate["exact_mean"] * np.ptp(times)
+            assert values[0] / values[-1] == pytest.approx(math.exp(fall), rel=1e-12)
+        else:
+            laws = {t: law for t, _, law in shown}
+            assert [laws[t] for t in times] == [*values]
+            assert len(times) > 5
+
+
+def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
+    hops, ratios = (drawn("thresholds")[i] for i in range(2))
+    for event, (colour, _) in LOOKS.items():
+        law = laws.leading_law(PAPER, event) if event in SHELLS else None
+        if law is None:
+            continue
+        for axes in (hops, ratios)[event not in HOPS :]:
+            curve = max(
+                (line for line in axes.lines if line.get_color() == colour),
+                key=lambda line: (line.get_linestyle() == "-", len(line.get_xdata())),
+            )
+            radii = law.limit * (1 - np.array(curve.get_xdata()))
+            due = [exact.mean_times(PAPER.scene(radius))[event] for radius in radii]
+            unit = law(radii) if axes is ratios else 1
+            np.testing.assert_allclose(curve.get_ydata(), np.divide(due, unit), rtol=1e-9)
+        if event in HOPS:
+            first = table("distributions")[0]["scene"]
+            rows = of(table("distributions"), scene=first, event=event, quantity="first_passage")
+            due = {
+                (1 - row["radius"] / law.limit, row["estimate"])
+                for row in near(PAPER, law, of(rows, last=None))
+            }
+            assert points(hops, colour, "x") == due != set()
+
+
+def test_curves_of_pressures_are_exact():
+    radii, columns = curves.exact(PAPER)
+    for event, look in zip(("right_wall", "top_wall"), style.SERIES, strict=False):
+        known = np.isfinite(radii)
+        scenes = [PAPER.scene(radius) for radius in radii[known]]
+        factors = [virial.pressure_factor(scene, event) * scene.share(event) for scene in scenes]
+        due = factors / columns[f"{event}_time"][known]
+        line = next(
+            n
+            for n in drawn("pressure")["main"].lines
+            if len(n.get_xdata()) == len(radii) and n.get_color() == look[0]
+        )
+        np.testing.assert_allclose(line.get_ydata()[known], due, rtol=1e-9)
 
 
 def test_rates_that_are_not_constant_are_dotted():

@@ -229,6 +229,69 @@ def test_bars_are_those_of_the_mean_over_the_runs(rows, panels, panel, part, met
     np.testing.assert_allclose(shown, sorted(due), rtol=1e-9)
 
 
+def test_symbols_are_the_errors_over_their_times(rows, panels):
+    shells = sorted({row["setting"] for row in of(rows, method="shell", part="area")}, reverse=True)
+    cases = [
+        ("area", figure.LOOK["balanced_shell"], of(rows, part="area", method="balanced_shell")),
+        *(
+            ("area", look, of(rows, part="area", method="shell", setting=thickness))
+            for look, thickness in zip(figure.SHELLS, shells, strict=True)
+        ),
+        *(
+            ("volume", figure.LOOK[method], of(rows, part="volume", method=method))
+            for method in ("rejection", "conditioned", "sobol")
+        ),
+        *(
+            ("times", figure.LOOK[method], of(rows, method=method, quantity="vertical_hop_time"))
+            for method in ("lockstep", "single_precision", "scalar", "time_step")
+        ),
+    ]
+    for panel, look, own in cases:
+        own = [row for row in own if row["part"] not in ("floor", "radius", "precision")]
+        due = {(row["seconds"], max(row["error"], 2.0**-53)) for row in own}
+        assert points(panels[panel], *look) == due != set()
+
+
+def curve(axes, label):
+    (line,) = [line for line in axes.lines if line.get_label() == label]
+    return line.get_data()
+
+
+def test_the_laws_have_their_powers_and_go_through_the_errors(rows, panels):
+    """Samples fall as the root of time; at the best Δt no other Δt has a smaller error."""
+    for panel, part, method in (
+        ("volume", "volume", "rejection"),
+        ("area", "area", "surface"),
+        ("times", "time", "lockstep"),
+    ):
+        own = of(rows, part=part, method=method, radius=0.2)
+        own = [row for row in own if part != "time" or row["quantity"] == "vertical_hop_time"]
+        times, errors = curve(panels[panel], r"$\propto t^{-1/2}$")
+        assert np.ptp(errors**2 * times) < 1e-12 * errors[0] ** 2 * times[0]
+        logarithms = [math.log(row["error"]) for row in own]
+        assert np.mean(np.log(errors)) == pytest.approx(np.mean(logarithms))
+    times, errors = curve(panels["times"], r"best $\Delta t$, $\propto t^{-1/3}$")
+    floor = max(
+        of(rows, part="floor", method="time_step", quantity="vertical_hop_time"),
+        key=lambda row: row["setting"],
+    )
+    runs = of(rows, part="time", method="time_step", quantity="vertical_hop_time")
+    noise = np.median(
+        [(r["error"] ** 2 - r["bias"] ** 2) * r["seconds"] * r["setting"] for r in runs]
+    )
+    steps = np.geomspace(1e-7, 10, 20001)
+    for time, error in zip(times, errors, strict=True):
+        squares = (floor["error"] / floor["setting"] * steps) ** 2 + noise / (time * steps)
+        assert error == pytest.approx(math.sqrt(squares.min()), rel=1e-6)
+
+
+def test_single_precision_is_drawn_over_the_room_that_is_left(rows, panels):
+    for method, look in (("lockstep", (style.BLUE, "o")), ("single_precision", (style.SKY, "D"))):
+        own = of(rows, part="precision", method=method, quantity="disc_collision_time")
+        due = {(row["setting"], row["error"]) for row in own}
+        assert points(panels["single precision"], *look) == due != set()
+
+
 def test_quadrature_is_drawn_over_its_nodes(rows, panels):
     for part, look in (("volume", (style.BLUE, "o")), ("area", (style.VERMILLION, "s"))):
         own = of(rows, part=part, method="quadrature")

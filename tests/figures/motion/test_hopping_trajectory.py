@@ -42,8 +42,11 @@ def test_the_longer_side_that_ends_at_walls_is_shown(box, axis):
     times = [row["time"] for row in rows if row["event"] == hop]
     for axes in figure.axes:
         assert axes.get_ylabel() == f"${axis}_2-{axis}_1$"
-        dots = next(line for line in axes.lines if line.get_marker() in ("o", "|"))
+        dots = next(line for line in axes.lines if line.get_marker() == "o")
         assert list(dots.get_xdata()) == times
+        path = next(line.get_data() for line in axes.lines if line.get_color() == style.BLUE)
+        apart = [row[f"{axis}2"] - row[f"{axis}1"] for row in rows]
+        np.testing.assert_array_equal(path, [[row["time"] for row in rows], apart])
     entry = FIGURES["hopping_trajectory"]
     for some in (rows, [row for row in rows if row["event"] != hop]):
         said = "mark the hops" in entry.caption(Shown(box, None, some))

@@ -22,7 +22,7 @@ LEFT, RIGHT, GAP, BOTTOM, TOP = 0.27, 0.1, 0.42, 0.3, 0.28
 #: Inches between the squares and the prism above them, and the largest height of that.
 BETWEEN, PRISM = 0.42, 1.7
 
-#: From where the prism is seen, in degrees around the vertical and above the horizon.
+#: The direction of view of the prism, in degrees around the vertical and above the horizon.
 AZIMUTH, ELEVATION = -112.0, 24.0
 
 #: Strips of the cylinder, and its colours: outside, where light falls on it or not, and cut.
@@ -69,12 +69,11 @@ def caption(shown):
     return """
     Configuration space. Let x = (x1 − x2)/√2, X = (x1 + x2)/√2 and likewise y and Y; the discs
     overlap if x² + y² < 2r². (a) The section Y = 0, in which the centres are as far above the
-    middle as below it: a prism, out of which a cylinder is cut whose axis is the diagonal of x1 and
-    x2. (b) The whole is a product of two squares, one for x1 and x2 and one for y1 and y2, without
-    the overlaps. The dotted band of each square is excluded by the point
-    shown in the other one; dashed lines are its widest bounds, at ±√2 r. The hatched quarters, in
-    which all four coordinates are positive, hold a sixteenth of the volume. Each square is drawn
-    to its own scale.
+    middle as below it. It is a prism without a cylinder, whose axis is the diagonal of x1 and x2.
+    (b) The whole is a product of two squares, one for x1 and x2 and one for y1 and y2, without the
+    overlaps. The dotted band of each square is excluded by the point shown in the other one; dashed
+    lines are its widest bounds, at ±√2 r. The hatched quarters, in which all four coordinates are
+    positive, hold a sixteenth of the volume. Each square is drawn to its own scale.
     """
 
 

@@ -86,8 +86,9 @@ def caption(shown):
         text += "If no exact mean time is known it is measured. "
     if shown.plain:
         text += """
-        Thick dashes on the axis of (b) are the exact densities at t = 0, of a hop that is undone
-        after one bounce: 3√2/16 divided by h − 2r for vertical hops, by w − 2r for horizontal ones.
+        Thick dashes on the axis of (b) are the exact densities at t = 0, of hops that are undone
+        after one bounce. They are 3√2/16, divided by h − 2r for vertical hops and by w − 2r for
+        horizontal ones.
         """
     return text
 

@@ -62,8 +62,8 @@ def caption(shown):
     """Return the caption."""
     text = """
     Force of disc 1 on a wall, divided by the force in an ideal gas of one particle (dotted): exact
-    (lines) and from the hits that dynamics counted (symbols), which transfer the same momentum on
-    average.
+    (lines) and from the hits that dynamics counted (symbols). Hits transfer the same momentum on
+    average at every radius.
     """
     if shown.square and shown.shows("right_wall_time", "top_wall_time"):
         text += "In a square box both pressures are the same. "
@@ -72,7 +72,8 @@ def caption(shown):
     if shown.box is None or virial.weights(shown.box.tiny) is not None:
         text += """
         (b) The virials of the walls and of the collisions of the discs, divided by twice the mean
-        kinetic energy: the sum over the walls minus that of collisions is one at every radius.
+        kinetic energy. The sum over the walls minus the virial of collisions is one at every
+        radius.
         """
     return text
 

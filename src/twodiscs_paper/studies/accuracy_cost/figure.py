@@ -78,13 +78,13 @@ def caption(shown):
     over repeated runs. Error bars are one standard error. Dashed lines ∝ 1/√t are the law of
     independent samples, with a fitted factor. (a) Volume by rejection sampling, by the conditioned
     sampler and by scrambled Sobol points. (b) Area of disc collisions by shells of thickness ε,
-    whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance;
-    by samples on the surface itself and by Sobol points there. (c) Mean time between vertical hops
-    by event-driven dynamics: one trajectory at a time, many in lock step, and many in single
-    precision; and by a search for overlaps every Δt, whose error ∝ Δt (dotted) does not fall with
-    time. The dash-dotted line is the smallest error of time steps with any Δt. The arrow compares
-    the times to an error of 1e-3. (d) Gauss quadrature along the arc against the number of its
-    nodes, and exact evaluation; the legend has their processor times.
+    whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance.
+    The other two methods draw samples or Sobol points on the surface itself. (c) Mean time between
+    vertical hops by event-driven dynamics: one trajectory at a time, many in lock step, and many in
+    single precision. Time steps search for overlaps every Δt; their error ∝ Δt (dotted) does not
+    fall with time. The dash-dotted line is the smallest error of time steps with any Δt. The arrow
+    compares the times to an error of 1e-3. (d) Gauss quadrature along the arc against the number of
+    its nodes, and exact evaluation; the legend has their processor times.
     """
 
 

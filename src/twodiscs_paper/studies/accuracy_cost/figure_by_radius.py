@@ -42,11 +42,11 @@ def caption(shown):
     predicted from the exact rates and one speed for a Poisson process (lines). Hops near the radius
     where they are blocked are counted from initial states in a strip next to their surface (grey),
     at a cost that stays constant, here up to a relative distance of 1e-6. (b) The times of pilots
-    divided by the times of a Poisson process. This ratio is the variance of the number of events
-    divided by its mean, up to the speed at that radius: below one, events come at more regular
-    times than in a Poisson process, as hits of any wall do, and above one in clusters. (c) Error of
-    the mean time between disc collisions near the largest radius, in double and in single
-    precision: rounding lengths to 24 bits changes the distance to the largest radius (dashed).
+    divided by the times of a Poisson process. Apart from the speed at that radius, this ratio is
+    the variance of the number of events divided by its mean. If it is below one, as for hits of any
+    wall, events are more regular than in a Poisson process. Above one they come in clusters. (c)
+    Error of the mean time between disc collisions near the largest radius, in double and in single
+    precision. Rounding lengths to 24 bits changes the distance to the largest radius (dashed).
     """
 
 

@@ -29,6 +29,9 @@ MAIN, LOWER, LEGEND = 1.95, 0.75, 0.4
 #: Names of events in this figure, if they differ from those in other figures.
 NAMES_OF = {"any_wall": "wall hits"}
 
+#: The quantity that is no mean time, and is not drawn.
+SHARE = "never_met_share"
+
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 
@@ -38,7 +41,7 @@ SHOWN = (0.22, 22)
 
 def draw(box=None, *, tables):
     """Draw the rows of effects.csv and the curves; ``box`` is not used: the rows name theirs."""
-    rows = [row for row in tables["effects"] if row["quantity"] != "never_met_share"]
+    rows = [row for row in tables["effects"] if row["quantity"] != SHARE]
     looks = {name: _look(i) for i, name in enumerate(dict.fromkeys(r["scene"] for r in rows))}
     boxes = {row["scene"]: _box(row) for row in rows}
     plain = Box(rows[0]["width"], rows[0]["height"])
@@ -77,17 +80,16 @@ def caption(shown):
     text = """
     Mean times of scenes with one effect or two, divided by the mean times of plain discs in the
     same box at the same radius (of disc 1) and total energy, up to the largest radius of plain
-    discs: exact
-    (lines) and by event-driven molecular dynamics (symbols), for (a) vertical hops, (b) disc
-    collisions and (c) hits of any disc on any wall. Error bars are one standard error; they are
-    hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where hops of
-    plain discs become blocked, and their largest radius. The torus has neither hops nor walls.
-    Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor time
-    per wall hit or disc collision at r = 0.2, divided by the time for plain discs with all events
-    counted. To leave a periodic cell takes as much time as an event, but is not counted.
+    discs, for (a) vertical hops, (b) disc collisions and (c) hits of any disc on any wall: exact
+    (lines) and by event-driven molecular dynamics (symbols). Error bars are one standard error;
+    they are hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where
+    hops of plain discs become blocked, and their largest radius. The torus has neither hops nor
+    walls. Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor
+    time per wall hit or disc collision at r = 0.2, divided by the time for plain discs with all
+    events counted. Leaving a periodic cell takes as much time as an event, but is not counted.
     """
     return text + shown.if_any(
-        lambda row: row.get("estimate") is not None and row.get("stderr") is None,
+        lambda row: row["quantity"] != SHARE and row["estimate"] and row["stderr"] is None,
         "Crosses are estimates from too few events for an error bar.",
     )
 

@@ -60,7 +60,7 @@ def caption(shown):
     at 0 are exact zeros. (b) Worst error of predicted times to a contact (circles) and to a wall
     (squares), against 50 digits, for many kinds of approach. (c) Velocities are reversed after n
     events: error of return after n more events, against the binary digits that the Lyapunov
-    exponent λ per event costs; the line is one rounding that grows at this rate. The legend has the
+    exponent λ per event costs. The line is one rounding that grows at this rate. The legend has the
     number of events after which half of the digits are lost, and in brackets the number that λ
     predicts. (d) Share of 95 % intervals that contain the exact mean time, over independent
     repetitions.

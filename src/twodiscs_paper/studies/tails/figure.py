@@ -53,8 +53,8 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    (a) Probability that the next event takes longer than t, in units of the exact mean time τ: by
-    initial states drawn near the motions that last, with exact weights (open symbols), and by plain
+    (a) Probability that the next event takes longer than t, in units of the exact mean time τ: from
+    initial states near the motions that last, with exact weights (open symbols), and by plain
     counting (dots). Discs that move almost along an axis pass clear of each other for a time ∝
     1/(their drift). The tail therefore falls as C/t³, with the exact C (lines), and not
     exponentially (dashed). (b) The same probabilities divided by C/t³. (c) Beyond h/4 no such
