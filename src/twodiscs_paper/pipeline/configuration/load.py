@@ -196,13 +196,11 @@ def _scene(block, path, common):
     box = _box(block, path)
     radii = _radii(block["radii"], box, f"{path}.radii")
     scene = box.scene(radii[0])
-    watched = block["watch"]
+    watched, many = block["watch"], "discs" in box.calls_for
     if isinstance(watched, bool):
         watched = dict.fromkeys(Quantities.__dataclass_fields__, watched)
         watched["trajectory"] &= bool(_hops(scene))
-        watched["hop_histogram"] &= (
-            bool(_hops(scene)) and _is_ergodic(scene) and "discs" not in box.calls_for
-        )
+        watched["hop_histogram"] &= bool(_hops(scene)) and _is_ergodic(scene) and not many
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     quantities = Quantities(
         volume=watched["volume"],
@@ -219,7 +217,7 @@ def _scene(block, path, common):
             box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
-    for radius in () if "discs" in box.calls_for else quantities.hop_histogram:
+    for radius in () if many else quantities.hop_histogram:
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(
