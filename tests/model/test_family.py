@@ -58,7 +58,7 @@ def test_what_a_family_cannot_do_is_one_sentence():
 #: A question for the number of discs, for effects or for a family.
 QUESTION = re.compile(r'discs [!=<>]=? (2\b|USUAL)|has_effects\b|"discs" (not )?in |family [!=]= "')
 
-#: The modules that ask, apart from those of families: each asks once, and the scene says the family.
+#: The modules that ask, apart from those of families, and how often.
 ASKING = {
     "twodiscs/model/scene.py": 3,  # two questions, and the definition of one
     "twodiscs/model/box.py": 1,
