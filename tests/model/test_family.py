@@ -56,7 +56,9 @@ def test_what_a_family_cannot_do_is_one_sentence():
 
 
 #: A question for the number of discs, for effects or for a family.
-QUESTION = re.compile(r'discs [!=<>]=? (2\b|USUAL)|has_effects\b|"discs" (not )?in |family [!=]= "')
+QUESTION = re.compile(
+    r'discs [!=<>]=? (2\b|USUAL)|has_effects\b|"discs" (not )?in (self|box|scene)|family [!=]= "'
+)
 
 #: The modules that ask, apart from those of families, and how often.
 ASKING = {
