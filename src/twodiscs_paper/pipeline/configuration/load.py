@@ -26,8 +26,8 @@ HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
 #: Radius of the default trajectory over the shorter side: both hops are open, one hop is rare.
 TRAJECTORY_FRACTION = 0.24
 
-#: Radius of the default trajectory of a scene with effects, over the radius at which the first hop
-#: becomes blocked: in a field this hop is rare far below that radius.
+#: The radius of the default trajectory of a scene with effects, over the radius at which the first
+#: hop becomes blocked. In a field this hop is rare far below that radius.
 BELOW_THRESHOLD = 0.5
 
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
