@@ -326,15 +326,15 @@ def propose_blocks(seed, first, stop, draw, ends):
     for block in range(first, stop):
         state = open_stream(seed, block)
         for _ in range(PROPOSALS):
-            accepted, slack_x, slack_y, u, excess = propose_separation(state, draw)
+            accepted, corner_x, corner_y, u, excess = propose_separation(state, draw)
             if not accepted:
                 continue
-            v = draw.range_y - slack_y
+            v = draw.range_y - corner_y
             bits = next_bits(state)
             # Disc 1 has a random part of the free length, plus the separation if it is farther.
-            to_right = slack_x * uniform(state)
+            to_right = corner_x * uniform(state)
             to_right += u if bits & np.uint64(1 << 62) else 0.0
-            to_top = slack_y * uniform(state)
+            to_top = corner_y * uniform(state)
             to_top += v if bits & np.uint64(1 << 61) else 0.0
             sets = sets_of((u * u, v * v), excess, (-to_right, -to_top), ends)
             for e in range(SETS):
