@@ -286,6 +286,82 @@ def test_a_result_as_deep_as_no_result_is_refused(tmp_path):
         read_json(path)
 
 
+# One sentence for each mistake ------------------------------------------------------------------
+
+#: Plain arguments: {check: (arguments after the name "x", what follows "x must " in the sentence)}.
+CHECKED = [
+    (checks.check_number, (2.0, 0.1, 1.0), "lie between 0.1 and 1.0, not 2.0"),
+    (checks.check_number, (0, 0.1, 1.0, "ratio"), "be a positive, finite ratio, not 0.0"),
+    (checks.check_length, ("1",), "be a positive number, not '1'"),
+    (
+        checks.check_length,
+        ("0,3",),
+        "be a positive number, not '0,3'; decimals follow a point, 0.3",
+    ),
+    (checks.check_length, (1e61,), "lie between 1e-60 and 1e60, not 1e61"),
+    (checks.check_integer, (1.0,), "be an integer of at least 1, not 1.0"),
+    (checks.check_integer, (True,), "be an integer of at least 1, not True"),
+    (checks.check_integer, (0,), "be an integer from 1 to 2^63 - 1, not 0"),
+    (checks.check_integer, (2**63,), f"be an integer from 1 to 2^63 - 1, not {2**63}"),
+    (checks.check_integer, (6, 2, 5), "be an integer from 2 to 5, not 6"),
+    (checks.check_fraction, ("0.5",), "be a number between 0 and 1, not '0.5'"),
+    (checks.check_fraction, (True,), "be a number between 0 and 1, not True"),
+    *(
+        (checks.check_fraction, (bad,), f"lie between 0 and 1, ends excluded, not {bad!r}")
+        for bad in (0, 1.0, -0.5, NAN, INF)
+    ),
+    *(
+        (
+            checks.check_error,
+            (bad,),
+            f"be a number above 0 and at most 1, or one of draft, paper, reference, not {bad!r}",
+        )
+        for bad in (0, 1.1, -0.5, True, "rough", None, [1])
+    ),
+    (checks.check_choice, ("c", ("a", "b")), "be one of a, b, not 'c'"),
+    (checks.check_ascending, ("12",), "be a sequence of numbers, not '12'"),
+    (checks.check_ascending, (1.0,), "be a sequence of numbers, not 1.0"),
+    (checks.check_ascending, ([],), "ascend and must not be empty, not []"),
+    (checks.check_ascending, ([2, 1],), "ascend and must not be empty, not [2.0, 1.0]"),
+    (checks.check_ascending, ([1, 1],), "ascend and must not be empty, not [1.0, 1.0]"),
+    (checks.check_ascending, ([0, 1],), "be a positive, finite number, not 0.0"),
+]
+
+
+@pytest.mark.parametrize(("check", "arguments", "sentence"), CHECKED)
+def test_a_plain_argument_is_named_with_what_is_allowed(check, arguments, sentence):
+    with pytest.raises(InputError, match=f"^x must {re.escape(sentence)}$"):
+        check("x", *arguments)
+
+
+#: Scenes 1.5 × 1 with a radius of 0.1, and the start of the sentence.
+SCENES = [
+    ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
+    ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
+    ({"discs": 3.0}, "discs must be an integer of at least 2, not 3.0"),
+    ({"discs": True}, "discs must be an integer of at least 2, not True"),
+    ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
+    ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
+    ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two discs"),
+    ({"discs": 3, "periodic": "y"}, "periodic must be left out or x for more than two discs"),
+    ({"discs": 3, "radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
+    ({"discs": 4, "radius": 0.4}, "radius 0.4 does not fit: 4 discs"),
+    ({"discs": 4, "radius": 0.376, "periodic": "x"}, "radius 0.376 does not fit"),
+    ({"discs": 64, "width": 1e5}, "width and height must be in a unit of length in which"),
+]
+
+
+@pytest.mark.parametrize(("values", "sentence"), SCENES)
+def test_a_scene_that_cannot_be_is_refused(values, sentence):
+    with pytest.raises(InputError, match=f"^{re.escape(sentence)}"):
+        Scene(**{"width": 1.5, "height": 1.0, "radius": 0.1} | values)
+
+
+def test_a_ring_is_not_turned():
+    with pytest.raises(InputError, match="periodic must be left out or x"):
+        Scene(1.5, 1.0, 0.1, discs=3, periodic="x").turned()
+
+
 # Jobs -------------------------------------------------------------------------------------------
 
 

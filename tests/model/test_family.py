@@ -1,5 +1,6 @@
 """Families: the same names on every floor, one sentence for missing ones, edits for one family."""
 
+import re
 import shutil
 from importlib import import_module
 
@@ -52,6 +53,40 @@ def test_what_a_family_cannot_do_is_one_sentence():
         InputError, match=r"^scene must be plain for nothing at all, but it has mass"
     ):
         of_family(SCENES["effects"], "dynamics", "nothing", "nothing at all")
+
+
+#: A question for the number of discs, for effects or for a family.
+QUESTION = re.compile(
+    r'discs [!=<>]=? (2\b|USUAL)|has_effects\b|"discs" (not )?in (self|box|scene)|family [!=]= "'
+)
+
+#: The modules that ask, apart from those of families, and how often.
+ASKING = {
+    "twodiscs/model/scene.py": 3,  # two questions, and the definition of one
+    "twodiscs/model/box.py": 1,
+    "twodiscs/model/family.py": 1,
+    "twodiscs/figures/kit/captions.py": 1,
+    "twodiscs/figures/motion/animation.py": 1,
+    "twodiscs/figures/motion/hopping_trajectory.py": 1,
+    "twodiscs_paper/benchmark.py": 1,
+    "twodiscs_paper/pipeline/configuration/load.py": 1,
+    "twodiscs_paper/pipeline/cost.py": 1,
+}
+
+
+def test_few_modules_ask_for_the_family_or_what_decides_it():
+    found = {}
+    for parts in sources.modules():
+        path = sources._file(parts)
+        if not {"families", "many"} & {*parts}:
+            number = len(QUESTION.findall(path.read_text(encoding="utf-8")))
+            found |= {path.relative_to(sources.ROOT).as_posix(): number} if number else {}
+    assert found == ASKING
+
+
+def test_all_discs_have_a_radius_and_a_mass():
+    assert (SCENES["many"].radii, SCENES["many"].masses) == ((0.15,) * 3, (1.0,) * 3)
+    assert (SCENES["effects"].radii, SCENES["effects"].masses) == ((0.2, 0.2), (1.0, 2.0))
 
 
 # An edit for one family ---------------------------------------------------------------------------

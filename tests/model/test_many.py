@@ -9,7 +9,6 @@ from scipy import ndimage
 from scipy.sparse import csgraph
 
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError
 from twodiscs.model.events import AXIS, EVENTS
 from twodiscs.model.families.many import arrangement, can_be_level, ergodic_components, is_ordered
 from twodiscs.model.families.many import largest_known_radius as largest_radius
@@ -63,24 +62,6 @@ def test_names():
     assert not is_ordered(scene)
     assert is_ordered(Scene(3.0, 0.6, 0.18, discs=5))
     assert not is_ordered(Scene(3.0, 0.6, 0.18, discs=5, periodic="x"))
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),
-        ({"periodic": "y"}, "periodic must be left out or x for more than two discs"),
-        ({"discs": 4, "radius": 0.376, "periodic": "x"}, "radius 0.376 does not fit"),
-    ],
-)
-def test_bad_input_is_one_sentence(arguments, message):
-    with pytest.raises(InputError, match=message):
-        Scene(**({"width": 1.5, "height": 1.0, "radius": 0.1, "discs": 3} | arguments))
-
-
-def test_a_ring_is_not_turned():
-    with pytest.raises(InputError, match="periodic must be left out or x"):
-        Scene(1.5, 1.0, 0.1, discs=3, periodic="x").turned()
 
 
 # As a scene --------------------------------------------------------------------------------------
@@ -145,25 +126,6 @@ def test_hops_of_three_discs_end_where_two_of_them_cannot_be_level(width, axis):
             scene = Scene(width, 1.0, radius, discs=3)
             assert can_be_level(scene, axis) is possible
             assert bool(level_and_apart(scene, axis) > scene.contact_distance) is possible
-
-
-@pytest.mark.parametrize(
-    ("values", "message"),
-    [
-        ({"discs": 1}, "discs must be an integer from 2 to 1024, not 1"),
-        ({"discs": 1025}, "discs must be an integer from 2 to 1024, not 1025"),
-        ({"discs": 3.0}, "discs must be an integer of at least 2, not 3.0"),
-        ({"discs": True}, "discs must be an integer of at least 2, not True"),
-        ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
-        ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
-        ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two discs"),
-        ({"discs": 4, "radius": 0.4}, "radius 0.4 does not fit: 4 discs"),
-        ({"discs": 64, "width": 1e5}, "width and height must be in a unit of length in which"),
-    ],
-)
-def test_what_does_not_go_with_more_discs_is_refused(values, message):
-    with pytest.raises(InputError, match=message):
-        Scene(**{"width": 1.5, "height": 1.0, "radius": 0.1} | values)
 
 
 # Parts of configuration space ---------------------------------------------------------------------

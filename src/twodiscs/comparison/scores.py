@@ -71,8 +71,8 @@ def binomial_z(hits, samples, probability):
     ``test`` is "normal" if at least 1000 hits and 1000 misses are expected, with the variance of
     the exact probability. It is "certain" for a probability of 0 or 1: z is 0 or infinite. It is
     otherwise "exact-tail", twice the smaller tail of the binomial law. Twice a tail, unlike a
-    mid-p, never rejects more often than p says, so a family of tests has no more false alarms than
-    stated; the price is that z is discrete and narrower than normal. If the tail underflows,
+    mid-p, never rejects more often than p says. Many tests together then have no more false alarms
+    than stated. The price is that z is discrete and narrower than normal. If the tail underflows,
     Chernoff's bound takes its place. ``probability`` is in [0, 1].
     """
     hits, samples = checked_hits(hits, samples)
@@ -129,7 +129,7 @@ def mean_time_z(total, squares, replicas, duration, exact, mean=None):
     """Return (z, test) of a measured mean time against the ``exact`` one.
 
     The test is about the count, because ⟨N⟩ = T/τ holds for every T while T/⟨N⟩ is biased. The sign
-    is changed, so that positive still means a time that is too long. ``test`` is
+    is changed, because a positive z means a time that is too long. ``test`` is
 
     - "normal" with at least 100 replicas and 1000 effective events: Student's t of the mean count,
       as a normal deviate. ``mean``, if given, is a better estimate (count, error) than these sums

@@ -85,11 +85,11 @@ def divided(whole, first, second):
 
 def law_of(scene):
     """Return the ``Law`` of a ``Scene``."""
-    m1, m2 = scene.masses
+    m1, m2 = scene.masses[:2]
     fractions = divided(1.0, m2, m1)
     halves = [
         {axis: (scene.side(axis) - 2 * radius) / 2 for axis in scene.walled}
-        for radius in scene.radii
+        for radius in scene.radii[:2]
     ]
     equal = scene.radius_ratio == 1
     walls = {

@@ -78,9 +78,8 @@ class Box:
 
     def __repr__(self):
         # This text seeds streams: for two discs it does not have their number.
-        more = f", discs={self.discs!r}" if "discs" in self.calls_for else ""
-        sides = f"width={self.width!r}, height={self.height!r}"
-        return f"Box({sides}, effects={self.effects!r}{more})"
+        named = {"width": self.width, "height": self.height, "effects": self.effects} | self._many
+        return f"Box({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
     @classmethod
     def of(cls, scene: Scene) -> Box:
@@ -144,12 +143,17 @@ class Box:
         """
         box = {"height": self.height, "width": self.width}
         box = {"effects": dict(self.effects)} | box if self.effects else box
-        return {"discs": self.discs} | box if "discs" in self.calls_for else box
+        return self._many | box
 
     @property
     def calls_for(self):
         """Everything beyond a plain box, {name: value}, as ``Scene.calls_for``."""
-        return self.effects | ({"discs": self.discs} if self.discs != USUAL["discs"] else {})
+        return self.effects | self._many
+
+    @property
+    def _many(self):
+        """The number of discs, {"discs": …}, if there are more than two."""
+        return {"discs": self.discs} if self.discs != USUAL["discs"] else {}
 
     @property
     def family(self):

@@ -98,8 +98,8 @@ def shortest_decimal(value, distance, avoid=()):
 def stream_seed(seed, scene, method, key):
     """Return the integer in [0, 2**63) that seeds the streams of one job.
 
-    It depends only on the configured ``seed``, the scene's name, the method (one of ``METHODS``)
-    and the radius's key, not on the order of a list or on other jobs.
+    It depends on the configured ``seed``, the name of the scene, the method (one of ``METHODS``)
+    and the key of the radius. It does not depend on the order of a list or on other jobs.
     """
     seed = check_integer("seed", seed, 0)
     if not isinstance(scene, str):

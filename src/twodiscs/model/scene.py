@@ -301,14 +301,14 @@ class Scene:
         return self.discs * (len(self.axes) + spin) - len(self.conserved)
 
     @cached_property
-    def radii(self) -> tuple[float, float]:
-        """The radii of disc 1 and disc 2."""
-        return self.radius, self.radius * self.radius_ratio
+    def radii(self) -> tuple[float, ...]:
+        """The radii of all discs."""
+        return self.radius, *(self.radius * self.radius_ratio,) * (self.discs - 1)
 
     @cached_property
-    def masses(self) -> tuple[float, float]:
-        """The masses of disc 1 and disc 2."""
-        return 1.0, self.mass_ratio
+    def masses(self) -> tuple[float, ...]:
+        """The masses of all discs."""
+        return 1.0, *(self.mass_ratio,) * (self.discs - 1)
 
     def side(self, axis):
         """Return the side of the box along ``axis``."""
@@ -330,7 +330,7 @@ class Scene:
     @cached_property
     def contact_distance(self) -> float:
         """The distance σ of the centres when the discs touch, twice the radius if equal."""
-        return sum(self.radii)
+        return sum(self.radii[:2])
 
     @cached_property
     def exact_radii(self):
@@ -340,7 +340,7 @@ class Scene:
     @cached_property
     def exact_contact(self):
         """σ as a fraction."""
-        return sum(self.exact_radii)
+        return sum(self.exact_radii[:2])
 
     def reach(self, axis):
         """Return the largest separation of the centres along ``axis``, as an exact fraction.
@@ -391,7 +391,7 @@ class Scene:
 
         It is also the length of the gradient of a separation, in the metric of the masses.
         """
-        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses))
+        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses[:2]))
 
     @cached_property
     def vertical_hops(self):

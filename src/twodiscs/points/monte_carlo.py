@@ -90,8 +90,8 @@ class MonteCarloPoint(SampledPoint):
             self.samples,
         )
         enough = min(self.sampled(wall).enough for wall in WALL_AREAS)
-        seen = min(right.hits, top.hits) > 0
-        return Sampled(estimate if seen else None, right.hits + top.hits, enough)
+        both_hit = min(right.hits, top.hits) > 0
+        return Sampled(estimate if both_hit else None, right.hits + top.hits, enough)
 
 
 @dataclass(frozen=True)

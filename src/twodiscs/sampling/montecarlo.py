@@ -188,8 +188,8 @@ def shell_thickness(scene, event, fraction):
 
     The room is the difference between the radius and the radius at which the surface vanishes: the
     largest radius, or for a hop w/4 or h/4. Beyond it a hop's surface and shell are empty. If the
-    box is more than twice as long as wide, the discs can move along it up to the largest radius:
-    long − 4r is then the room of collisions and of the walls at the far ends.
+    box is more than twice as long as wide, the discs can move along it up to the largest radius.
+    The room of collisions and of the walls at the far ends is then long − 4r.
 
     With effects ε is a fraction of the smaller radius or of the room, in the metric of the lightest
     disc. The shell is then no thicker than this anywhere (√2 of it for the separation of two discs)
@@ -238,9 +238,9 @@ def sample_point(scene, quantities, samples, shell, seed):
     is an integer ≥ 0. Returns a ``MonteCarloPoint``. The area of all walls needs no shell: it
     follows from the areas at the right and at the top.
 
-    In a scene with effects a sample without overlap counts for the volume with the probability
-    (1 − U/E)₊^(D/2 − 1), and for a shell that it is in with (1 − U/E)₊^((D − 1)/2). All walls are a
-    separate quantity there: each sample picks one disc and one wall randomly, so the measure is the
+    In a scene with effects a sample without overlap counts with a probability: (1 − U/E)₊^(D/2 − 1)
+    for the volume, and (1 − U/E)₊^((D − 1)/2) for each shell that it is in. All walls are a
+    separate quantity there. Each sample picks one disc and one wall randomly, so the measure is the
     volume of the prism times the number of pairs. A sample takes some forty times as long. Raises
     ``InputError`` for an unknown quantity or a number out of range.
     """
@@ -326,15 +326,15 @@ def propose_blocks(seed, first, stop, draw, ends):
     for block in range(first, stop):
         state = open_stream(seed, block)
         for _ in range(PROPOSALS):
-            accepted, slack_x, slack_y, u, excess = propose_separation(state, draw)
+            accepted, corner_x, corner_y, u, excess = propose_separation(state, draw)
             if not accepted:
                 continue
-            v = draw.range_y - slack_y
+            v = draw.range_y - corner_y
             bits = next_bits(state)
             # Disc 1 has a random part of the free length, plus the separation if it is farther.
-            to_right = slack_x * uniform(state)
+            to_right = corner_x * uniform(state)
             to_right += u if bits & np.uint64(1 << 62) else 0.0
-            to_top = slack_y * uniform(state)
+            to_top = corner_y * uniform(state)
             to_top += v if bits & np.uint64(1 << 61) else 0.0
             sets = sets_of((u * u, v * v), excess, (-to_right, -to_top), ends)
             for e in range(SETS):
@@ -345,13 +345,13 @@ def propose_blocks(seed, first, stop, draw, ends):
 def conditioned_point(scene, quantities, samples, shell, seed):
     """Estimate the volume and areas of a ``Scene`` by draws of separations at which the discs fit.
 
-    It is for radii at which the discs overlap in almost all of the prism: at least a quarter of the
-    proposals is accepted at any radius, up to the largest one. A proposal is a sample of a set
+    It is for radii at which the discs overlap in almost all of the prism. At any radius, up to the
+    largest one, at least a quarter of the proposals is accepted. A proposal is a sample of a set
     whose volume, twice ``SeparationSampler.mass``, is known. The point therefore has the same form
     as from ``sample_point``, for the same arguments, and the errors are binomial too. ``samples``
     counts proposals and is rounded up to whole blocks of 2¹⁶. A sample takes some forty times the
-    time of a sample of the prism, which is better if a few per cent of them are accepted. Raises
-    ``InputError`` as ``sample_point`` does.
+    time of a sample of the prism. If a few per cent of the prism are free, sampling in the prism is
+    therefore better. Raises ``InputError`` as ``sample_point`` does.
     """
     if not check_scene(scene).is_plain:
         raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")

@@ -20,7 +20,7 @@ from twodiscs.sampling.streams import largest_of, next_bits, signed_uniform, uni
 class Neck(NamedTuple):
     """The configurations near the surface of a hop, where |Δ| along one axis is small.
 
-    There |Δ| along the other axes has a minimum, maybe 0. If it is above 0 between walls, each disc
+    Along the other axes |Δ| has a minimum there, maybe 0. If it is above 0 between walls, each disc
     is within ``span`` of a different wall.
     """
 

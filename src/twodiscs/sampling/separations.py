@@ -100,12 +100,12 @@ def propose_separation(state, draw):
     """
     choice = uniform(state)
     if choice < draw.weights[0]:
-        slack = draw.beyond_x * math.sqrt(uniform(state))
-        beyond = draw.beyond_x - slack
+        corner_x = draw.beyond_x * math.sqrt(uniform(state))
+        beyond = draw.beyond_x - corner_x
         u = draw.sigma + beyond
-        slack_y = draw.range_y * math.sqrt(uniform(state))
-        v = draw.range_y - slack_y
-        return True, slack, slack_y, u, beyond * (u + draw.sigma) + v * v
+        corner_y = draw.range_y * math.sqrt(uniform(state))
+        v = draw.range_y - corner_y
+        return True, corner_x, corner_y, u, beyond * (u + draw.sigma) + v * v
     part = 1
     while part < 6 and choice >= draw.weights[part]:
         part += 1
@@ -126,29 +126,29 @@ def propose_separation(state, draw):
         bound = s * (2.0 * draw.start + s) / (draw.range_y + draw.least_k)
     if uniform(state) * (bound * bound) >= room * room:
         return False, 0.0, 0.0, 0.0, 0.0
-    slack_y = room * math.sqrt(uniform(state))
-    # v = k + room − slack_y.
-    return True, draw.beyond_x + z, slack_y, u, (room - slack_y) * (2.0 * k + room - slack_y)
+    corner_y = room * math.sqrt(uniform(state))
+    # v = k + room − corner_y.
+    return True, draw.beyond_x + z, corner_y, u, (room - corner_y) * (2.0 * k + room - corner_y)
 
 
 @compiled
 def draw_separation(state, draw):
     """Return (A − u, B − v, u) for separations u, v of the invariant measure."""
     while True:
-        accepted, slack_x, slack_y, u, _ = propose_separation(state, draw)
+        accepted, corner_x, corner_y, u, _ = propose_separation(state, draw)
         if accepted:
-            return slack_x, slack_y, u
+            return corner_x, corner_y, u
 
 
 @compiled
-def pair_at_distance(state, half, slack, order):
-    """Return coordinates (q1, q2) on [−half, half] whose distance is 2 half − ``slack``.
+def pair_at_distance(state, half, missing, order):
+    """Return coordinates (q1, q2) on [−half, half] whose distance is 2 half − ``missing``.
 
     ``order`` ≥ 0 puts disc 1 above disc 2, otherwise below.
     """
     fraction = uniform(state)
-    low = slack * fraction - half
-    high = half - slack * (1.0 - fraction)
+    low = missing * fraction - half
+    high = half - missing * (1.0 - fraction)
     if order >= 0:
         return high, low
     return low, high
@@ -161,12 +161,12 @@ def draw_configuration(state, draw, side_x, side_y):
     ``side_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``side_y``
     likewise. If a hop is blocked, this chooses the ergodic component.
     """
-    slack_x, slack_y, _ = draw_separation(state, draw)
+    corner_x, corner_y, _ = draw_separation(state, draw)
     bits = next_bits(state)
     order_x = side_x if side_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
     order_y = side_y if side_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
-    x1, x2 = pair_at_distance(state, draw.half_x, slack_x, order_x)
-    y1, y2 = pair_at_distance(state, draw.half_y, slack_y, order_y)
+    x1, x2 = pair_at_distance(state, draw.half_x, corner_x, order_x)
+    y1, y2 = pair_at_distance(state, draw.half_y, corner_y, order_y)
     return x1, y1, x2, y2
 
 
@@ -200,9 +200,9 @@ def draw_crossing(state, half_x, half_y, beyond_x):
     component of the velocity along the surface's normal, n = (v1 − v2)/√2, has density
     ∝ |n| √(1 − n²), so 1 − n² is the square of the largest of three uniform numbers.
     """
-    slack = beyond_x * math.sqrt(uniform(state))
+    corner_x = beyond_x * math.sqrt(uniform(state))
     bits = next_bits(state)
-    x1, x2 = pair_at_distance(state, half_x, slack, 1 if bits & np.uint64(1 << 62) else -1)
+    x1, x2 = pair_at_distance(state, half_x, corner_x, 1 if bits & np.uint64(1 << 62) else -1)
     y = half_y * signed_uniform(state)
     rest = largest_of(state, 3)
     normal = math.sqrt((1.0 - rest) * (1.0 + rest))

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 #: The least fraction of the prism (both centres in their ranges) without overlap in a scene with
-#: effects: initial states are drawn from the prism by rejection.
+#: effects. Initial states are drawn from the prism by rejection.
 MIN_FRACTION = 1e-4
 
 
@@ -234,7 +234,7 @@ def shell_expectation(scene, event, epsilon):
     """Return the exact expectation of a shell of thickness ``epsilon`` at the surface of ``event``.
 
     It is the volume of the shell over ε, or over 2ε for hops, in length³. It tends to the area of
-    the surface as ε → 0. Distances g in configuration space from the surface:
+    the surface as ε → 0. The distances g from the surface in configuration space are
 
         vertical hop     |g| ≤ ε, g = (y1 − y2)/√2         horizontal hop   likewise in x
         disc collision   0 ≤ g ≤ ε, g = (distance − σ)/√2
@@ -242,9 +242,9 @@ def shell_expectation(scene, event, epsilon):
 
     Just beyond the radius at which a hop becomes blocked, its area is 0, but its shell is not yet
     empty. ``weighted.shell_expectation`` has the shells of scenes with effects, in which masses may
-    differ. Raises ``InputError`` for anything that is not a ``Scene``, for an ``epsilon`` that is
-    not a length up to the radius, for an event that does not exist in the scene, and for
-    ``any_wall``, which has no shell in a plain scene.
+    differ. Raises ``InputError`` for anything that is not a ``Scene`` and for an ``epsilon`` that
+    is not a length up to the radius. The same holds for an event that does not exist in the scene,
+    and for ``any_wall``, which has no shell in a plain scene.
     """
     expectation = of_family(check_scene(scene), "theory", "shell_expectation", "shells")
     check_choice("event", event, shells(scene))

@@ -188,5 +188,5 @@ def shell_expectation(scene, event, epsilon):
     arc, declared = Arc.of(scene), DECLARED[event]
     if declared.kind == "collision":
         return _collision_shell(arc, epsilon)
-    shell, upright = (_hop_shell, "y") if declared.kind == "hop" else (_wall_shell, "x")
-    return shell(arc if declared.axis == upright else arc.turned(), epsilon)
+    shell, along = (_hop_shell, "y") if declared.kind == "hop" else (_wall_shell, "x")
+    return shell(arc if declared.axis == along else arc.turned(), epsilon)

@@ -62,9 +62,9 @@ def tail_constant(scene, event):
 
     Discs that move along x, with slow drifts v1, v2, do not touch as long as |y1 − y2| ≥ σ. With
     wall hits unfolded, the distances between discs and walls move on a straight line in the square
-    |p| + |q| ≤ B − σ. They do not leave it within t for a drift in an area 2 (B − σ)²/t². With both
-    orders of the discs, a density 1/π of (v1, v2) at 0 and the same along y the invariant measure
-    gives
+    |p| + |q| ≤ B − σ. They do not leave it within t for a drift in an area 2 (B − σ)²/t². Both
+    orders of the discs count, (v1, v2) has the density 1/π at 0, and motion along y adds the same.
+    The invariant measure therefore gives
 
         P(no collision within t) → 2 [A² (B − σ)₊⁴ + B² (A − σ)₊⁴] / (π V t²),
 

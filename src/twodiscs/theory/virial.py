@@ -58,10 +58,10 @@ def pressure_factor(scene, event):
 def weights(scene):
     """Return {event: weight} with which the rates over all initial conditions add up to 1.
 
-    It is None if the events do not include all forces, or if a rate does not give their mean: for
-    unequal discs, balls and periodic axes, and in a field. For more than two discs the weights come
-    from ``many.rates``; they need no exact volume. Raises ``InputError`` for anything that is not a
-    ``Scene``.
+    It is None if the events do not include all forces, or if a rate does not give their mean. These
+    are scenes with unequal discs, balls, periodic axes or a field. For more than two discs the
+    weights come from ``many.rates``; they need no exact volume. Raises ``InputError`` for anything
+    that is not a ``Scene``.
     """
     if check_scene(scene).effects.keys() - {"moment_of_inertia", "friction"}:
         return None

@@ -89,10 +89,11 @@ class Branch:
     """Density of the separation t of two centres along an axis, for one order of the discs.
 
     f(t) = ∫ (1 − U/E)₊^p over their common motion, for t from ``start`` to ``reach``, exact lengths
-    ≥ 0; ``kinks`` are the t between them at which f is not analytic. f is a function of the slack
-    z = reach − t. The interval of the common motion has the length min(flat, near + z, far − z). At
-    its lower end 1 − U/E is min(first + upper z, second − lower z), and it falls by upper + lower
-    per length. If flat is 0, one of the discs is fixed, and f is (1 − U/E)₊^p there.
+    ≥ 0; ``kinks`` are the t between them at which f is not analytic. f is a function of the
+    distance z = reach − t from the reach. The interval of the common motion has the length
+    min(flat, near + z, far − z). At its lower end 1 − U/E is min(first + upper z, second − lower
+    z), and it falls by upper + lower per length. If flat is 0, one of the discs is fixed, and f is
+    (1 − U/E)₊^p there.
     """
 
     reach: Fraction
@@ -108,8 +109,8 @@ class Branch:
         return bool(self.energies[1])
 
     @property
-    def slacks(self):
-        """The slacks at the reach, at the kinks and at the start, in this order."""
+    def distances(self):
+        """The distances z of the reach, of the kinks and of the start, in this order."""
         return np.array([float(self.reach - t) for t in (self.reach, *self.kinks, self.start)])
 
     @property
@@ -118,7 +119,7 @@ class Branch:
         return {Fraction(0), self.reach, self.start, *self.kinks}
 
     def density(self, z):
-        """Return f at slacks ``z``, an array of lengths in [0, reach − start]."""
+        """Return f at distances ``z``, an array of lengths in [0, reach − start]."""
         first, upper, second, lower = self.energies
         flat, near, far = self.lengths
         open_length = np.minimum(np.minimum(flat, near + z), far - z)
@@ -140,8 +141,8 @@ class Branch:
     def beyond(self, square, room):
         """Return ∫ f over t² ≥ ``square``, with ``room`` = reach² − square, arrays of one shape."""
         end = np.maximum(room, 0.0) / (float(self.reach) + np.sqrt(square))
-        slacks = self.slacks
-        cuts = np.minimum(slacks, np.minimum(end, slacks[-1])[..., None])
+        distances = self.distances
+        cuts = np.minimum(distances, np.minimum(end, distances[-1])[..., None])
         z, weights = _nodes(cuts, SINGULAR if self.curved else LINEAR)
         return np.sum(weights * self.density(z), axis=(-2, -1))
 
@@ -234,7 +235,7 @@ def _outside(branches, square, room, surface, less=None):
     touches = np.sqrt(np.clip(t_square, 0.0, t0**2))
     falls = np.clip(rise, 0.0, t0**2) / (t0 + touches)
     marks = np.array([float(t) for t in (first.reach, *first.kinks, first.start)])
-    below = np.where(marks < reach / 2, t0 - marks, first.slacks - z0[..., None])
+    below = np.where(marks < reach / 2, t0 - marks, first.distances - z0[..., None])
     end = np.minimum(falls[..., -1:], below[..., -1:]), np.maximum(touches[..., -1:], marks[-1:])
     t = np.concatenate((touches, np.broadcast_to(marks, below.shape)), axis=-1)
     t = -np.sort(-np.clip(t, np.minimum(end[1], t0), t0), axis=-1)

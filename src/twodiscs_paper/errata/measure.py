@@ -1,9 +1,10 @@
 """Which formulas of the source are right and which are wrong, with the evidence.
 
-Each of the ``statements`` is computed as printed and compared with the truth, integrated to fifty
-digits, in several boxes and at several radii of every regime for which it is stated. The ratio of
-the two gives the verdict. Measurements have a veto: if Monte Carlo or dynamics contradicts the
-truth, there is no table. If they can distinguish printed from true, they are quoted.
+Each of the ``statements`` is computed as printed and compared with the truth, which is integrated
+to fifty digits. This is done in several boxes and at several radii of every regime for which it is
+stated. The ratio of the two gives the verdict. Measurements have a veto: if Monte Carlo or dynamics
+contradicts the truth, there is no table. If they can distinguish printed from true, they are
+quoted.
 """
 
 import math

@@ -1,8 +1,8 @@
 """Forecast the processor time of a configuration.
 
-A pilot at each radius does the first blocks of a job. It gives the speed of this machine, with as
-many pilots in parallel as there will be jobs, and the number of blocks that the requested errors
-need. A point in shards takes all its planned blocks. The time to start Python and to load compiled
+A pilot at each radius does the first blocks of a job. It measures the speed of this machine and the
+number of blocks that the requested errors need. As many pilots run in parallel as there will be
+jobs. A point in shards takes all its planned blocks. The time to start Python and to load compiled
 code is measured by a job that does nothing.
 """
 

@@ -228,8 +228,7 @@ class Trajectory(pd.DataFrame):
         at = self["time"].to_numpy() if times is None else np.atleast_1d(as_list(times))
         centres, velocities = self.positions(times), self.velocities(times)
         discs, flat = scene.discs, len(scene.axes) == 2
-        radii = scene.radii if discs == 2 else [scene.radius] * discs
-        masses = scene.masses if discs == 2 else [1.0] * discs
+        radii, masses = scene.radii, scene.masses
         sides = [scene.side(axis) for axis in scene.axes]
         if flat:
             sides.append(2 * max(radii))

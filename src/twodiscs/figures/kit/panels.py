@@ -38,6 +38,9 @@ BESIDE = 11
 #: The most pieces of a heading (the box, its effects and additions) in one line.
 PIECES = 3
 
+#: The texts of what a box calls for in mathtext, {name: format}, in their order.
+SYMBOLS = {"discs": "${}$ discs"} | {name: EFFECTS[name].symbol for name in sorted(EFFECTS)}
+
 #: Residuals beyond this many standard errors are drawn as triangles at the edge.
 LARGEST_RESIDUAL = 6.5
 
@@ -192,9 +195,8 @@ def room(box, more=""):
 
 def effects(box):
     """Return the number of discs of a ``Box``, if not two, and its effects, as texts in symbols."""
-    texts = ((name, "$, $".join(v) if name == "periodic" else v) for name, v in box.effects.items())
-    discs = [f"${box.discs}$ discs"] if "discs" in box.calls_for else []
-    return [*discs, *(powers(EFFECTS[name].symbol.format(value)) for name, value in texts)]
+    named = box.calls_for | {"periodic": "$, $".join(box.effects.get("periodic", ""))}
+    return [powers(text.format(named[name])) for name, text in SYMBOLS.items() if named.get(name)]
 
 
 def name_limits(axes, ends):

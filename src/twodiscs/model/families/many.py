@@ -110,9 +110,9 @@ def ergodic_components(scene):
 def _zigzags(scene):
     """Return the number of disjoint parts of the heights of one order in an ordered channel.
 
-    The heights are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave. So
-    each part has a corner of this cube, and two corners are in one part if a path along edges joins
-    them, because the excluded set is convex. At a corner k pairs of neighbours have the same
+    The heights are y in [0, B]^N with Σ d < A, d = √(σ² − Δ²) of neighbours. Each d is concave.
+    Each part therefore has a corner of this cube. Two corners are in one part if a path along edges
+    joins them, because the excluded set is convex. At a corner k pairs of neighbours have the same
     height, with d = σ, and all others d₀ = √(σ² − B²). A pair of the same height appears and
     disappears at the ends of the row, or together with the pair next to it. It moves by one disc if
     A allows for two pairs halfway, 2 √(σ² − B²/4).

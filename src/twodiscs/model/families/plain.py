@@ -16,8 +16,8 @@ __all__ = [
     "require_followable",
 ]  # fmt: skip
 
-#: The least relative distance from the largest radius for dynamics in doubles: at a tenth of it
-#: mean times begin to be wrong by more than 1e-4.
+#: The least relative distance from the largest radius for dynamics in doubles. At a tenth of it
+#: errors of mean times exceed 1e-4.
 FOLLOWED = 1e-12
 
 

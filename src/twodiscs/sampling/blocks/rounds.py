@@ -2,8 +2,8 @@
 
 One process works in rounds until all errors are small enough (``in_rounds``), or does all planned
 blocks without rounds (``all_at_once``). The number of planned blocks is known before anything runs.
-Many processes can do ``pieces`` of it, and their sums are ``joined``: the bits do not depend on the
-size of the pieces or on the process that does them.
+Many processes can do ``pieces`` of the work, whose sums are then ``joined``. The bits depend
+neither on the size of the pieces nor on the process that does a piece.
 """
 
 import math

@@ -1,8 +1,8 @@
 """The bursts of events of rough discs, and the number of initial states that must be in them.
 
-Two rough discs side by side in a narrow gap bounce between its walls and leave it late, because the
-impulses along their surfaces reverse their motion along the gap. A run without an initial state in
-the gap misses a part of the rate, and its sample does not show that.
+Two rough discs side by side in a narrow gap bounce between its walls. They leave it late, because
+the impulses along their surfaces reverse their motion along the gap. A run without an initial state
+in the gap misses a part of the rate, and its sample does not show that.
 
 The part is exact. Let G be the configurations with a separation of at most d along an axis. The
 fraction s of an event's rate that comes from G is the area of its surface in G over the whole area.
@@ -17,7 +17,7 @@ bursts.
 
 A rough disc may also stay in a corner of two walls as long as a replica lasts. At a distance d from
 the corner it hits the walls N ~ T/d times, so P(N > n) ~ n⁻². The variance of N then grows as the
-logarithm of the number of replicas, but the mean over its standard error from the same sample still
+logarithm of the number of replicas. The mean over its standard error from the same sample still
 tends to a normal variable (Giné, Götze and Mason 1997). No run is rejected because its sample has a
 few large N: this would keep the runs without large N, whose errors are too small.
 """

@@ -49,8 +49,7 @@ ALIAS, TAIL = 1e-14, 1e-11
 #: The number of vectors in the first trial for the range of the kernel, and its relative error.
 FIRST_RANK, RANK_ERROR = 16, 2e-15
 
-#: How much two powers of the kernel may differ in shape before the next ones are taken to be a
-#: geometric series.
+#: If two powers of the kernel differ less in shape, the next ones are taken as a geometric series.
 RATIO_ERROR = 4e-15
 
 #: The terms of an inverse in the first trial, and at most.
@@ -358,10 +357,10 @@ def _step(channel, p, phi):
     bounded there by its transform at any q < p, e^{q (room + 2π/step)} q^(−N−1) Z(q).
     """
     best = math.inf
-    for share in (0.2, 0.35, 0.5, 0.65, 0.8):
-        q = share * p
+    for fraction in (0.2, 0.35, 0.5, 0.65, 0.8):
+        q = fraction * p
         at_q = q * channel.room - (channel.discs + 1) * math.log(q) + _log_partition(channel, q)
-        best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - share) * p))
+        best = min(best, (at_q - phi - math.log(ALIAS)) / ((1 - fraction) * p))
     # V vanishes for a room of 0, so images at shorter rooms need no larger period than the room.
     return 2 * math.pi / max(best, channel.room)
 

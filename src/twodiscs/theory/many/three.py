@@ -65,19 +65,19 @@ def _sums(a, b, sigma):
     """Return (t, weight, c) of the nodes of the outer integral."""
     x, w = _nodes(OUTER)
     # Powers of a half at the ends are smooth in the angle of a sine squared.
-    share, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
+    fraction, slope = np.sin(math.pi / 2 * x) ** 2, math.pi / 2 * np.sin(math.pi * x)
     t, weight, c = [], [], []
     ends = _ends(a, b, sigma)
     for low, high in pairwise(ends):
         if high <= sigma:
             start = math.asin(low / sigma)
             width = math.asin(min(high / sigma, 1.0)) - start
-            angle = start + width * share
+            angle = start + width * fraction
             t.append(sigma * np.sin(angle))
             c.append(sigma * np.cos(angle))
             weight.append(width * slope * w * c[-1])
         else:
-            t.append(low + (high - low) * share)
+            t.append(low + (high - low) * fraction)
             c.append(np.zeros(OUTER))
             weight.append((high - low) * slope * w)
     return np.concatenate(t), np.concatenate(weight), np.concatenate(c)

@@ -26,8 +26,8 @@ HISTOGRAM_FRACTIONS = (0.1, 0.3, 0.5, 0.7)
 #: Radius of the default trajectory over the shorter side: both hops are open, one hop is rare.
 TRAJECTORY_FRACTION = 0.24
 
-#: Radius of the default trajectory of a scene with effects, over the radius at which the first hop
-#: becomes blocked: in a field this hop is rare far below that radius.
+#: The radius of the default trajectory of a scene with effects, over the radius at which the first
+#: hop becomes blocked. In a field this hop is rare far below that radius.
 BELOW_THRESHOLD = 0.5
 
 #: The default grid of a scene with effects ends at this fraction of its largest radius.
@@ -196,13 +196,11 @@ def _scene(block, path, common):
     box = _box(block, path)
     radii = _radii(block["radii"], box, f"{path}.radii")
     scene = box.scene(radii[0])
-    watched = block["watch"]
+    watched, many = block["watch"], "discs" in box.calls_for
     if isinstance(watched, bool):
         watched = dict.fromkeys(Quantities.__dataclass_fields__, watched)
         watched["trajectory"] &= bool(_hops(scene))
-        watched["hop_histogram"] &= (
-            bool(_hops(scene)) and _is_ergodic(scene) and "discs" not in box.calls_for
-        )
+        watched["hop_histogram"] &= bool(_hops(scene)) and _is_ergodic(scene) and not many
     histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     quantities = Quantities(
         volume=watched["volume"],
@@ -219,7 +217,7 @@ def _scene(block, path, common):
             box.scene(radii[-1]).require_followable()
         except InputError as error:
             raise ConfigError(f"{path}.radii: {error}") from None
-    for radius in () if "discs" in box.calls_for else quantities.hop_histogram:
+    for radius in () if many else quantities.hop_histogram:
         events = events_per_interval(box.scene(radius), histogram["event"])
         if events * LEAST_INTERVALS > histogram["event_budget"]:
             raise ConfigError(

@@ -17,7 +17,7 @@ COLUMNS = {"seconds": "s", "processor": "cpu_time", "memory": "max_rss"}
 def spent(folder):
     """Return a DataFrame of the jobs whose files are in ``folder``/benchmarks, a row for each kind.
 
-    The kind of a job at one radius is the name of its folder; the kind of another job is its name
+    The kind of a job at one radius is the name of its folder. The kind of another job is its name
     up to the first hyphen. Columns are the number of jobs, their total wall-clock and processor
     time in seconds, and the largest memory of a job in MiB. The kind with the longest time comes
     first. Raises ``InputError`` for a folder without measured jobs.

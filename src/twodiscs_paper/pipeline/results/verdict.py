@@ -4,10 +4,10 @@
         --studies results/passages.csv … --configuration @results/configuration.json \\
         --output check.passed
 
-The verdict checks each table again. It counts the comparisons and computes the bound from their
-number, compares z with the bound and with the deviation of the estimate in standard errors,
-computes the rows on all radii again, and requires every comparison of the configuration. Without an
-error bar (few events, or none) z is taken from the table; so are the rows of a study.
+The verdict checks each table again. It counts the comparisons, computes the bound from their
+number, and compares z with it. It also compares z with the deviation of the estimate in standard
+errors, computes the rows on all radii again, and requires every comparison of the configuration.
+Without an error bar (few events, or none) z is taken from the table; so are the rows of a study.
 """
 
 import math

@@ -27,8 +27,8 @@ from twodiscs_paper.pipeline.jobs.table import POINTS
 RELATIVE = 1e-12
 
 #: The largest difference of scores. A score is a difference of two numbers over its standard error,
-#: which is 1e-4 of the numbers at best: then this is as strict as ``RELATIVE``. For χ², a sum of
-#: squares of scores, it is relative from 1 on.
+#: which is 1e-4 of the numbers at best. At that error this is as strict as ``RELATIVE``. For χ², a
+#: sum of squares of scores, it is relative from 1 on.
 SCORE = RELATIVE / 1e-4
 
 #: The columns whose text identifies a row; all other columns hold results.

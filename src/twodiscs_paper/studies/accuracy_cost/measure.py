@@ -72,8 +72,8 @@ PAID = {"vertical_hop": (0.05, 0.2, 0.3), "horizontal_hop": (0.05, 0.15, 0.2, 0.
 #: The fewest counts whose error is taken from a pilot.
 FEWEST = 1000
 
-#: Single precision is measured at these relative distances below the largest radius, at radii near
-#: each of them, and for trajectories longer than usual by these factors.
+#: The relative distances below the largest radius at which single precision is measured. The
+#: factors of radii near each of them, and of trajectories longer than usual.
 ROOMS = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 NEAR = (1.0, 1.1, 1.2, 1.3)
 LONGER = (1, 8, 64)

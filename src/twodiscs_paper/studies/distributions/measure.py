@@ -39,7 +39,8 @@ from twodiscs.theory import exact, tails
 BLOCKS, BINS = 128, 512
 
 #: The most wall and disc events for the intervals of one radius, and again for its first passages;
-#: the most intervals and first passages: 4e6 intervals give the density at 0 to half a per cent.
+#: the most intervals and first passages. The density at 0 has an error of half a per cent from 4e6
+#: intervals.
 EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**23, 2**22, 2**19
 
 #: For a test, first passages are cut at this many mean times.
@@ -103,10 +104,10 @@ def constant_hazard(bins):
     ``bins`` are successive bins from ``hazard``. If n intervals are alive at the beginning of a bin
     of width w, the number that end in it is binomial with the mean n (1 − e^{−λw}), given all bins
     before. Bins can therefore be treated as independent; intervals that outlast the last bin are
-    censored. Returns (rate, trend, chi2, degrees): λ of the largest likelihood as an ``Estimate``
-    with the error from Fisher's information, β of a rate ∝ t^β by one Newton step from β = 0,
-    Pearson's χ² of a constant rate and its degrees of freedom. Raises ``InputError`` for fewer than
-    three bins or ``FEWEST`` ends.
+    censored. Returns (rate, trend, chi2, degrees). The rate is λ of the largest likelihood, an
+    ``Estimate`` with the error from Fisher's information. The trend is β of a rate ∝ t^β, by one
+    Newton step from β = 0. The others are Pearson's χ² of a constant rate and its degrees of
+    freedom. Raises ``InputError`` for fewer than three bins or ``FEWEST`` ends.
     """
     bins = list(bins)
     ends = sum(part.count for part in bins)
@@ -150,10 +151,10 @@ class Bin(NamedTuple):
 def hazard(counts, intervals, width):
     """Yield the rate of hops as a function of the time since the last hop, as ``Bin`` objects.
 
-    The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with S the share of
-    ``intervals`` that last longer, and a binomial error. ``counts`` are joined until a bin is as
-    wide as ``GROWTH`` times its first time; the first bin with fewer than ``FEWEST_IN_BIN`` counts
-    is left out, with all later ones.
+    The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with a binomial
+    error. S is the fraction of ``intervals`` that last longer. ``counts`` are joined until a bin is
+    as wide as ``GROWTH`` times its first time; the first bin with fewer than ``FEWEST_IN_BIN``
+    counts is left out, with all later ones.
     """
     left, alive, waiting = 0, intervals, 0
     for i, n in enumerate(counts):

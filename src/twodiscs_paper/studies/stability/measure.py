@@ -482,8 +482,8 @@ def turned_back(state):
 def return_errors(starts, number, law):
     """Follow each start for ``number`` events, reverse it, follow it back and return its errors.
 
-    The way back has the same number of events, the first of them after no flight, and then the
-    flight that led to the first event of the way out.
+    The way back has the same number of events. The first of them is immediate, and the last one is
+    followed by the flight that led to the first event of the way out.
     """
     errors = np.empty(starts.shape[1])
     for i in range(errors.size):
@@ -548,10 +548,10 @@ def reversal_rows(box, seed):
     Errors begin at a rounding, 2⁻⁵³, and grow like exp(λn) with the number n of events, where λ is
     the exponent per event. They reach ``RETRACED`` after ln(``RETRACED`` · 2⁵³)/λ events. The
     measured number passes if it corresponds to an initial error between 2⁻⁵³/``ROUNDINGS`` and
-    ``ROUNDINGS`` · 2⁻⁵³; in a long box the upper bound is multiplied by the ratio of its sides.
+    ``ROUNDINGS`` · 2⁻⁵³. In a long box the upper bound is multiplied by the ratio of its sides.
     Errors of return are geometric means over ``REVERSED`` independent trajectories. The exponent
-    comes from the growth of a separation over the same events of such trajectories: trajectories
-    from the invariant measure may remember their start for long, and their first events are no fair
+    comes from the growth of a separation over the same events of such trajectories. Trajectories
+    from the invariant measure may remember their start for long, so their first events are no fair
     sample of all events.
     """
     digits = math.log(RETRACED / 2.0**-53)

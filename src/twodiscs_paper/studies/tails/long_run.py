@@ -2,8 +2,8 @@
 
     python -m twodiscs_paper.studies.tails.long_run --configuration FILE --output FOLDER
 
-writes ``tails.csv``. The runs of the ``counted`` tail have random streams of their own and as many
-replicas each; counts are the estimates times 8 times all replicas.
+writes ``tails.csv``. Each run of the ``counted`` tail has its own random streams and the same
+number of replicas. Counts are the estimates times 8 times all replicas.
 """
 
 import math

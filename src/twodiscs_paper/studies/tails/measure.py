@@ -1,17 +1,17 @@
 """Tails of the times between events, where plain counting finds nothing.
 
 At a random moment of a stationary motion let F be the time to the next event and G the time since
-the last event. An interval F + G is picked in proportion to its length, hence (Palm)
+the last event. An interval F + G is picked in proportion to its length. By Palm's theorem
 
     P(T > t) = τ ⟨1[F + G > t] / (F + G)⟩.
 
 Starts come from the invariant measure; G is found by running backwards from the same start. Long
 intervals begin near a neutral motion (see ``theory.tails.tail_constant``), where all energy except
-a small share s is along one axis. On the sphere of speeds s is uniform on [0, 1], hence the smaller
-of the shares along x and y is uniform on [0, 1/2]. This range is cut into strata, each a quarter of
-the one before. All strata have the same number of starts; their exact weights are powers of two, or
-three times powers of two. A probability of 1e-8 takes no more starts than a probability of 1/2, and
-the estimate has no bias. The method needs only + − × / and √.
+a small share s is along one axis. On the sphere of speeds s is uniform on [0, 1]. The smaller of
+the shares along x and y is therefore uniform on [0, 1/2]. This range is cut into strata, each a
+quarter of the one before. All strata have the same number of starts; their exact weights are powers
+of two, or three times powers of two. A probability of 1e-8 takes no more starts than a probability
+of 1/2, and the estimate has no bias. The method needs only + − × / and √.
 """
 
 import math

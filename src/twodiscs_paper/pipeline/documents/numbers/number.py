@@ -33,10 +33,10 @@ class Number:
     column may be the ratio or the product of two columns, "time/exact_mean". A row counts if none
     of its ``columns`` is empty. The ``format`` writes the values of one row, or of several ones.
 
-    If a format takes one row and several rows count, ``pick`` decides: the "first" row, the "last"
-    row, or the row with the "largest" or "smallest" size of some columns, ("largest", "radius").
-    ``same`` takes only rows that share columns with the row of another number, (ODD_DENSITY,
-    "scene", "radius").
+    If a format takes one row and several rows count, ``pick`` decides. It names the "first" or the
+    "last" row, or the row with the "largest" or "smallest" size of some columns, ("largest",
+    "radius"). ``same`` takes only rows that share columns with the row of another number,
+    (ODD_DENSITY, "scene", "radius").
     """
 
     name: str
