@@ -237,7 +237,8 @@ def joined(name, box, inertias=(0.5,)):
     rows["near_threshold"] = Passages.part(part="near_threshold", inertias=inertias, **own)
     for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
         rows[part] = Passages.part(part=part, **own)
-    return Passages.rows(rows | {"on_lattice": Passages.part(part="on_lattice", seed=1)})
+    alone = {part: Passages.part(part=part, seed=1) for part in measure.WITHOUT_EVENTS}
+    return Passages.rows(rows | alone)
 
 
 @pytest.fixture
@@ -246,7 +247,7 @@ def small(monkeypatch):
     for name, value in {
         "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
         "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
-        "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
+        "LIMIT_BLOCKS": 4, "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
 
@@ -263,6 +264,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     assert by_quantity == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
         "passage_exponent", "last_exponent", "rate", "diffusion", "single_file",
+        "amplitude",
     }  # fmt: skip
     # Nothing but the passages tells time between passages from time between hops.
     times = [row for row in rows if row["quantity"] == "passage_time"]
@@ -304,7 +306,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
     rows = list(joined("square", Box(1.0, 4.0)))
     events = {row["event"] for row in rows}
-    assert events == {"vertical_hop", "swap"}
+    assert events == {"vertical_hop", "swap", None}
     with style.context():
         lattice = [row for row in rows if row["event"] == "swap"]
         for module in (figure, figure_diffusion):

@@ -28,7 +28,7 @@ from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
-from twodiscs_paper.studies.passages import exclusion, file
+from twodiscs_paper.studies.passages import exclusion, file, limit
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
@@ -62,6 +62,9 @@ FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8
 #: Probabilities of swaps on the lattice; numbers of rings for runs longer than ``LONG`` and for
 #: shorter runs.
 SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
+
+#: Blocks of pairs of discs for c.
+LIMIT_BLOCKS = 512
 
 
 def thresholds(box):
@@ -307,6 +310,15 @@ def on_lattice(seed):
         yield make_row("diffusion", swap, diffusion, free, **rate)
 
 
+def in_the_limit(seed):
+    """Yield the row of c, the number of 1 − κ = c σ^(2/3) ε^(1/3)/A for smooth discs."""
+    c = limit.amplitude(LIMIT_BLOCKS, seed)
+    yield {
+        "discs": 2, "quantity": "amplitude", "method": "limit",
+        "estimate": c.value, "stderr": c.stderr, "replicas": c.n,
+    }  # fmt: skip
+
+
 def near_threshold(name, box, inertias, events, seed):
     """Yield the rows of all hops of a plain ``Box`` near the radii where they become blocked.
 
@@ -331,7 +343,11 @@ def in_file(name, box, events, seed):
         yield from one_file(name, box, discs, 2 * events, seed)
 
 
-PARTS = {part.__name__: part for part in (near_threshold, on_ring, in_file, on_lattice)}
+#: The parts of passages.csv, and those of them that no budget of events limits.
+WITHOUT_EVENTS = ("on_lattice", "in_the_limit")
+PARTS = {
+    part.__name__: part for part in (near_threshold, on_ring, in_file, on_lattice, in_the_limit)
+}
 
 
 def rows(part, seed, events=1, **given):
@@ -341,6 +357,6 @@ def rows(part, seed, events=1, **given):
     streams, derived from the ``seed``.
     """
     check_integer("seed", seed, 0), check_integer("events", events)
-    if part != "on_lattice":
+    if part not in WITHOUT_EVENTS:
         given["events"] = events
     return PARTS[part](seed=seed, **given)

@@ -19,7 +19,7 @@ def _parts(configuration):
         parts[f"near_threshold_{scene.name}"] = {"part": "near_threshold"} | own | inertias
         if first and scene.box.fits(scene.box.height / 4):
             parts |= {part: {"part": part} | own for part in ("on_ring", "in_file")}
-    return parts | {"on_lattice": {"part": "on_lattice"} | seed}
+    return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
 
 
 STUDY = Study(

@@ -18,7 +18,7 @@ class Passages(Table):
     periodic: TEXT
     """axes without walls; empty if both have walls"""
     event: TEXT
-    """the hop; swap on the lattice"""
+    """the hop; swap on the lattice; empty for the limit of any hop"""
     discs: COUNT
     """number of discs; empty for the lattice"""
     radius: LENGTH
@@ -41,12 +41,14 @@ class Passages(Table):
     the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
     of the time between passages, over all distances; rate: hops per time, of both of two discs, or
     of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
-    each by ℓ; single_file: F of the mean square displacement F √t
+    each by ℓ; single_file: F of the mean square displacement F √t; amplitude: c of
+    1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range along the hop
     """
     method: TEXT
     """
     clusters: odd clusters over hops; hops: initial states on the surface of the hop; states:
-    initial states of the invariant measure; fit: to other rows; lattice: exclusion process
+    initial states of the invariant measure; fit: to other rows; lattice: exclusion process;
+    limit: the motion in the limit ε → 0
     """
     time: TIME
     """t; for clusters, the time without a hop that ends a cluster"""

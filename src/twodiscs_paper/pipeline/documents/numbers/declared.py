@@ -391,6 +391,7 @@ PASSAGES = (
     passages("passages_largest", {}, "z", largest()),
     *_ends("passages", KAPPA, "distance", POWER_OF_TWO, "_distance"),
     *_ends("passages", KAPPA),
+    passages("passages_c", {"quantity": "amplitude"}, ESTIMATE, WITH_ERROR),
     passages("passages_exponent", _near("last_exponent"), ESTIMATE, WITH_ERROR),
     *(
         passages(f"passages_rough_{name}", _near("last_exponent", i), ESTIMATE, WITH_ERROR)
