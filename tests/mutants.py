@@ -136,6 +136,7 @@ MUTANTS = [
     ("twodiscs_paper/studies/passages/measure.py", "error of an exponent", "math.hypot(*errors) / math.log(2)", "math.hypot(*errors)"),
     ("twodiscs_paper/studies/agreement/measure.py", "counts of strips in a sum", 'of_event.items() if row["starts"] == "invariant"', "of_event.items()"),
     ("sampling/prism.py", "energy in the measure of proposals", " else measure * neck.most ** (prism.components / 2 - 1)", " else measure"),
+    ("sampling/prism.py", "both orders of a draw count", "return q1, q1 - q2, sign * (q1 - q2) > 0.0", "return q1, q1 - q2, True"),
 ]
 # fmt: on
 

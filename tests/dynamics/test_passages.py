@@ -157,6 +157,23 @@ def test_initial_states_are_on_the_surface():
             assert abs(np.mean(normal**2) - due) <= 5 * np.std(normal**2) / math.sqrt(n)
 
 
+def test_small_discs_on_the_surface_are_as_far_apart_as_the_measure_says():
+    """|y1 − y2| has the density ∝ B − v from σ to B: at a quarter of B either disc can be above."""
+    scene = Scene(1.5, 1.0, 0.1)
+    states = passages.initial_states(scene, HOP, 256, 1)
+    apart = np.abs(states[1] - states[3])
+    sigma, reach = scene.contact_distance, scene.range_y
+
+    def moment(n):
+        def integral(v):
+            return reach * v ** (n + 1) / (n + 1) - v ** (n + 2) / (n + 2)
+
+        return integral(reach) - integral(sigma)
+
+    mean, square = (moment(n) / moment(0) for n in (1, 2))
+    five(apart.mean(), mean, math.sqrt((square - mean**2) / apart.size))
+
+
 def test_blocks_are_what_results_depend_on():
     scene = Scene(1.5, 1.0, 0.24)
     whole, events = passages.hop_sums(scene, HOP, TIMES, 6, 11)
