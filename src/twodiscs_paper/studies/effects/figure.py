@@ -89,7 +89,7 @@ def caption(shown):
     events counted. Leaving a periodic cell takes as much time as an event, but is not counted.
     """
     return text + shown.if_any(
-        lambda row: row["quantity"] != SHARE and row["estimate"] and row["stderr"] is None,
+        lambda row: row.get("estimate") and row["stderr"] is None and row["quantity"] != SHARE,
         "Crosses are estimates from too few events for an error bar.",
     )
 
