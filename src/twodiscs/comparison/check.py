@@ -18,10 +18,11 @@ If no exact value is known, as in most scenes of more than two discs, nothing is
 Monte Carlo: their ratio is 1. `sum_rule`, the virial theorem, is another test, for any number of
 discs between walls.
 
-A row is `independent`, a test, if it could fail and follows from no other row. It is not if its
-event is certain or impossible, if its count is the sum of other rows' counts in every replica, if
-its area or sum rule is computed from other rows, or if it is about the scores of other rows. Tests
-of one method at one radius have the same samples or trajectories, so their scores are correlated.
+A row is `independent`, a test, if it could fail and follows from no other row. It is not
+independent if its event is certain or impossible, or if it is about the scores of other rows. The
+same holds if its count is the sum of other rows' counts in every replica, or if its area or sum
+rule is computed from other rows. Tests of one method at one radius have the same samples or
+trajectories, so their scores are correlated.
 """
 
 import math
@@ -175,7 +176,7 @@ def comparisons(box, volume, areas, times, histogram, dynamics, monte_carlo=()):
 def distributions(rows):
     """Return, for each quantity and method, whether its scores over radii look standard normal.
 
-    There are two comparisons each, ``z_mean`` and ``z_spread``. They take the scores that are
+    Each of them has two comparisons, ``z_mean`` and ``z_spread``. They take the scores that are
     normal, from two radii or more.
     """
     groups = {}
@@ -219,7 +220,7 @@ def judged(rows, alarm):
 def check_rows(rows, alarm=scores.FALSE_ALARM):
     """Return the rows of check.csv: the comparisons ``rows`` and their distributions, judged.
 
-    The probability that any of them fails although all is right is at most ``alarm``, half of it
-    for the comparisons at a radius and half for the distributions.
+    The probability that any of them fails although all is right is at most ``alarm``. Half of it is
+    for the comparisons at a radius, half for the distributions.
     """
     return judged(rows, alarm / 2) + judged(distributions(rows), alarm / 2)

@@ -31,7 +31,7 @@ def key(radius):
 def radii(width, height, smallest, count):
     """Return ``count`` ascending radii from ``smallest`` up to just below the largest that fits.
 
-    The points of every regime are Chebyshev nodes: they are dense on both sides of h/4 and w/4 and
+    The points of every regime are Chebyshev nodes. They are dense on both sides of h/4 and w/4 and
     below the largest radius, but none is at one of the three. From the smallest radius on they
     begin evenly. Each is then rounded to the fewest digits that leave it near its value.
 

@@ -291,10 +291,10 @@ def density_at_zero(counts, intervals, width):
     """Return the density at 0 as an ``Estimate``, from p(0) − a t² through the first two bins.
 
     ``counts`` belong to the first bins of ``width`` from 0, out of a number of independent
-    ``intervals``; the error is for multinomial counts. There is no linear term: discs that touch
-    right after a hop are side by side and exchange velocities along x, which does not change the
-    time of the hop back. Raises ``InputError`` for fewer than two bins and for counts beyond
-    ``intervals``.
+    ``intervals``; the error is for multinomial counts. A linear term does not exist: discs that
+    touch right after a hop are side by side. They exchange velocities along x, which does not
+    change the time of the hop back. Raises ``InputError`` for fewer than two bins and for counts
+    beyond ``intervals``.
     """
     n = np.array([check_integer("count", n, 0) for n in counts[:2]], float)
     if n.size < 2:

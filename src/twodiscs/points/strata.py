@@ -1,8 +1,8 @@
 """Strata: the exact laws of random initial states reduce the variance of a mean over them.
 
 Initial states are sorted by quantities whose law is exact, into strata of exact probability p. Then
-Σ p ⟨N⟩ with the mean of N in each stratum has a smaller variance than the mean over all of them:
-the random numbers of states in the strata matter only to second order (Cochran, Sampling
+Σ p ⟨N⟩ with the mean of N in each stratum has a smaller variance than the mean over all of them.
+The random numbers of states in the strata matter only to second order (Cochran, Sampling
 Techniques, 1977, section 5A.9). The initial states are still independent, from the invariant
 measure.
 """
@@ -63,9 +63,9 @@ def mean_of(shares, starts, counts, squares):
 
     Arguments are arrays (n, m): their exact ``shares``, which add up to 1, the numbers of initial
     states in ``starts``, Σ N and Σ N². The merging of strata depends only on the number of all
-    initial states, so the mean has no bias, except in the rare case of a stratum with fewer than
-    two of them. The error is infinite for a single initial state. Raises ``InputError`` for other
-    arrays.
+    initial states, so the mean has no bias. An exception is the rare case of a stratum with fewer
+    than two of them. The error is infinite for a single initial state. Raises ``InputError`` for
+    other arrays.
     """
     try:
         strata = [np.array(part, float) for part in (shares, starts, counts, squares)]

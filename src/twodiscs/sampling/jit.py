@@ -1,8 +1,8 @@
 """The settings of Numba: its arithmetic, its vector width and the folder for compiled code.
 
-Arithmetic is plain IEEE 754: no fastmath, no contraction, and the only function of a math library
-that kernels call is the square root, which is correctly rounded. This makes the bits the same on
-every processor and for every vector width.
+Arithmetic is plain IEEE 754, without fastmath and without contraction. The only function of a math
+library that kernels call is the square root, which is correctly rounded. This makes the bits the
+same on every processor and for every vector width.
 
 Numba's cache keeps compiled code, in a folder named by the ``fingerprint`` of the kernel's module.
 Numba itself compares only the file of that module, and would keep a kernel after an edit of the

@@ -122,7 +122,7 @@ def shell_ends(epsilon, collision, wall):
     """Return the ends of shells of thicknesses ``epsilon``, in the order of ``SHELLS``.
 
     ``collision`` returns the square of the distance at which a shell of disc collisions of this
-    thickness ends, ``wall`` the coordinate at which the shell of an axis and side begins.
+    thickness ends. ``wall`` returns the coordinate at which the shell of an axis and side begins.
     """
     makers = {
         "hop": lambda event, thick: 2.0 * (thick * thick),

@@ -286,8 +286,8 @@ def draw_direction(state, n, direction):
 def draw_velocities(state, prism, speed, normal_axis, direction, velocity):
     """Fill ``velocity`` (u1, v1, w1, s1, u2, v2, w2, s2) from the invariant measure.
 
-    The components are scaled by the roots of masses and moments of inertia; along an axis with
-    total momentum 0 there is one, scaled by the root of the reduced mass. They are uniform on a
+    The components are scaled by the roots of masses and moments of inertia. An axis with total
+    momentum 0 has one component, scaled by the root of the reduced mass. They are uniform on a
     sphere of radius ``speed``. With a ``normal_axis`` (0 or 1; −1 for none) the relative velocity
     along it has the law of the flux through the surface of a hop. Its normal component n has a
     density ∝ |n| (1 − n²)^((D − 3)/2), so that √(1 − n²) is the largest of D − 1 uniform numbers.

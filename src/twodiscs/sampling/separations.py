@@ -95,8 +95,8 @@ def propose_separation(state, draw):
     """Propose separations u, v; return (accepted, A − u, B − v, u, u² + v² − σ²).
 
     The distances from the far corner, A − u and B − v, keep their relative accuracy if the discs
-    hardly fit, and the last value keeps it near contact. A proposal is accepted with probability
-    V/2 over ``draw.mass``; accepted proposals have the law of the invariant measure.
+    hardly fit. The last value keeps it near contact. A proposal is accepted with probability V/2
+    over ``draw.mass``; accepted proposals have the law of the invariant measure.
     """
     choice = uniform(state)
     if choice < draw.weights[0]:

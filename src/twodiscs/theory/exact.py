@@ -127,7 +127,7 @@ def rate(scene: Scene, event: str) -> float:
 def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop``, in both directions together.
 
-    Between walls it equals ``rate``. On a periodic axis a hop is no event of the ``Scene``; the
+    Between walls it equals ``rate``. On a periodic axis a hop is no event of the ``Scene``. The
     result is then the rate at which the separation to the nearest image changes its sign at 0.
     Raises ``InputError`` for anything that is not a ``Scene`` or a hop.
     """

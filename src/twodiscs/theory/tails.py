@@ -74,17 +74,16 @@ def tail_constant(scene, event):
 
     and A ↔ B for horizontal hops: a vertical hop is avoided by drifting motions along x only.
 
-    Two statements are proved. First, P(none within t) is at least this for
-    t ≥ 2√((A − σ)₊² + (B − σ)₊²), for which the drifts of both axes have exactly this probability
-    (``drift_probability``); for hops it is at least the hop's term. Second, no other family of
-    directions of two or more dimensions avoids collisions. Unfolded flights are straight lines on a
-    torus of four dimensions, on which the centres coincide on the four planes x1 = ±x2, y1 = ±y2. A
-    plane of directions that is transversal to one of these intersects it, and only (u1, u2) and
-    (v1, v2) are transversal to none. Two statements are argued, not proved: the other motions
-    (neighbourhoods of periodic motions, each of order t⁻³ in P(none within t)) add up to less; and,
-    for hops, the motion before and after the drift, with disc collisions, decorrelates
-    exponentially fast. Raises ``InputError`` for anything that is not a plain ``Scene``, and for a
-    wall.
+    Two statements are proved. First, P(none within t) is at least this for t ≥ 2√((A − σ)₊² + (B −
+    σ)₊²), for which the drifts of both axes have exactly this probability (``drift_probability``);
+    for hops it is at least the hop's term. Second, no other family of directions of two or more
+    dimensions avoids collisions. Unfolded flights are straight lines on a torus of four dimensions,
+    on which the centres coincide on the four planes x1 = ±x2, y1 = ±y2. A plane of directions that
+    is transversal to one of these intersects it, and only (u1, u2) and (v1, v2) are transversal to
+    none. Two statements are argued, not proved. The other motions (neighbourhoods of periodic
+    motions, each of order t⁻³ in P(none within t)) add up to less. For hops, the motion before and
+    after the drift, with disc collisions, decorrelates exponentially fast. Raises ``InputError``
+    for anything that is not a plain ``Scene``, and for a wall.
     """
     check_choice("event", event, (*HOPS, "disc_collision"))
     arc, area = Arc.of(check_plain_scene(scene)), areas(scene)[event]

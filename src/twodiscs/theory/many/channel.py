@@ -59,8 +59,8 @@ FIRST_TERMS, TERMS = 24, 6000
 class Channel(NamedTuple):
     """The constants of the transfer operator: lengths, nodes across half of the channel, and pairs.
 
-    There are two kinds of pairs of nodes, on the same side of the middle and on opposite sides, in
-    arrays (2, m, m).
+    The arrays (2, m, m) have the pairs of nodes on the same side of the middle, then those on
+    opposite sides.
     """
 
     discs: int

@@ -127,12 +127,9 @@ class SceneRequest:
 
     def arguments(self, stage, radius):
         """Return {name: value} of all that the job of a ``stage`` depends on, except its scene."""
+        sampling = self.monte_carlo | {"quantities": self.sampled, "shell": self.shell}
         settings = {
-            "monte_carlo": {
-                "quantities": self.sampled,
-                "samples": self.monte_carlo["samples"],
-                "shell": self.shell,
-            },
+            "monte_carlo": dict(sorted(sampling.items())),
             "dynamics": {"target": self.target, "budget": self.event_budget},
             "intervals": {
                 "event": self.histogram["event"],

@@ -44,7 +44,7 @@ def typeset(template, output, contents, values):
 
     ``contents`` are as ``contents_of`` returns them, with a "configuration" (its hash) and a
     "seed"; ``values`` is {name: ``Printed``}. The template finds them as JSON under
-    ``sys.inputs.contents``. There are also the texts of ``numbers``, the ``captions`` of all
+    ``sys.inputs.contents``. They also have the texts of ``numbers``, the ``captions`` of all
     figures, the ``commit`` of the template and the ``versions``. ``results`` is their folder there,
     as a path from the root that results and the project have in common. The same inputs at the same
     commit give the same bytes on every machine: only the fonts of Typst are used. Raises

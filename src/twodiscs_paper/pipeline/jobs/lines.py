@@ -15,7 +15,7 @@ INTERRUPTED = Event()
 class LogHandler(LogHandlerBase):
     """A handler that writes a line for each finished job, and all warnings and errors.
 
-    Errors are written as Snakemake writes them, with the log of the failed job. Of a dry run it
+    Errors are written as Snakemake writes them, with the log of the failed job. In a dry run it
     writes only the table of counts.
     """
 

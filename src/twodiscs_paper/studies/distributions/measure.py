@@ -154,7 +154,7 @@ def hazard(counts, intervals, width):
     The rate from ``first`` to ``last`` is ln(S(first)/S(last))/(last − first), with a binomial
     error. S is the fraction of ``intervals`` that last longer. ``counts`` are joined until a bin is
     as wide as ``GROWTH`` times its first time; the first bin with fewer than ``FEWEST_IN_BIN``
-    counts is left out, with all later ones.
+    counts and all later ones are left out.
     """
     left, alive, waiting = 0, intervals, 0
     for i, n in enumerate(counts):

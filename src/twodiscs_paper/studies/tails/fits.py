@@ -1,4 +1,4 @@
-"""How a tail ends: its last ratio to the exact law, and whether its rate of decay is constant."""
+"""The end of a tail: its last ratio to the exact law, and the test for a constant rate of decay."""
 
 import math
 from itertools import pairwise

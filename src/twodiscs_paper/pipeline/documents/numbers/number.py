@@ -28,10 +28,11 @@ class Number:
 
         Number("hazards", "distributions", {"scene": MAIN, "quantity": "rate"}, "count", COUNTED)
 
-    The number takes those rows of a ``table`` that have the values of ``where``: one value, one
-    value of a tuple, ``...`` for a cell that is not empty, ``MAIN``, ``FIRST_HOP`` or ``Other``. A
-    column may be the ratio or the product of two columns, "time/exact_mean". A row counts if none
-    of its ``columns`` is empty. The ``format`` writes the values of one row, or of several ones.
+    The number takes those rows of a ``table`` that have the values of ``where``. A value may be a
+    tuple of possible values, ``...`` for a cell that is not empty, ``MAIN``, ``FIRST_HOP`` or
+    ``Other``. A column may be the ratio or the product of two columns, "time/exact_mean". A row
+    counts if none of its ``columns`` is empty. The ``format`` writes the values of one row, or of
+    several ones.
 
     If a format takes one row and several rows count, ``pick`` decides. It names the "first" or the
     "last" row, or the row with the "largest" or "smallest" size of some columns, ("largest",

@@ -1,4 +1,4 @@
-"""How results are rounded and written: the one rule of the manuscript.
+"""Rounding and formats of results: the one rule of the manuscript.
 
 The error of an estimate decides the number of its digits. The largest of several values is rounded
 up and the smallest down, so that the sentence about them is true. Texts are markup of Typst, with
@@ -106,7 +106,7 @@ def sides(width, height):
 
 
 class Format(NamedTuple):
-    """How the values of a number are written.
+    """A format of the values of a number.
 
     ``write`` takes the values of the columns of one row. If the format ``is_of_several`` rows, it
     takes a list of values, or of tuples for several columns. A format that ``takes_empty`` cells

@@ -1,1 +1,0 @@
-"""The processor time that a digit costs by each method."""

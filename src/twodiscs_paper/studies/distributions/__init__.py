@@ -1,1 +1,0 @@
-"""How the times to the next hop are distributed."""

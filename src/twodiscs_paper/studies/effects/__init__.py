@@ -1,1 +1,0 @@
-"""How each effect changes the mean times, and its cost."""

@@ -1,1 +1,0 @@
-"""How each method behaves in numerically hard cases."""

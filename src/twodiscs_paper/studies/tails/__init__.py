@@ -1,1 +1,0 @@
-"""How probable long intervals between events are."""

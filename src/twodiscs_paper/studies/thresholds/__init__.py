@@ -1,1 +1,0 @@
-"""Power laws of mean times where an event dies out."""
