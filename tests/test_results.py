@@ -117,10 +117,11 @@ def test_notebooks_show_tables_and_complete_keys():
 
 
 def test_a_scan_is_a_sequence_a_table_and_a_figure(tmp_path):
-    scan = td.scan(1.5, 1.0, [0.2, 0.1], 0.3, events=["any_wall"], mass_ratio=2)
+    effects = {"radius_ratio": 0.6, "mass_ratio": 3.0}
+    scan = td.scan(1.5, 1.0, [0.2, 0.1], 0.3, **effects)
     assert scan.radii == [0.1, 0.2]
-    assert scan[1].rows == td.simulate(scan[1].scene, 0.3, events=["any_wall"]).rows
-    assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, mass_ratio=2)
+    assert scan[1].rows == td.simulate(scan[1].scene, 0.3).rows
+    assert scan[0].scene == td.Scene(1.5, 1.0, 0.1, **effects)
     assert scan.frame().loc[(0.1, "any_wall_time"), "estimate"] == scan[0]["any_wall"].value
     td.plot(scan, tmp_path / "scan.png")
     assert (tmp_path / "scan.png").stat().st_size > 5000

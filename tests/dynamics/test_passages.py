@@ -96,9 +96,9 @@ def test_clusters_to_both_sides_are_those_of_another_program(inertia, radius, ga
     κ, the share of single hops and the mean size of clusters, up to 64 hops.
     """
     scene = Scene(1.5, 1.0, radius, moment_of_inertia=inertia)
-    counts, _ = passages.cluster_sizes(scene, HOP, gap, 512, 11)
+    counts, _ = passages.cluster_sizes(scene, HOP, gap, 192, 11)
     own = np.repeat(np.arange(counts.size), counts)
-    other = clusters(12, 30_000, 1.5, 1.0, radius, inertia or 0.0, gap)
+    other = clusters(12, 12_000, 1.5, 1.0, radius, inertia or 0.0, gap)
     for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
         values = [np.asarray(of(sizes), float) for sizes in (own, other)]
         errors = [part.std() / math.sqrt(part.size) for part in values]

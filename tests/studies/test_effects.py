@@ -15,7 +15,7 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow
-from twodiscs.figures.kit import style
+from twodiscs.figures.kit import curves, style
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, WALLS
 from twodiscs.model.radii import key, stream_seed
@@ -217,10 +217,15 @@ def costs():
 
 @pytest.fixture(scope="module")
 def drawn(rows):
-    """The figure of the six scenes."""
-    with style.context():
-        curves = [*EffectsCurves.rows(BOXES)]
-        tables = {"effects": rows, "effects_cost": costs(), "effects_curves": curves}
+    """The figure of the six scenes, its curves at fewer radii."""
+    with style.context(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(curves, "FEWER", 16)
+        patch.setattr(curves, "GEOMETRIC", 4)
+        tables = {
+            "effects": rows,
+            "effects_cost": costs(),
+            "effects_curves": [*EffectsCurves.rows(BOXES)],
+        }
         return figure.draw(tables=tables)
 
 

@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 import subprocess
+from importlib.util import find_spec
 
 import pytest
 import yaml
@@ -165,6 +166,25 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     assert place.jobs("--configfile", "mine.yaml", "--", "discs_all") == []
     place.snakemake("--configfile", "mine.yaml", "--report", "report.html")
     assert "check.csv" in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("rsync") is None, reason="the plugin of the storage needs rsync")
+@pytest.mark.skipif(
+    find_spec("snakemake_storage_plugin_fs") is None, reason="the extra `cluster` is not installed"
+)
+def test_in_a_storage_it_makes_the_same_files(own, tmp_path):
+    store = Checkout(tmp_path / "store")
+    place = Checkout(tmp_path / "place", own.home)
+    place.configuration.parent.mkdir(parents=True)
+    place.configuration.write_text(yaml.safe_dump(TINY))
+    storage = "--default-storage-provider", "fs", "--default-storage-prefix", str(store.path)
+    place.snakemake("--cores", "2", *storage)
+    assert manifest(store) == manifest(own)
+    assert {*own.results()} - {*store.results()} <= {"report-workflow.html"}
+    assert place.jobs(*storage) == []
+    (store.path / "results" / "tiny" / "mean_times.csv").unlink()
+    assert {"table", "check"} <= {rule for rule, _ in place.jobs(*storage)}
 
 
 @pytest.mark.parametrize("more", ['config:\n        config["discs"]', ""])

@@ -91,6 +91,8 @@ def report_of(words):
     given, _ = get_argument_parser().parse_known_args(arguments)
     if given.dryrun or given.touch or not {*given.targets} <= {"all"}:
         return None
+    if given.default_storage_provider:  # then there is no folder of results to write it to
+        return None
     results = "results"
     for path in ("config/config.yaml", *(given.configfile or ())):
         with suppress(ConfigError):
