@@ -14,9 +14,10 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.kicks import before_kick, renew_kicks
+from twodiscs.dynamics.kicks import before_kick
 from twodiscs.dynamics.law import first_event, meeting, redrawn
 from twodiscs.sampling.jit import inlined, optional
+from twodiscs.sampling.streams import exponential
 
 LANES = 64
 
@@ -114,8 +115,14 @@ def kicked(state, i, time, law, kicks):
     """Return the ``state`` of lane ``i`` after a flight of ``time``, kicked if that is due."""
     kicks.waits[i] -= time
     if kicks.waits[i] <= 0.0:
-        state = redrawn(state, kicks.streams[i], kicks.direction, kicks.velocity, law.friction)
-        renew_kicks(i, kicks)
+        # A copy is cheaper than a view of the row.
+        stream = kicks.stream
+        for k in range(4):
+            stream[k] = kicks.streams[i, k]
+        state = redrawn(state, stream, kicks.direction, kicks.velocity, law.friction)
+        kicks.waits[i] = exponential(stream) / kicks.rate
+        for k in range(4):
+            kicks.streams[i, k] = stream[k]
     return state
 
 

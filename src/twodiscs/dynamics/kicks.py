@@ -24,12 +24,13 @@ SEED = np.uint64(1 << 63)
 class Kicks(NamedTuple):
     """The rate of kicks, and for each lane the time to the next one and its stream.
 
-    ``direction`` and ``velocity`` are the working memory of a draw.
+    ``stream``, ``direction`` and ``velocity`` are the working memory of a draw.
     """
 
     rate: float
     waits: np.ndarray  # (lanes,)
     streams: np.ndarray  # (lanes, 4), uint64
+    stream: np.ndarray
     direction: np.ndarray
     velocity: np.ndarray
 
@@ -41,7 +42,8 @@ def new_kicks(lanes, friction):
     ``friction`` has a ``rate``.
     """
     streams = np.zeros((lanes, 4), np.uint64)
-    return Kicks(friction.rate, np.zeros(lanes), streams, np.zeros(6), np.zeros(8))
+    stream = np.zeros(4, np.uint64)
+    return Kicks(friction.rate, np.zeros(lanes), streams, stream, np.zeros(6), np.zeros(8))
 
 
 @optional(lambda i, seed, replica, kicks: None)

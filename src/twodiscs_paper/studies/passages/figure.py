@@ -63,7 +63,7 @@ def draw(box, tables):
         return figure
     main, own = first_scene(rows, box)
     hop, limit = [*thresholds(main).items()][-1]
-    ours = select(own, event=hop, periodic=None)
+    ours = select(own, event=hop, periodic=None, friction=None)
     _curves(curves, main, hop, limit, ours)
     _smooth(smooth, rows, ours)
     _rough(rough, ours)
@@ -164,7 +164,7 @@ def _curves(axes, box, hop, limit, rows):
 def _smooth(axes, rows, ours):
     """Draw 1 − κ of smooth discs over ∛(σ²ε)/A, at every threshold of every scene."""
     others = iter(OTHERS)
-    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None)
+    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None, friction=None)
     for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in coefficients):
         own = select(coefficients, scene=scene, event=event)
         distance, value, error = columns(own, "distance", "estimate", "stderr")
@@ -239,10 +239,15 @@ RESIDUAL_LOOKS = {
 
 
 def residuals(axes, rows, looks):
-    """Draw z of each quantity in ``looks`` that has an exact value or a second estimate."""
+    """Draw z of each quantity in ``looks`` that has an exact value or a second estimate.
+
+    Rows with friction are left out.
+    """
     for quantity, (colour, marker, name) in looks.items():
         judged = [
-            r for r in select(rows, quantity=quantity) if r["z"] is not None and r["distance"]
+            r
+            for r in select(rows, quantity=quantity, friction=None)
+            if r["z"] is not None and r["distance"]
         ]
         if judged:
             x, z = columns(judged, "distance", "z")

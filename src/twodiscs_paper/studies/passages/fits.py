@@ -14,13 +14,14 @@ HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
 def fits(rows):
     """Yield the fitted powers of ``rows`` of passages.csv, as rows without their empty cells.
 
-    The power is fitted to 1 − κ for smooth discs, and to κ for rough discs. A fit takes the last
+    The power is fitted to 1 − κ for smooth discs, and to κ for rough discs, both without friction.
+    A fit takes the last
     ``LAST`` distances of a hop. A hop has no fit if it has fewer than two distances, or if a value
     is not positive.
     """
     hops = {}
     for row in rows:
-        if row["quantity"] == "coefficient":
+        if row["quantity"] == "coefficient" and row["friction"] is None:
             hops.setdefault(tuple(row[name] for name in HOP), []).append(row)
     for found in hops.values():
         last = sorted(found, key=lambda row: -row["distance"])[-LAST:]

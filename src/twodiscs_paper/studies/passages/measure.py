@@ -1,5 +1,8 @@
 """Which hops are passages near the radius where they become blocked, and how discs diffuse by them.
 
+With friction of the rate γ, κ depends on x = γ√(εσ): a neck of the width ε = h − 4r has the length
+√(εσ), and a pair forgets its velocity within it if x is large.
+
 The distance below that radius is halved from step to step. Two quantities have two estimators each,
 which share only the exact rate of hops: κ, by clusters and by κ(t) (``dynamics.passages``), and the
 coefficient D of diffusion along a ring, by the correlations of hops and by displacements.
@@ -7,6 +10,8 @@ coefficient D of diffusion along a ring, by the correlations of hops and by disp
 
 import math
 from itertools import pairwise
+
+import numpy as np
 
 from twodiscs.comparison.measured.transmission import (
     TIMES,
@@ -21,11 +26,14 @@ from twodiscs.comparison.measured.transmission import (
     seed_of,
 )
 from twodiscs.comparison.scores import student_deviate
+from twodiscs.dynamics.ensemble import REPLICAS as STARTS
+from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
 from twodiscs.model.checks import check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
+from twodiscs.points import strata
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages import exclusion, file, limit
@@ -54,6 +62,17 @@ FIRST = 0.01
 #: around it. Displacements take twice that time, or two mean times between hops if these are
 #: longer, in ``FEWEST`` replicas or more.
 AROUND, FEWEST = 16, 2**11
+
+#: {rate of kicks: halvings of the distance}.
+KICKED = {
+    10.0: (5, 6, 8, 10, 12, 14, 16), 40.0: range(6, 17, 2), 160.0: range(8, 17, 2),
+    640.0: (8, 10, 12),
+}  # fmt: skip
+
+#: With kicks, the time without a hop that ends a cluster, in ``box_time``: a pause four times as
+#: long gives the same κ. Then the work of an estimate over that of others, the price of a kick in
+#: events, the fewest hops, and the blocks of initial states for the rate of hops.
+PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
 #: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
 #: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
@@ -105,11 +124,13 @@ class NearThreshold:
             "distance": 2.0**-halvings,
             "exact_mean": self.mean,
             "moment_of_inertia": scene.moment_of_inertia,
+            "friction": scene.friction or None,
         }
 
     def _seed(self, what):
         inertia = self.scene.moment_of_inertia
         kind = f"{self.scene.periodic} {inertia}" if not self.scene.is_plain else ""
+        kind += f" {self.scene.friction}" if self.scene.friction else ""
         return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
     def make_row(self, quantity, method, estimate, time=None, reference=None, events=None):
@@ -210,6 +231,17 @@ class NearThreshold:
         moved = mean_of((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
         yield self.make_row("diffusion", "states", moved, 2 * time, correlated)
 
+    def rate(self, blocks):
+        """Return the row of the rate of hops, counted in its strip."""
+        around = strip.strip_of(self.scene, self.hop)
+        stream = np.uint64(self._seed("rate"))
+        sums, events = strip.run_blocks(self.scene, self.hop, around, stream, 0, blocks)
+        fractions = strip.fractions_of(self.scene, self.hop, around)
+        per_time = around.fraction / (2 * around.time)
+        mean, error = (per_time * part for part in strata.mean_of(fractions, *sums))
+        found = Estimate(mean, error, blocks * STARTS)
+        return self.make_row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
+
 
 def one_hop(name, box, hop, halvings, inertia, events, seed):
     """Yield the rows of one hop of a plain ``Box`` at distances that are halved.
@@ -251,6 +283,32 @@ def exponents(measured):
         y = [math.log(near.mean / kappa.value) for near, kappa in measured]
         errors = [kappa.stderr / kappa.value for _, kappa in measured]
         yield measured[-1][0].make_row("passage_exponent", "fit", LinearFit(x, y, errors).slope)
+
+
+def one_friction(name, box, friction, halvings, events, seed):
+    """Yield the rows of discs with ``friction`` at distances below h/4, the largest one first."""
+    before = None
+    for n in halvings:
+        scene = Box(box.width, box.height, {"friction": friction}).scene(
+            radius_at(box.height / 4, n)
+        )
+        near = NearThreshold(name, scene, "horizontal_hop", n, seed)
+        gap = PAUSE * box_time(scene, near.hop)
+        price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
+        hops = min(max(WORK * events / price, FEWEST_KICKED), MOST_HOPS)
+        found = cluster_sizes(scene, near.hop, gap, int(hops) // REPLICAS, near.cluster_seed)
+        kappa, rows = near.of_sizes(*found, gap)
+        yield from rows
+        if n == halvings[0]:
+            yield near.rate(STRIPS)
+        if before and kappa:
+            octaves, far = n - before[0].halvings, before[1]
+            times = [one.mean / k.value for one, k in (before, (near, kappa))]
+            error = math.hypot(*(k.stderr / k.value for k in (far, kappa)))
+            slope = -math.log2(times[1] / times[0]) / octaves
+            estimate = Estimate(slope, error / math.log(2) / octaves, 2)
+            yield near.make_row("local_exponent", "fit", estimate)
+        before = (near, kappa) if kappa else None
 
 
 def one_ring(name, box, inertia, events, seed):
@@ -337,6 +395,12 @@ def on_ring(name, box, events, seed):
         yield from one_ring(name, box, inertia, events, seed)
 
 
+def with_friction(name, box, events, seed):
+    """Yield the rows of the passages of two smooth discs with friction."""
+    for friction, halvings in KICKED.items():
+        yield from one_friction(name, box, friction, halvings, events, seed)
+
+
 def in_file(name, box, events, seed):
     """Yield the rows of files of several discs on a ring."""
     for discs in FILES:
@@ -345,9 +409,8 @@ def in_file(name, box, events, seed):
 
 #: The parts of passages.csv, and those of them that no budget of events limits.
 WITHOUT_EVENTS = ("on_lattice", "in_the_limit")
-PARTS = {
-    part.__name__: part for part in (near_threshold, on_ring, in_file, on_lattice, in_the_limit)
-}
+PARTS = (near_threshold, on_ring, with_friction, in_file, on_lattice, in_the_limit)
+PARTS = {part.__name__: part for part in PARTS}
 
 
 def rows(part, seed, events=1, **given):

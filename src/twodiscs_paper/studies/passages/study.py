@@ -18,7 +18,8 @@ def _parts(configuration):
         inertias = {"inertias": INERTIAS if first else OTHERS}
         parts[f"near_threshold_{scene.name}"] = {"part": "near_threshold"} | own | inertias
         if first and scene.box.fits(scene.box.height / 4):
-            parts |= {part: {"part": part} | own for part in ("on_ring", "in_file")}
+            own_parts = ("on_ring", "with_friction", "in_file")
+            parts |= {part: {"part": part} | own for part in own_parts}
     return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
 
 
@@ -27,13 +28,19 @@ STUDY = Study(
     families=("plain", "effects", "many"),
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
-    seconds=60.0,
+    seconds=80.0,
     order=6,
     figures={
         "passages": Entry(
             "Hops that are passages",
             DYNAMICS,
             "twodiscs_paper.studies.passages.figure",
+            tables=("passages",),
+        ),
+        "friction": Entry(
+            "Passages with friction",
+            DYNAMICS,
+            "twodiscs_paper.studies.passages.figure_friction",
             tables=("passages",),
         ),
         "diffusion": Entry(

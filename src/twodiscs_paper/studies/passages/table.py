@@ -28,6 +28,8 @@ class Passages(Table):
     """
     moment_of_inertia: Column(float, "m r²")
     """moment of inertia of rough discs; empty for smooth discs"""
+    friction: Column(float, "1/time")
+    """rate of kicks by friction; empty without friction"""
     swap: NUMBER
     """probability that neighbours on the lattice swap"""
     exact_mean: TIME
@@ -39,7 +41,8 @@ class Passages(Table):
     clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
     1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
     the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
-    of the time between passages, over all distances; rate: hops per time, of both of two discs, or
+    of the time between passages, over all distances; local_exponent: the same, from this distance
+    and the one before; rate: hops per time, of both of two discs, or
     of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
     each by ℓ; single_file: F of the mean square displacement F √t; amplitude: c of
     1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range along the hop

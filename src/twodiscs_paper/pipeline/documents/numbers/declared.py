@@ -373,7 +373,7 @@ LATTICE = {"method": "lattice"}
 def _near(quantity, inertia=None, **more):
     """Return the filter of a quantity of the hop that is blocked first, near its threshold."""
     where = {"scene": MAIN, "event": FIRST_HOP, "quantity": quantity}
-    return where | {"moment_of_inertia": inertia} | more
+    return where | {"moment_of_inertia": inertia, "friction": None} | more
 
 
 def _ends(name, where, column=ESTIMATE, form=WITH_ERROR, suffix=""):

@@ -1,0 +1,101 @@
+"""Passages with friction: one function of a scaled friction, between two exponents."""
+
+import numpy as np
+
+from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.model.box import Box
+from twodiscs_paper.studies.passages.figure import columns, first_scene, points, select
+
+#: Inches: heights of the panels of κ and of the exponent, the gap, the margin above.
+KAPPA, EXPONENT, TOP = 1.9, 1.3, 0.22
+
+#: {rate of kicks: colour, marker}.
+LOOKS = {10.0: (BLUE, "o"), 40.0: (ORANGE, "s"), 160.0: (GREEN, "^"), 640.0: (VERMILLION, "D")}
+
+#: The scaled friction that is shown.
+SHOWN = (0.015, 45)
+
+#: κ x for large x and smooth discs between walls, see docs/passages.md.
+DIFFUSIVE = 3 / 4
+
+
+def draw(box, tables):
+    """Draw the rows of passages.csv with friction."""
+    rows = [row for row in tables["passages"] if row["friction"] is not None]
+    figure = new_figure(panels.BOTTOM + EXPONENT + panels.GAP + KAPPA + TOP)
+    upper = panels.add_panel(figure, panels.BOTTOM + EXPONENT + panels.GAP, KAPPA, name="kappa")
+    lower = panels.add_panel(figure, panels.BOTTOM, EXPONENT, name="exponent")
+    for axes, name in zip(figure.axes, "ab", strict=True):
+        panels.letter(axes, name)
+    if not rows:
+        panels.name_box(upper, box, ": no hop becomes blocked")
+        for axes in figure.axes:
+            axes.set_axis_off()
+        return figure
+    panels.name_box(upper, first_scene(rows, box)[0])
+    for friction, look in LOOKS.items():
+        own = select(rows, friction=friction, quantity="coefficient")
+        if own:
+            value, error = columns(own, "estimate", "stderr")
+            points(upper, scaled(own), value, error, look, rf"$\gamma={friction:g}$")
+        # An exponent belongs between its two distances.
+        steps = select(rows, friction=friction, quantity="local_exponent")
+        before = [_before(row, own) for row in steps]
+        if steps:
+            value, error = columns(steps, "estimate", "stderr")
+            points(lower, np.sqrt(scaled(steps) * scaled(before)), value, error, look)
+    x = np.geomspace(*SHOWN, 2)
+    style = {"color": BLACK, "lw": 0.8, "ls": (0, (4, 2)), "zorder": 5}
+    upper.plot(x, np.ones(2), **style)
+    large = np.array([DIFFUSIVE, SHOWN[1]])
+    upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
+    for exponent, name, side in (
+        (-1.5, r"$-\frac{3}{2}$  Bowles, Mon, Percus 2004", 3),
+        (-2.0, r"$-2$  Mon 2009", 3),
+    ):
+        lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)
+        at = (SHOWN[0], exponent) if exponent == -1.5 else (SHOWN[1], exponent)
+        ha = "left" if exponent == -1.5 else "right"
+        drawing.label(lower, name, at, (3 if ha == "left" else -3, side), ha=ha, color=GREY)
+    upper.set(xscale="log", yscale="log", xlim=SHOWN, ylim=(0.012, 1.3))
+    upper.set_ylabel(r"transmission $\kappa$")
+    upper.tick_params(which="both", labelbottom=False)
+    lower.set(xscale="log", xlim=SHOWN, ylim=(-2.15, -1.15))
+    lower.set_xlabel(r"scaled friction $x=\gamma\sqrt{\varepsilon\sigma}$")
+    lower.set_ylabel(r"exponent of $\tau/\kappa$")
+    lower.xaxis.set_major_formatter("{x:g}")
+    upper.yaxis.set_major_formatter("{x:g}")
+    upper.legend(loc="lower left")
+    return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    return """
+    Passages with friction: all velocities are drawn anew at random times of the rate γ. (a) The
+    fraction κ of hops that are passages, near the radius r_c = h/4 at which hops become blocked,
+    over x = γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r. Dashed:
+    the limits of ballistic discs, 1, and of discs that diffuse through the neck, 3/(4x). (b) The
+    local power of the distance r_c − r with which the time τ/κ between passages grows, from one
+    distance to the next; dashed: the powers that were found for diffusive and for ballistic discs.
+    Error bars are one standard error.
+    """
+
+
+def scaled(rows):
+    """Return γ√(εσ) of each row, as an array."""
+    return np.array([_scaled(row) for row in rows])
+
+
+def _scaled(row):
+    scene = Box(row["width"], row["height"]).scene(row["radius"])
+    return row["friction"] * (scene.room(row["event"]) * scene.contact_distance) ** 0.5
+
+
+def _before(row, coefficients):
+    """Return the row of κ at the next larger distance than that of a ``row``."""
+    return min(
+        (one for one in coefficients if one["distance"] > row["distance"]),
+        key=lambda one: one["distance"],
+    )
