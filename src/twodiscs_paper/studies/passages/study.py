@@ -7,6 +7,9 @@ from twodiscs_paper.study import Study, scaled
 #: Moments of inertia of rough discs, in the first box and in others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
+#: The radius over the height of the box at which discs of a long file cannot pass.
+BLOCKED = 0.28
+
 
 def _parts(configuration):
     """Return {name: parameters} of the parts; each part has its own random streams."""
@@ -19,6 +22,9 @@ def _parts(configuration):
         parts[f"near_threshold_{scene.name}"] = {"part": "near_threshold"} | own | inertias
         if first and scene.box.fits(scene.box.height / 4):
             parts |= {part: {"part": part} | own for part in ("on_ring", "in_file")}
+        if first and scene.box.fits(BLOCKED * scene.box.height):
+            alone = {"name": scene.name, "box": scene.box.parameters()} | seed
+            parts["in_long_file"] = {"part": "in_long_file"} | alone
     return parts | {"on_lattice": {"part": "on_lattice"} | seed}
 
 

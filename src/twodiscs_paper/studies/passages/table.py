@@ -28,6 +28,10 @@ class Passages(Table):
     """
     moment_of_inertia: Column(float, "m r²")
     """moment of inertia of rough discs; empty for smooth discs"""
+    friction: Column(float, "1/time")
+    """
+    rate γ of kicks, at which all velocities are drawn anew; empty without friction
+    """
     swap: NUMBER
     """probability that neighbours on the lattice swap"""
     exact_mean: TIME
@@ -41,12 +45,17 @@ class Passages(Table):
     the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
     of the time between passages, over all distances; rate: hops per time, of both of two discs, or
     of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
-    each by ℓ; single_file: F of the mean square displacement F √t
+    each by ℓ; single_file: F of the mean square displacement F √t, over ℓ² in files of discs;
+    density: S, the relative variance of the number of discs in a long piece of a file; in long
+    files, over ℓ²: displacement, the mean square displacement of a tagged disc in the time t; file,
+    that of a place in the order of the discs; order: the mean square of the number of places by
+    which a disc has moved in the order
     """
     method: TEXT
     """
     clusters: odd clusters over hops; hops: initial states on the surface of the hop; states:
-    initial states of the invariant measure; fit: to other rows; lattice: exclusion process
+    initial states of the invariant measure; order: by the order of the discs in a file; insertion:
+    Monte Carlo for a ring of 8 discs; fit: to other rows; lattice: exclusion process
     """
     time: TIME
     """t; for clusters, the time without a hop that ends a cluster"""
