@@ -16,6 +16,7 @@ that draw all velocities anew at a rate γ damp the sound at constant temperatur
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -175,6 +176,25 @@ def damped(scene, variance, friction, time):
     parts = (1 - correlation.real) / q**2
     parts[-1] /= 1 + (n % 2 == 0)
     return 4 * variance / n * float(parts.sum())
+
+
+@lru_cache(maxsize=8)
+def _exact_density(scene):
+    return exact_density(scene.height, scene.radius, scene.width / scene.discs)
+
+
+def law(scene, friction, time, variance=None):
+    """Return ⟨x²⟩/ℓ² at a ``time`` by theory, with kicks at the rate ``friction`` or None.
+
+    Without a ``variance`` S the discs must be in an ordered channel, whose theory is exact. Smooth
+    discs with a ``variance`` have no law: the speed of sound is not known.
+    """
+    per_disc = scene.width / scene.discs
+    if friction is None:
+        moved = sound(scene, _exact_density(scene), time)
+    else:
+        moved = damped(scene, variance or _exact_density(scene).variance, friction, time)
+    return moved / per_disc**2
 
 
 @compiled

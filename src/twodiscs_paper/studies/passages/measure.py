@@ -329,21 +329,17 @@ def one_long_file(name, box, halvings, friction, known, seed):
     moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
     steps = file.squares(numbers, LAGS)
 
-    if halvings is None:
-        density = file.exact_density(box.height, radius, per_disc)
-        variance = Estimate(density.variance, 0.0, 1)
-    elif known:
-        variance = known["density"]
-    else:
-        variance = file.measured_density(scene, places)
-        yield make_row("density", "states", variance)
+    variance = None
+    if halvings is not None:
+        variance = known.get("density")
+        if variance is None:
+            variance = file.measured_density(scene, places)
+            yield make_row("density", "states", variance)
 
     def law(lag):
-        """Return ⟨x²⟩/ℓ² by theory, None for smooth discs without an exact density."""
-        time = lag * STEP * unit
-        if rate is not None:
-            return file.damped(scene, variance.value, rate, time) / per_disc**2
-        return file.sound(scene, density, time) / per_disc**2 if halvings is None else None
+        if rate is None and variance:
+            return None
+        return file.law(scene, rate, lag * STEP * unit, variance and variance.value)
 
     for k, lag in enumerate(LAGS):
         yield make_row("displacement", "states", mean_of(moved[k]), lag)
@@ -356,7 +352,7 @@ def one_long_file(name, box, halvings, friction, known, seed):
         found = mean_of((whole_file[late] - whole_file[early]) / root)
         due = (law(SINGLE[1]) - law(SINGLE[0])) / root
         # F is ∝ √S.
-        error = due * variance.stderr / variance.value / 2
+        error = due * variance.stderr / variance.value / 2 if variance else 0.0
         z = (found.value - due) / math.hypot(found.stderr, error)
         yield make_row(
             "single_file", "states", found, SINGLE[1], reference=due,
