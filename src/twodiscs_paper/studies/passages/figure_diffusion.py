@@ -107,7 +107,8 @@ def caption(shown):
     theory. (c) A single file on a lattice, whose neighbours swap with the probability p: the same
     ratio. (d) Mean square displacement of a tagged disc in a long file on a ring, blocked
     (r = 0.28 h, full symbols) and open (δ = 1/8), in units of ℓ² and of the thermal speed. Black
-    lines are theory of the blocked files, without a free parameter: sound, and damped sound. Grey
+    lines are theory of the blocked files, without a free parameter: sound, until it has gone around
+    half of the ring, and damped sound. Grey
     lines add what hops do to the file of places, as the order of the discs has it. (e) Files with
     kicks: displacements over F√t×, at times over t× = (F/2D)², where single file and hops
     contribute equally. The line is √s + s. Error bars are one standard error.
@@ -184,7 +185,10 @@ def _moved(axes, rows):
                     periodic="x",
                 )  # fmt: skip
                 time = np.geomspace(x[0], x[-1], 120)
-                due = [file.law(scene, friction, t / _thermal(own[0])) for t in time]
+                due = np.array([file.law(scene, friction, t / _thermal(own[0])) for t in time])
+                # Sound that has gone around half of the ring brings the discs back.
+                rises = np.append(np.diff(due) > 0, True).cumprod() > 0
+                time, due = time[rises], due[rises]
                 axes.plot(time, due, color=BLACK, lw=0.8, zorder=5)
             else:
                 _, place, _ = _of(own, "file")

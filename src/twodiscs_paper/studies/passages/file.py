@@ -169,10 +169,10 @@ def damped(scene, variance, friction, time):
     """Return ⟨x²⟩ at a ``time`` with kicks at the rate ``friction``, from waves of N discs."""
     n = scene.discs
     q = 2 * math.pi / scene.width * np.arange(1, n // 2 + 1)
-    rate = np.sqrt((thermal_speed(scene) * q) ** 2 / variance - friction**2 / 4 + 0j)
-    correlation = np.exp(-friction * time / 2) * (
-        np.cos(rate * time) + friction / 2 * time * np.sinc(rate * time / math.pi)
-    )
+    # The two solutions exp(−s t) of the equation for C.
+    root = np.sqrt(friction**2 / 4 - (thermal_speed(scene) * q) ** 2 / variance + 0j)
+    fast, slow = friction / 2 + root, friction / 2 - root
+    correlation = (fast * np.exp(-slow * time) - slow * np.exp(-fast * time)) / (2 * root)
     parts = (1 - correlation.real) / q**2
     parts[-1] /= 1 + (n % 2 == 0)
     return 4 * variance / n * float(parts.sum())

@@ -33,7 +33,7 @@ STUDY = Study(
     families=("plain", "effects", "many"),
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
-    seconds=60.0,
+    seconds=80.0,
     order=6,
     figures={
         "passages": Entry(
