@@ -292,7 +292,9 @@ def test_kicks_keep_energy_and_momentum_and_forget_velocities():
 
 def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     """F and, where discs pass, D: within five standard errors of theory and of Monte Carlo."""
-    for name, value in {"LONG_FILE": 64, "LONG_REPLICAS": 24, "OPEN": (4,)}.items():
+    for name, value in {
+        "LONG_FILE": 64, "LONG_REPLICAS": 24, "OPEN": (4,), "RECORDS": 96, "FILE_SAMPLES": 2**17,
+    }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
     rows = list(measure.in_long_file("long", BOX, 1))
     judged = [row for row in rows if row.get("z") is not None]
@@ -301,14 +303,14 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     assert all(abs(row["z"]) < 5 and row["stderr"] < 0.2 * row["reference"] for row in judged)
     # Hops of smooth discs know little of each other; kicks turn some of them back.
     smooth, kicked = (row for row in rows if row["quantity"] == "diffusion")
-    assert abs(smooth["estimate"] - 1) < 5 * smooth["stderr"] + 0.05
+    assert abs(smooth["estimate"] - 1) < 5 * smooth["stderr"] < 0.5
     assert kicked["estimate"] < smooth["estimate"]
     # Blocked: no exchange, so that discs and places move alike.
     moved, place = (
         [r["estimate"] for r in rows if r["quantity"] == q and r["distance"] < 0]
         for q in ("displacement", "file")
     )
-    assert moved == place
+    assert moved == pytest.approx(place, rel=1e-9)
     (bulk,) = (row for row in rows if row["quantity"] == "density")
     assert bulk["stderr"] < 0.2 * bulk["estimate"]
 
@@ -316,10 +318,10 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
 def test_the_measured_density_is_exact_in_an_ordered_channel():
     """At r = 0.28: five standard errors."""
     scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
-    places = file.initial.states(scene, 2000, 1)[None, :32]
+    places = file.initial.states(scene, 1200, 1)[None, :32]
     found = file.measured_density(scene, places)
     due = file.exact_density(1.0, 0.28, 0.75).variance
-    assert found.stderr < 0.05 * due
+    assert found.stderr < 0.06 * due
     assert abs(found.value - due) < 5 * found.stderr
 
 
