@@ -94,9 +94,9 @@ def test_pressure_of_64_and_256_discs_on_a_ring():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("packing", ROOM)
-def test_pressure_on_a_ring_to_a_thousandth(packing):
-    value, error = pressure_on_a_ring(packing, 4e7, 2)
-    assert compare("ring", value, error, packing) < 0.002
+def test_pressure_on_a_ring_to_some_thousandths(packing):
+    value, error = pressure_on_a_ring(packing, 1.2e7, 2)
+    assert compare("ring", value, error, packing) < 0.003
 
 
 def pressure_in_boxes(packing, events, seed):
@@ -133,7 +133,7 @@ def pressure_in_boxes(packing, events, seed):
 @pytest.mark.slow
 @pytest.mark.parametrize("packing", [0.3, 0.45])
 def test_pressure_of_64_128_and_256_discs_in_a_box(packing):
-    value, error = pressure_in_boxes(packing, 3e7, 3)
+    value, error = pressure_in_boxes(packing, 1.2e7, 3)
     assert compare("boxes", value, error, packing) < 0.01
 
 

@@ -231,14 +231,110 @@ def test_discs_that_cannot_pass_stay_in_their_file():
     assert np.median(flown) == pytest.approx(1, rel=1e-9)
 
 
+# Long files -------------------------------------------------------------------------------------
+
+
+def test_the_density_of_points_is_that_of_an_ideal_gas():
+    """Discs of no size have S = 1; with two components of velocity c² = 2 kT/m at the length ℓ."""
+    found = file.exact_density(1e-3, 3e-4, 1e3)
+    assert found.variance == pytest.approx(1, abs=1e-5)
+    assert found.speed == pytest.approx(math.sqrt(2), abs=1e-5)
+
+
+def test_damped_sound_has_its_limits():
+    """t ≪ 1/γ: sound at constant temperature, S ℓ c t; t ≫ 1/γ: F √t, on a ring that is long."""
+    scene, variance = Scene(768.0, 1.0, 0.28, discs=1024, periodic="x"), 0.1
+    speed = file.thermal_speed(scene)
+    early = file.damped(scene, variance, 1e-6 * speed, 3 / speed)
+    assert early == pytest.approx(math.sqrt(variance) * 0.75 * 3, rel=0.03)
+    time, rate = 256 / speed, 16 * speed
+    factor = 2 * 0.75 * math.sqrt(variance * speed**2 / (math.pi * rate))
+    assert file.damped(scene, variance, rate, time) == pytest.approx(
+        factor * math.sqrt(time), rel=0.05
+    )
+
+
+def test_sound_comes_back_around_the_ring():
+    scene, density = Scene(96.0, 1.0, 0.28, discs=128, periodic="x"), file.Density(0.1, 4.5)
+    around = scene.width / (density.speed * file.thermal_speed(scene))
+    assert file.sound(scene, density, around) == pytest.approx(0, abs=1e-9)
+    early = 0.01 * around
+    slope = file.thermal_speed(scene) * 0.75 / density.speed
+    assert file.sound(scene, density, early) == pytest.approx(0.99 * slope * early)
+
+
+def test_order_changes_by_exchanges_alone():
+    """Three discs on a ring of 3: all go around once; then the first two change places."""
+    places = np.array([[0.5, 1.5, 2.5], [1.5, 2.5, 3.5], [3.5, 4.5, 5.5], [4.6, 4.5, 5.5]])
+    places = places[:, :, None]
+    numbers = file.order(places, 3.0)
+    assert numbers[:, :, 0].tolist() == [[0, 1, 2]] * 3 + [[1, 0, 2]]
+    found = file.in_order(places, numbers, 3.0)
+    np.testing.assert_allclose(found[:3], places[:3])
+    np.testing.assert_allclose(found[3, :, 0], [4.5, 4.6, 5.5])
+    (walk,) = file.squares(numbers, [1])
+    assert walk == pytest.approx([2 / 9])
+
+
+def test_kicks_keep_energy_and_momentum_and_forget_velocities():
+    """The correlation of velocities falls as exp(−γt): five of its standard errors."""
+    scene = Scene(12.0, 1.0, 0.05, discs=16, periodic="x")
+    states = file.initial.states(scene, 512, 1)
+    kicked = states.copy()
+    file.kick(file.open_stream(np.uint64(2), 0), kicked)
+    np.testing.assert_array_equal(kicked[:32], states[:32])
+    u, v = kicked[32:48], kicked[48:]
+    np.testing.assert_allclose((u**2 + v**2).sum(axis=0), 1, rtol=1e-12)
+    assert np.abs(u.sum(axis=0)).max() < 1e-12
+    common = (kicked[32:] * states[32:]).sum(axis=0)
+    assert abs(common.mean()) < 5 * common.std() / math.sqrt(common.size)
+
+
+def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
+    """F and, where discs pass, D: within five standard errors of theory and of Monte Carlo."""
+    for name, value in {
+        "LONG_FILE": 64, "LONG_REPLICAS": 24, "OPEN": (4,), "RECORDS": 96, "FILE_SAMPLES": 2**17,
+    }.items():  # fmt: skip
+        monkeypatch.setattr(measure, name, value)
+    rows = list(measure.in_long_file("long", BOX, 1))
+    judged = [row for row in rows if row.get("z") is not None]
+    assert {row["quantity"] for row in judged} == {"single_file"}
+    assert len(judged) == 2
+    assert all(abs(row["z"]) < 5 and row["stderr"] < 0.2 * row["reference"] for row in judged)
+    # Hops of smooth discs know little of each other; kicks turn some of them back.
+    smooth, kicked = (row for row in rows if row["quantity"] == "diffusion")
+    assert abs(smooth["estimate"] - 1) < 5 * smooth["stderr"] < 0.5
+    assert kicked["estimate"] < smooth["estimate"]
+    # Blocked: no exchange, so that discs and places move alike.
+    moved, place = (
+        [r["estimate"] for r in rows if r["quantity"] == q and r["distance"] < 0]
+        for q in ("displacement", "file")
+    )
+    assert moved == pytest.approx(place, rel=1e-9)
+    (bulk,) = (row for row in rows if row["quantity"] == "density")
+    assert bulk["stderr"] < 0.2 * bulk["estimate"]
+
+
+def test_the_measured_density_is_exact_in_an_ordered_channel():
+    """At r = 0.28: five standard errors."""
+    scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
+    places = file.initial.states(scene, 1200, 1)[None, :32]
+    found = file.measured_density(scene, places)
+    due = file.exact_density(1.0, 0.28, 0.75).variance
+    assert found.stderr < 0.06 * due
+    assert abs(found.value - due) < 5 * found.stderr
+
+
 def joined(name, box, inertias=(0.5,)):
     """Return the rows of all parts that there are for a box."""
     own, rows = {"name": name, "box": box, "events": 2**18, "seed": 1}, {}
     rows["near_threshold"] = Passages.part(part="near_threshold", inertias=inertias, **own)
     for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
         rows[part] = Passages.part(part=part, **own)
-    alone = {part: Passages.part(part=part, seed=1) for part in measure.WITHOUT_EVENTS}
-    return Passages.rows(rows | alone)
+    if box.fits(0.28 * box.height):
+        rows["in_long_file"] = Passages.part(part="in_long_file", name=name, box=box, seed=1)
+    alone = ("on_lattice", "in_the_limit")
+    return Passages.rows(rows | {part: Passages.part(part=part, seed=1) for part in alone})
 
 
 @pytest.fixture
@@ -248,6 +344,7 @@ def small(monkeypatch):
         "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
         "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
         "LIMIT_BLOCKS": 4, "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
+        "LONG_FILE": 24, "LONG_REPLICAS": 8, "OPEN": (3,), "RECORDS": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
 
@@ -263,8 +360,8 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     by_quantity = {row["quantity"] for row in rows}
     assert by_quantity == {
         "correlation", "coefficient", "passage_time", "plateau", "slope", "exponent",
-        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file",
-        "amplitude",
+        "passage_exponent", "last_exponent", "rate", "diffusion", "single_file", "density",
+        "displacement", "file", "order", "amplitude",
     }  # fmt: skip
     # Nothing but the passages tells time between passages from time between hops.
     times = [row for row in rows if row["quantity"] == "passage_time"]
@@ -286,9 +383,23 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         assert far / near == pytest.approx(2 ** row["estimate"])
     with style.context():
         _, collapse, _, between, _ = figure.draw(BOX, {"passages": rows}).axes
-        ring = figure_diffusion.draw(BOX, {"passages": rows}).axes[0]
+        ring, _, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
     names = [text.get_text() for text in ring.get_legend().get_texts()]
-    assert "4 smooth discs" in names
+    assert {"4 smooth discs", "24 with kicks"} <= {*names}
+    # Displacements in units of ℓ², at times in units of h and the thermal speed.
+    shown = {one.get_label(): one.lines[0].get_data() for one in moved.containers}
+    for friction, distance, name in ((None, -0.12, "smooth, blocked"), (1, 1 / 8, "kicks, open")):
+        due = [
+            (row["time"] / math.sqrt(2 * 24 - 1), row["estimate"]) for row in rows
+            if row["quantity"] == "displacement" and (row["friction"] is None) == (friction is None)
+            and row["distance"] == pytest.approx(distance)
+        ]  # fmt: skip
+        np.testing.assert_allclose(shown[name], np.transpose(due))
+    (files,) = collapse_of_files.containers
+    s, x = files.lines[0].get_data()
+    assert len(s) == len(measure.LAGS)
+    (line,) = (one for one in collapse_of_files.lines if len(one.get_xdata()) == 60)
+    np.testing.assert_allclose(line.get_ydata() - line.get_xdata(), np.sqrt(line.get_xdata()))
     # At h/4 of 1.5 × 1 the range is 1.5 − 2r, and the neck has the room 1 − 4r.
     (points,) = [one for one in collapse.containers if one.get_label().endswith("$h/4$")]
     for x, y in zip(*points.lines[0].get_data(), strict=True):

@@ -155,6 +155,6 @@ if MAIN:
             FILES.study("long_runs"),
 
     rule more_discs:
-        """Mean times of three, four and eight discs."""
+        """Mean times of three to 64 discs."""
         input:
             FILES.study("more_discs"),

@@ -22,16 +22,31 @@ from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
 
 #: Numbers of discs, and radii: dilute, dense with both hops, and a channel of ordered discs.
-DISCS, RADII = (2, 3, 4, 8), (0.1, 0.2, 0.28)
+DISCS, RADII = (2, 3, 4, 8, 64), (0.1, 0.2, 0.28)
+
+#: Numbers of discs whose initial states take longer than their motion, and their replicas: fewer
+#: ones, which are followed for longer. They have an eighth of the events, and no insertions, which
+#: take too long.
+FEWER, SHARE = {64: 48}, 1 / 8
+
+
+def counted(scene, events, seed):
+    """Return (sums, products, replicas, duration) of about ``events``."""
+    if replicas := FEWER.get(scene.discs):
+        duration = many.replica_duration(scene, SHARE * events / replicas)
+        counts = kernels.run_blocks(scene, seed, 0, 1, duration, replicas=replicas)
+        return *counts, replicas, duration
+    duration = many.replica_duration(scene)
+    first = kernels.run_blocks(scene, seed, 0, 1, duration)
+    blocks = max(2, math.ceil(events / many.simulated_events(first[0])))
+    rest = kernels.run_blocks(scene, seed, 1, blocks, duration)
+    sums, products = (one + more for one, more in zip(first, rest, strict=True))
+    return sums, products, blocks * REPLICAS, duration
 
 
 def dynamics_rates(scene, events, seed):
     """Return ({class: rate}, {class: error}, error of the virial sum) from about ``events``."""
-    duration = many.replica_duration(scene)
-    each = many.simulated_events(kernels.run_blocks(scene, seed, 0, 1, duration)[0])
-    blocks = max(2, math.ceil(events / each))
-    sums, products = kernels.run_blocks(scene, seed, 0, blocks, duration)
-    replicas = blocks * REPLICAS
+    sums, products, replicas, duration = counted(scene, events, seed)
     second = np.triu(products) + np.triu(products, 1).T
     covariance = (second / replicas - np.outer(sums, sums) / replicas**2) / replicas / duration**2
     weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
@@ -64,31 +79,37 @@ def rows(events, samples, seed, discs=DISCS, radii=RADII):
 def _of_scene(scene, events, samples, seed):
     known = exact.measures(scene)
     true = rates(scene, known) if known else {}
-    sampled, spread = (rates(scene, part) for part in measures.sample(scene, samples, seed))
-    counted, errors, virial_error = dynamics_rates(scene, events, seed)
+    has_samples = scene.discs not in FEWER
+    sampled, spread = (
+        (rates(scene, part) for part in measures.sample(scene, samples, seed))
+        if has_samples
+        else ({}, {})
+    )
+    found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
         "theory": exact.method(scene) or "none", "states": initial.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))
-        estimate, estimate_error = _time(scene, event, sampled[event], spread[event])
-        simulated, error = _time(scene, event, counted[event], errors[event])
+        estimate, estimate_error = _time(scene, event, sampled.get(event), spread.get(event))
+        simulated, error = _time(scene, event, found[event], errors[event])
         reference, uncertain = (time, 0.0) if known else (estimate, estimate_error)
         z = (
             None
             if simulated is None or reference is None
             else _deviate(simulated, error, reference, uncertain)
         )
-        sampled_z = _deviate(estimate, estimate_error, time) if time else None
+        sampled_z = _deviate(estimate, estimate_error, time) if time and estimate else None
         yield start | {
             "event": event, "exact": time, "monte_carlo": estimate,
             "monte_carlo_stderr": estimate_error, "monte_carlo_z": sampled_z, "dynamics": simulated,
             "dynamics_stderr": error, "z": z,
         }  # fmt: skip
-    total = virial_sum(scene, counted)
+    total = virial_sum(scene, found)
     yield start | {
-        "event": "virial", "exact": 1.0, "monte_carlo": virial_sum(scene, sampled),
+        "event": "virial", "exact": 1.0,
+        "monte_carlo": virial_sum(scene, sampled) if has_samples else None,
         "monte_carlo_stderr": None, "monte_carlo_z": None, "dynamics": total,
         "dynamics_stderr": virial_error, "z": _deviate(total, virial_error, 1.0),
     }  # fmt: skip

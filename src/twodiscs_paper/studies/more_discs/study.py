@@ -17,7 +17,7 @@ def _parameters(configuration):
 STUDY = Study(
     "more_discs",
     families=("many",),
-    builds="mean times of three, four and eight discs",
+    builds="mean times of three to 64 discs",
     tables=(MoreDiscs,),
     seconds=10.0,
     order=8,

@@ -30,7 +30,7 @@ class MoreDiscs(Table):
     exact: Column(float, "time, 1 for virial")
     """exact mean time over all initial conditions; empty if none is known"""
     monte_carlo: AS_EXACT
-    """mean time from volume and area by insertion"""
+    """mean time from volume and area by insertion; empty for 64 discs, for which it takes long"""
     monte_carlo_stderr: AS_EXACT
     """its standard error"""
     monte_carlo_z: NUMBER

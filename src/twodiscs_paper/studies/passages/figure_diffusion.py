@@ -1,7 +1,24 @@
-"""How fast discs diffuse by hops: on a ring, and in a single file."""
+"""How fast discs diffuse by hops: on a ring, in long files, and in a single file on a lattice."""
+
+import math
+
+import numpy as np
 
 from twodiscs.figures.kit import panels
-from twodiscs.figures.kit.style import BLACK, GREEN, PURPLE, SKY, new_figure
+from twodiscs.figures.kit.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+)
+from twodiscs.model.scene import Scene
+from twodiscs_paper.studies.passages import file
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,
@@ -12,11 +29,18 @@ from twodiscs_paper.studies.passages.figure import (
 )
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
 
-#: Inches: heights of the panels of the ring, its residuals and the lattice; the gap, the margin.
-RING, RESIDUALS, LATTICE, GAP, TOP = 1.9, 0.75, 1.2, 0.42, 0.22
+#: Inches: the width of the figure, heights of the panels of the ring, its residuals and the
+#: lattice, the gap, the margin above.
+WIDTH, RING, RESIDUALS, LATTICE, GAP, TOP = 7.0, 1.9, 0.8, 1.15, 0.42, 0.22
 
-#: Files of more than two discs.
+#: Short files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
+
+#: Long files, smooth and with kicks.
+SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (ORANGE, "v")
+
+#: Looks of distances in a collapse.
+OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
 
 #: The line of a random walk, at 1.
 RANDOM_WALK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2))}
@@ -25,6 +49,7 @@ RANDOM_WALK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2))}
 RESIDUAL_LOOKS = {
     "rate": (GREEN, "^", "rate of hops"),
     "diffusion": (PURPLE, "D", "$D$, both methods"),
+    "single_file": (ORANGE, "v", "$F$"),
 }
 
 
@@ -33,11 +58,15 @@ def draw(box, tables):
     rows = tables["passages"]
     middle = panels.BOTTOM + LATTICE + GAP
     upper = middle + RESIDUALS + panels.GAP
-    figure = new_figure(upper + RING + TOP)
+    figure = new_figure(upper + RING + TOP, WIDTH)
     ring = panels.add_panel(figure, upper, RING, name="ring")
     lower = panels.add_panel(figure, middle, RESIDUALS, name="residuals")
     lattice = panels.add_panel(figure, panels.BOTTOM, LATTICE, name="lattice")
-    for axes, name in zip(figure.axes, "abc", strict=True):
+    half = (upper + RING - panels.BOTTOM - GAP) / 2
+    right = WIDTH - COLUMN + panels.LEFT
+    moved = panels.add_panel(figure, panels.BOTTOM + half + GAP, half, right, name="moved")
+    collapse = panels.add_panel(figure, panels.BOTTOM, half, right, name="collapse")
+    for axes, name in zip(figure.axes, "abcde", strict=True):
         panels.letter(axes, name)
     if not rows:
         panels.name_box(ring, box, ": no hop becomes blocked")
@@ -47,6 +76,9 @@ def draw(box, tables):
     panels.name_box(ring, first_scene(rows, box)[0])
     _ring(ring, rows)
     residuals(lower, rows, RESIDUAL_LOOKS)
+    long_files = [row for row in rows if row["quantity"] in LONG]
+    _moved(moved, long_files)
+    _collapse(collapse, rows)
     swaps = select(rows, quantity="diffusion", method="lattice")
     x, y, error = columns(swaps, "swap", "estimate", "stderr")
     points(lattice, x, y, error, (GREEN, "^"), "single file on a lattice")
@@ -66,14 +98,20 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    Diffusion by hops. (a) Coefficient D of diffusion of two discs on a ring, divided by its value
-    for a random walk with ν hops per time in either direction, each by ℓ (dashed): by correlations
-    of hops (open symbols) and by displacements (dots); and the same for discs in a file of four and
-    of eight, by displacements; at distances δ = (r_c − r)/r_c from the radius r_c at which hops
-    become blocked.
-    (b) Residuals z in standard errors, from the exact rate or between two estimators. (c) The same
-    ratio for a tagged particle of a single file on a lattice, whose neighbours swap with the
-    probability p. Error bars are one standard error.
+    Diffusion by hops. (a) Coefficient D of diffusion on a ring, divided by its value for a random
+    walk with ν hops of a disc per time in either direction, each by ℓ (dashed): of two discs by
+    correlations of hops (open symbols) and by displacements (dots), of four and eight discs by
+    displacements, and of long files by the order of the discs; at distances δ = (r_c − r)/r_c from
+    the radius r_c at which hops become blocked. With kicks, all velocities are drawn anew at a rate
+    γ. (b) Residuals z in standard errors, from the exact rate, between two estimators, or of F from
+    theory. (c) A single file on a lattice, whose neighbours swap with the probability p: the same
+    ratio. (d) Mean square displacement of a tagged disc in a long file on a ring, blocked
+    (r = 0.28 h, full symbols) and open (δ = 1/8), in units of ℓ² and of the thermal speed. Black
+    lines are theory of the blocked files, without a free parameter: sound, until it has gone around
+    half of the ring, and damped sound. Grey
+    lines add what hops do to the file of places, as the order of the discs has it. (e) Files with
+    kicks: displacements over F√t×, at times over t× = (F/2D)², where single file and hops
+    contribute equally. The line is √s + s. Error bars are one standard error.
     """
 
 
@@ -94,7 +132,94 @@ def _ring(axes, rows):
         if own:
             x, y, error = columns(own, "distance", "estimate", "stderr")
             points(axes, x, y, error, look, f"{discs} smooth discs", True)
+    for kicked, look in ((False, SMOOTH_FILE), (True, KICKED_FILE)):
+        own = [
+            row for row in select(rows, quantity="diffusion", method="order")
+            if (row["friction"] is not None) == kicked
+        ]  # fmt: skip
+        if own:
+            x, y, error = columns(own, "distance", "estimate", "stderr")
+            name = f"{own[0]['discs']} {'with kicks' if kicked else 'smooth discs'}"
+            points(axes, x, y, error, look, name)
     axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
     axes.axhline(1, **RANDOM_WALK)
     axes.set(xscale="log", ylim=(0, None), ylabel=r"diffusion $D/(\nu\,\ell^2)$")
-    axes.legend(loc="center right")
+    axes.legend(loc="center left", bbox_to_anchor=(0, 0.45), fontsize=6.5)
+
+
+#: Quantities of long files over the time.
+LONG = ("displacement", "file", "order")
+
+
+def _thermal(row):
+    """Return the thermal speed over h of the discs of a ``row`` on a ring."""
+    return 1 / math.sqrt(2 * row["discs"] - 1) / row["height"]
+
+
+def _of(rows, quantity, **wanted):
+    """Return (times in units of h over the thermal speed, values, errors) of a ``quantity``."""
+    own = select(rows, quantity=quantity, **wanted)
+    time, value, error = columns(own, "time", "estimate", "stderr")
+    return time * _thermal(own[0]), value, error
+
+
+def _moved(axes, rows):
+    """Draw displacements in long files, blocked and at the farthest open distance."""
+    shown = [
+        distance for some in ((r for r in rows if (r["distance"] > 0) == sign) for sign in (0, 1))
+        for distance in [max((r["distance"] for r in some), default=None)] if distance is not None
+    ]  # fmt: skip
+    for distance in shown:
+        here = select(rows, distance=distance)
+        blocked = distance < 0
+        for friction in dict.fromkeys(row["friction"] for row in here):
+            own = select(here, friction=friction)
+            look = SMOOTH_FILE if friction is None else KICKED_FILE
+            kind = "smooth" if friction is None else "kicks"
+            x, y, error = _of(own, "displacement")
+            name = f"{kind}, {'blocked' if blocked else 'open'}"
+            points(axes, x, y, error, look, name, blocked)
+            if blocked:
+                scene = Scene(
+                    own[0]["width"], own[0]["height"], own[0]["radius"], discs=own[0]["discs"],
+                    periodic="x",
+                )  # fmt: skip
+                time = np.geomspace(x[0], x[-1], 120)
+                due = np.array([file.law(scene, friction, t / _thermal(own[0])) for t in time])
+                # Sound that has gone around half of the ring brings the discs back.
+                rises = np.append(np.diff(due) > 0, True).cumprod() > 0
+                time, due = time[rises], due[rises]
+                axes.plot(time, due, color=BLACK, lw=0.8, zorder=5)
+            else:
+                _, place, _ = _of(own, "file")
+                _, walk, _ = _of(own, "order")
+                axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)
+    axes.set(xscale="log", yscale="log", xlabel=r"time $t\,\sqrt{kT/m}\,/h$")
+    axes.set_ylabel(r"displacement $\langle x^2\rangle/\ell^2$")
+    axes.xaxis.set_major_formatter("{x:g}")
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left", fontsize=6.5)
+
+
+def _collapse(axes, rows):
+    """Draw displacements with kicks over F √t×, against t/t×."""
+    looks = iter(OPEN)
+    for row in select(rows, quantity="diffusion", method="order"):
+        if row["friction"] is None:
+            continue
+        own = {name: row[name] for name in ("scene", "distance", "friction")}
+        (single,) = select(rows, quantity="single_file", **own)
+        (rate,) = select(rows, quantity="rate", method="insertion", distance=row["distance"])
+        d, f = row["estimate"] * rate["estimate"] / 2, single["estimate"]
+        crossover = (f / (2 * d)) ** 2
+        moved = select(rows, quantity="displacement", **own)
+        time, value, error = columns(moved, "time", "estimate", "stderr")
+        unit = f * math.sqrt(crossover)
+        name = rf"$\delta=1/{round(1 / row['distance'])}$"
+        points(axes, time / crossover, value / unit, error / unit, next(looks), name)
+    s = np.geomspace(1e-3, 1e2, 60)
+    axes.plot(s, np.sqrt(s) + s, color=BLACK, lw=0.8, zorder=5)
+    axes.set(xscale="log", yscale="log", xlabel=r"time $t/t_\times$")
+    axes.set_ylabel(r"$\langle x^2\rangle/F\sqrt{t_\times}$")
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left")

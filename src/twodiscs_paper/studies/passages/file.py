@@ -1,20 +1,35 @@
-"""A file of N smooth discs on a ring: how far a tagged disc goes, and how often discs hop.
+"""A file of N discs on a ring: how far a tagged disc goes, and how often discs hop.
 
 The ring has the same length per disc, ℓ, as the ring of two discs. In the frame of zero momentum a
 disc moves along the ring by hops alone, by ℓ at each hop. If hops were uncorrelated, a disc with ν
 hops per time in either direction would have D = ν ℓ².
+
+Before that, discs move with the density of the file. Its mode of the wave number q has the
+correlation C(q, t), and S is the relative variance of the number of discs in a long piece. Then
+
+    ⟨x²⟩ = (2 S ℓ/L) Σ over q ≠ 0 of (1 − C(q, t))/q²
+
+on a ring of the length L. Smooth discs conserve momentum. Their density moves as sound of the speed
+c, and ⟨x²⟩ = kT ℓ/(m c) t (1 − c t/L) without the part of C that does not move, the heat. Kicks
+that draw all velocities anew at a rate γ damp the sound at constant temperature: C″ + γ C′ +
+(kT/(m S)) q² C = 0. On a long ring ⟨x²⟩ becomes F √t, with F = 2 ℓ √(S kT/(π m γ)).
 """
 
 import math
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES
+from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many.lockstep import N, advance, find_events, law_of, nearest
 from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.streams import open_stream, uniform
+from twodiscs.theory.many import channel
 from twodiscs.theory.many.rates import rates
 
 
@@ -90,3 +105,171 @@ def sampled_rate(scene, samples, seed):
     )
     share = 2 / scene.discs  # two discs take part in a hop
     return Estimate(share * found, share * error, check_integer("samples", samples))
+
+
+# Long files -------------------------------------------------------------------------------------
+
+
+#: The waves that S is taken from.
+WAVES = 8
+
+
+class Density(NamedTuple):
+    """The density of a file: S, and the speed c of sound over the thermal speed √(kT/m)."""
+
+    variance: float
+    speed: float | None
+
+
+def exact_density(height, radius, per_disc):
+    """Return the ``Density`` of an ordered channel with a length ``per_disc``, by theory.
+
+    With the force p over kT and the length ℓ(p) of the channel for each disc, S = −ℓ′(p)/ℓ². At
+    constant entropy the discs, with two components of velocity each, have c² = ℓ² p² + 1/S.
+    """
+
+    def length(log_force):
+        return channel.limit(height, radius, math.exp(log_force)).length
+
+    low, high = -math.log(per_disc) - 1, 20.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if length(middle) > per_disc else (low, middle)
+    force, step = math.exp(low), 1e-4
+    slope = (length(low + step) - length(low - step)) / (2 * step * force)
+    variance = -slope / per_disc**2
+    return Density(variance, math.sqrt((per_disc * force) ** 2 + 1 / variance))
+
+
+def measured_density(scene, places):
+    """Return S as an ``Estimate``, from ``places`` (times, N, replicas) on a ring.
+
+    S is the limit for long waves. The variances of the ``WAVES`` longest ones differ from it by a
+    term in q², which is fitted.
+    """
+    numbers = np.arange(1, WAVES + 1)
+    waves = [np.exp(2j * math.pi / scene.width * k * places).sum(axis=1) for k in numbers]
+    sizes = [(np.abs(wave) ** 2).mean(axis=0) / scene.discs for wave in waves]
+    return mean_of(np.polyfit(numbers**2, sizes, 1)[1])
+
+
+def thermal_speed(scene):
+    """Return √(kT/m) at the total energy 1/2, which all components of velocity share."""
+    return 1 / math.sqrt(scene.velocity_components)
+
+
+def sound(scene, density, time):
+    """Return ⟨x²⟩ of smooth discs at a ``time``, from sound alone."""
+    around = density.speed * thermal_speed(scene) * time / scene.width % 1
+    size = scene.width**2 / scene.discs / density.speed**2
+    return size * around * (1 - around)
+
+
+def damped(scene, variance, friction, time):
+    """Return ⟨x²⟩ at a ``time`` with kicks at the rate ``friction``, from waves of N discs."""
+    n = scene.discs
+    q = 2 * math.pi / scene.width * np.arange(1, n // 2 + 1)
+    # The two solutions exp(−s t) of the equation for C.
+    root = np.sqrt(friction**2 / 4 - (thermal_speed(scene) * q) ** 2 / variance + 0j)
+    fast, slow = friction / 2 + root, friction / 2 - root
+    correlation = (fast * np.exp(-slow * time) - slow * np.exp(-fast * time)) / (2 * root)
+    parts = (1 - correlation.real) / q**2
+    parts[-1] /= 1 + (n % 2 == 0)
+    return 4 * variance / n * float(parts.sum())
+
+
+@lru_cache(maxsize=8)
+def _exact_density(scene):
+    return exact_density(scene.height, scene.radius, scene.width / scene.discs)
+
+
+def law(scene, friction, time, variance=None):
+    """Return ⟨x²⟩/ℓ² at a ``time`` by theory, with kicks at the rate ``friction`` or None.
+
+    Without a ``variance`` S the discs must be in an ordered channel, whose theory is exact. Smooth
+    discs with a ``variance`` have no law: the speed of sound is not known.
+    """
+    per_disc = scene.width / scene.discs
+    if friction is None:
+        moved = sound(scene, _exact_density(scene), time)
+    else:
+        moved = damped(scene, variance or _exact_density(scene).variance, friction, time)
+    return moved / per_disc**2
+
+
+@compiled
+def kick(stream, states):
+    """Draw the velocities of all columns of ``states`` (4N, number) on a ring anew."""
+    n = states.shape[0] // 4
+    velocities, cuts = np.empty((2, n)), np.empty(n - 1)
+    for k in range(states.shape[1]):
+        initial.draw_velocities(stream, velocities, cuts, 1.0)
+        for i in range(n):
+            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+
+
+def _wait(stream, friction):
+    # Rounded, so that it is the same on every machine.
+    return float(np.float32(-math.log(1 - uniform(stream)) / friction))
+
+
+def recorded(scene, step, number, replicas, seed, friction=None):
+    """Return the places of discs along a ring at ``number`` + 1 times, ``step`` apart.
+
+    They have the shape (times, N, replicas), and go on beyond the ends of the ring. If ``friction``
+    is given, all velocities are drawn anew at the times of a Poisson process of this rate.
+    """
+    n = scene.discs
+    states = initial.states(scene, replicas, seed)
+    places = np.zeros((number + 1, n, replicas))
+    # Without kicks all replicas go together.
+    width = replicas if friction is None else 1
+    for first in range(0, replicas, width):
+        some, laps = states[:, first : first + width].copy(), np.zeros((n, width))
+        stream = open_stream(~np.uint64(seed), first)
+        wait = math.inf if friction is None else _wait(stream, friction)
+        places[0, :, first : first + width] = some[:n]
+        for k in range(1, number + 1):
+            left = step
+            while wait < left:
+                kernels.advance_scene(scene, some, laps, wait)
+                kick(stream, some)
+                left, wait = left - wait, _wait(stream, friction)
+            kernels.advance_scene(scene, some, laps, left)
+            wait -= left
+            places[k, :, first : first + width] = some[:n] + scene.width * laps
+    return places
+
+
+def order(places, length):
+    """Return the number of each disc in the order along a ring, not folded, at each time.
+
+    Exchanges of neighbours change it. The mean over all discs is that at the first time.
+    """
+    laps = np.floor(places / length)
+    ranks = np.argsort(np.argsort(places - laps * length, axis=1), axis=1)
+    numbers = (ranks + places.shape[1] * laps).astype(np.int64)
+    totals = numbers.sum(axis=1, keepdims=True)
+    # A disc that passes the seam shifts all numbers by one.
+    return numbers - (totals - totals[0]) // places.shape[1]
+
+
+def in_order(places, numbers, length):
+    """Return the places of what is first, second … in the ``order``, instead of those of discs."""
+    n, found = places.shape[1], np.empty_like(places)
+    np.put_along_axis(found, numbers % n, places - numbers // n * length, axis=1)
+    return found
+
+
+def squares(values, lags):
+    """Return the mean squares of differences of ``values`` (times, N, replicas), (lags, replicas).
+
+    A lag is a number of times. Means are over discs and all pairs of times, and all discs together
+    rest.
+    """
+    found = []
+    for lag in lags:
+        moved = values[lag:] - values[:-lag]
+        moved = moved - moved.mean(axis=1, keepdims=True)
+        found.append((moved**2).mean(axis=(0, 1)))
+    return np.array(found)

@@ -37,6 +37,7 @@ from twodiscs.points import strata
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages import exclusion, file, limit
+from twodiscs_paper.studies.passages.study import BLOCKED
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
@@ -77,6 +78,18 @@ PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 #: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
 #: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
 FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**20
+
+#: Long files: the number of discs, and of replicas; halvings of the distance below h/4 where discs
+#: can pass; the rate of kicks, and the time between records, with the thermal speed and h as units;
+#: the number of records, and the lags in records.
+LONG_FILE, LONG_REPLICAS, OPEN = 128, 64, range(3, 6)
+FRICTION, STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
+
+#: The lags between which displacements give F, and those between which they give D.
+SINGLE, HOPPED = (8, 32), (16, 32)
+
+#: The number of discs on the ring whose rate of hops is sampled.
+SAMPLED_FILE = 8
 
 #: Probabilities of swaps on the lattice; numbers of rings for runs longer than ``LONG`` and for
 #: shorter runs.
@@ -345,6 +358,85 @@ def one_file(name, box, discs, events, seed):
         yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
 
 
+def one_long_file(name, box, halvings, friction, known, seed):
+    """Yield the rows of one long file at a distance below h/4, or blocked if ``halvings`` is None.
+
+    If ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
+    file of smooth discs has rows of the ``density`` and of the ``rate`` of hops, which do not
+    depend on friction. With friction they are ``known``, {quantity: ``Estimate``}.
+    """
+    limit, per_disc = box.height / 4, box.width / 2
+    radius = BLOCKED * box.height if halvings is None else radius_at(limit, halvings)
+    scene = Scene(per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x")
+    unit = box.height / file.thermal_speed(scene)
+    rate = None if friction is None else friction / unit
+    start = {
+        "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
+        "event": "horizontal_hop", "discs": scene.discs, "radius": radius,
+        "distance": 1 - radius / limit, "friction": rate,
+    }  # fmt: skip
+
+    def stream(what):
+        return seed_of(scene, "horizontal_hop", name, seed, f"long file {friction} {what}")
+
+    def make_row(quantity, method, estimate, lag=None, **more):
+        time = None if lag is None else lag * STEP * unit
+        row = start | {"quantity": quantity, "method": method, "time": time} | more
+        return row | {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
+
+    places = file.recorded(scene, STEP * unit, RECORDS, LONG_REPLICAS, stream("states"), rate)
+    numbers = file.order(places, scene.width)
+    ordered = file.in_order(places, numbers, scene.width)
+    moved, whole_file = (file.squares(x, LAGS) / per_disc**2 for x in (places, ordered))
+    steps = file.squares(numbers, LAGS)
+
+    variance = None
+    if halvings is not None:
+        variance = known.get("density")
+        if variance is None:
+            variance = file.measured_density(scene, places)
+            yield make_row("density", "states", variance)
+
+    def law(lag):
+        if rate is None and variance:
+            return None
+        return file.law(scene, rate, lag * STEP * unit, variance and variance.value)
+
+    for k, lag in enumerate(LAGS):
+        yield make_row("displacement", "states", mean_of(moved[k]), lag)
+        if halvings is not None:
+            yield make_row("order", "states", mean_of(steps[k]), lag)
+        yield make_row("file", "states", mean_of(whole_file[k]), lag, reference=law(lag))
+    if rate is not None:
+        early, late = (LAGS.index(lag) for lag in SINGLE)
+        root = math.sqrt(SINGLE[0] * STEP * unit)
+        found = mean_of((whole_file[late] - whole_file[early]) / root)
+        due = (law(SINGLE[1]) - law(SINGLE[0])) / root
+        # F is ∝ √S.
+        error = due * variance.stderr / variance.value / 2 if variance else 0.0
+        z = (found.value - due) / math.hypot(found.stderr, error)
+        yield make_row(
+            "single_file", "states", found, SINGLE[1], reference=due,
+            reference_stderr=error or None, z=student_deviate(z, found.n - 1), test="normal",
+        )  # fmt: skip
+    if halvings is not None:
+        hops = known.get("rate")
+        if hops is None:
+            ring = Scene(
+                per_disc * SAMPLED_FILE, box.height, radius, discs=SAMPLED_FILE, periodic="x"
+            )
+            sampled = file.sampled_rate(ring, FILE_SAMPLES, stream("rate"))
+            # Rates are ∝ the thermal speed.
+            slower = file.thermal_speed(scene) / file.thermal_speed(ring)
+            hops = Estimate(slower * sampled.value, slower * sampled.stderr, sampled.n)
+            yield make_row("rate", "insertion", hops)
+        early, late = (LAGS.index(lag) for lag in HOPPED)
+        walked = mean_of((steps[late] - steps[early]) / (HOPPED[1] - HOPPED[0]) / (STEP * unit))
+        ratio = walked.value / hops.value
+        error = ratio * math.hypot(walked.stderr / walked.value, hops.stderr / hops.value)
+        yield make_row("diffusion", "order", Estimate(ratio, error, walked.n), HOPPED[1])
+
+
 def on_lattice(seed):
     """Yield the rows of the single file on a lattice."""
     start = {"event": "swap", "method": "lattice"}
@@ -407,10 +499,24 @@ def in_file(name, box, events, seed):
         yield from one_file(name, box, discs, 2 * events, seed)
 
 
-#: The parts of passages.csv, and those of them that no budget of events limits.
-WITHOUT_EVENTS = ("on_lattice", "in_the_limit")
-PARTS = (near_threshold, on_ring, with_friction, in_file, on_lattice, in_the_limit)
+def in_long_file(name, box, seed):
+    """Yield the rows of long files on a ring, blocked and open, smooth and with kicks."""
+    for halvings in (None, *OPEN):
+        found = {}
+        for friction in (None, FRICTION):
+            for row in one_long_file(name, box, halvings, friction, {**found}, seed):
+                if row["quantity"] in ("density", "rate"):
+                    parts = (row[part] for part in ("estimate", "stderr", "replicas"))
+                    found[row["quantity"]] = Estimate(*parts)
+                yield row
+
+
+#: The parts of passages.csv, and those of them whose work does not depend on the number of events.
+PARTS = (
+    near_threshold, on_ring, with_friction, in_file, in_long_file, on_lattice, in_the_limit,
+)  # fmt: skip
 PARTS = {part.__name__: part for part in PARTS}
+FIXED = ("in_long_file", "on_lattice", "in_the_limit")
 
 
 def rows(part, seed, events=1, **given):
@@ -420,6 +526,6 @@ def rows(part, seed, events=1, **given):
     streams, derived from the ``seed``.
     """
     check_integer("seed", seed, 0), check_integer("events", events)
-    if part not in WITHOUT_EVENTS:
+    if part not in FIXED:
         given["events"] = events
     return PARTS[part](seed=seed, **given)

@@ -7,6 +7,9 @@ from twodiscs_paper.study import Study, scaled
 #: Moments of inertia of rough discs, in the first box and in others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
+#: The radius over the height of the box at which discs of a long file cannot pass.
+BLOCKED = 0.28
+
 
 def _parts(configuration):
     """Return {name: parameters} of the parts; each part has its own random streams."""
@@ -20,6 +23,9 @@ def _parts(configuration):
         if first and scene.box.fits(scene.box.height / 4):
             own_parts = ("on_ring", "with_friction", "in_file")
             parts |= {part: {"part": part} | own for part in own_parts}
+        if first and scene.box.fits(BLOCKED * scene.box.height):
+            alone = {"name": scene.name, "box": scene.box.parameters()} | seed
+            parts["in_long_file"] = {"part": "in_long_file"} | alone
     return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
 
 

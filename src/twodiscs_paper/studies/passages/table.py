@@ -29,7 +29,9 @@ class Passages(Table):
     moment_of_inertia: Column(float, "m r²")
     """moment of inertia of rough discs; empty for smooth discs"""
     friction: Column(float, "1/time")
-    """rate of kicks by friction; empty without friction"""
+    """
+    rate γ of kicks, at which all velocities are drawn anew; empty without friction
+    """
     swap: NUMBER
     """probability that neighbours on the lattice swap"""
     exact_mean: TIME
@@ -44,14 +46,19 @@ class Passages(Table):
     of the time between passages, over all distances; local_exponent: the same, from this distance
     and the one before; rate: hops per time, of both of two discs, or
     of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
-    each by ℓ; single_file: F of the mean square displacement F √t; amplitude: c of
-    1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range along the hop
+    each by ℓ; single_file: F of the mean square displacement F √t, over ℓ² in files of discs;
+    density: S, the relative variance of the number of discs in a long piece of a file; in long
+    files, over ℓ²: displacement, the mean square displacement of a tagged disc in the time t; file,
+    that of a place in the order of the discs; order: the mean square of the number of places by
+    which a disc has moved in the order; amplitude: c of 1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width
+    of the neck and A the range along the hop
     """
     method: TEXT
     """
     clusters: odd clusters over hops; hops: initial states on the surface of the hop; states:
-    initial states of the invariant measure; fit: to other rows; lattice: exclusion process;
-    limit: the motion in the limit ε → 0
+    initial states of the invariant measure; order: by the order of the discs in a file; insertion:
+    Monte Carlo for a ring of 8 discs; fit: to other rows; lattice: exclusion process; limit: the
+    motion in the limit ε → 0
     """
     time: TIME
     """t; for clusters, the time without a hop that ends a cluster"""
