@@ -385,6 +385,9 @@ def _ends(name, where, column=ESTIMATE, form=WITH_ERROR, suffix=""):
 
 
 RING = {"method": "hops", "discs": 2}
+KICKED = {"scene": MAIN, "discs": 2, "friction": ..., "quantity": "coefficient"}
+POWERS = KICKED | {"quantity": "local_exponent"}
+ORDER = {"scene": MAIN, "quantity": "diffusion", "method": "order"}
 KAPPA = _near("coefficient")
 PASSAGES = (
     passages("passages", {}, "z", COUNTED),
@@ -409,6 +412,16 @@ PASSAGES = (
         ESTIMATE,
         WITH_ERROR,
     ),
+    passages("friction_rates", KICKED, "friction", RANGE),
+    *(
+        passages(f"friction_kappa_{name}", KICKED, ESTIMATE, WITH_ERROR, (which, "estimate"))
+        for name, which in (("least", "smallest"), ("most", "largest"))
+    ),
+    *(
+        passages(f"friction_power_{name}", POWERS | {"friction": rate}, ESTIMATE, WITH_ERROR, pick)
+        for name, rate, pick in (("diffusive", 160.0, FARTHEST), ("ballistic", 10.0, NEAREST))
+    ),
+    passages("friction_rates_z", KICKED | {"quantity": "rate"}, "z", largest()),
     *_ends("passages_ring_smooth", _near("diffusion", **RING)),
     *_ends("passages_ring", _near("diffusion", **RING), "distance", POWER_OF_TWO, "_distance"),
     *_ends("passages_ring_rough", _near("diffusion", INERTIAS["half"], **RING)),
@@ -425,6 +438,11 @@ PASSAGES = (
         )
         for name, discs in (("four", 4), ("eight", 8))
     ),
+    passages("long_files_discs", ORDER | {"friction": None}, "discs", INTEGER, FARTHEST),
+    *_ends("long_files_smooth", ORDER | {"friction": None}),
+    *_ends("long_files_kicked", ORDER | {"friction": ...}),
+    *_ends("long_files", ORDER | {"friction": None}, "distance", POWER_OF_TWO, "_distance"),
+    passages("long_files_law_z", {"method": "states", "quantity": "single_file"}, "z", largest()),
     passages("passages_lattice_z", LATTICE | {"quantity": "diffusion"}, "z", largest()),
     passages("passages_single_file", LATTICE | {"quantity": "single_file"}, ESTIMATE, WITH_ERROR),
     *(
