@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twodiscs_paper.pipeline import cost
@@ -94,6 +94,7 @@ def test_shards_cover_all_blocks_once(stage):
         assert most == 1 or most * run.block_events * run.cost_ratio <= request.shard_events
 
 
+@settings(max_examples=30)
 @given(st.floats(1e-5, 1e-3), st.floats(1.01, 10))
 def test_a_tighter_accuracy_keeps_the_shards_but_the_last(error, times):
     """They are pieces of one grid: of each part all but the last one stay."""

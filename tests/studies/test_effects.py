@@ -219,8 +219,7 @@ def costs():
 def drawn(rows):
     """The figure of the six scenes, its curves at fewer radii."""
     with style.context(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(curves, "FEWER", 16)
-        patch.setattr(curves, "GEOMETRIC", 4)
+        patch.setattr(curves, "FEWER", 28)
         tables = {
             "effects": rows,
             "effects_cost": costs(),

@@ -328,7 +328,9 @@ def test_the_measured_density_is_exact_in_an_ordered_channel():
 def joined(name, box, inertias=(0.5,)):
     """Return the rows of all parts that there are for a box."""
     own, rows = {"name": name, "box": box, "events": 2**18, "seed": 1}, {}
-    rows["near_threshold"] = Passages.part(part="near_threshold", inertias=inertias, **own)
+    for hop in measure.thresholds(box):
+        some = inertias if hop == [*measure.thresholds(box)][-1] else (0.5,)
+        rows[hop] = Passages.part(part="near_threshold", hop=hop, inertias=some, **own)
     for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
         rows[part] = Passages.part(part=part, **own)
     if box.fits(0.28 * box.height):

@@ -469,16 +469,14 @@ def in_the_limit(seed):
     }  # fmt: skip
 
 
-def near_threshold(name, box, inertias, events, seed):
-    """Yield the rows of all hops of a plain ``Box`` near the radii where they become blocked.
+def near_threshold(name, box, hop, inertias, events, seed):
+    """Yield the rows of a ``hop`` of a plain ``Box`` near the radius where it becomes blocked.
 
-    ``inertias`` are the moments of inertia of rough discs near the last of these radii.
+    ``inertias`` are the moments of inertia of rough discs.
     """
-    limits = thresholds(box)
-    for hop in limits:
-        yield from one_hop(name, box, hop, SMOOTH, None, events, seed)
-        for inertia in inertias if hop == [*limits][-1] else (ONE_INERTIA,):
-            yield from one_hop(name, box, hop, ROUGH, inertia, events, seed)
+    yield from one_hop(name, box, hop, SMOOTH, None, events, seed)
+    for inertia in inertias:
+        yield from one_hop(name, box, hop, ROUGH, inertia, events, seed)
 
 
 def on_ring(name, box, events, seed):

@@ -1,10 +1,12 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
 from twodiscs.figures.catalogue import DYNAMICS, Entry
+from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.passages.table import Passages
 from twodiscs_paper.study import Study, scaled
 
-#: Moments of inertia of rough discs, in the first box and in others.
+#: Moments of inertia of rough discs, for the last hop of the first box and for
+#: all others.
 INERTIAS, OTHERS = [0.1, 0.25, 0.5, 1.0], [0.5]
 
 #: The radius over the height of the box at which discs of a long file cannot pass.
@@ -18,8 +20,11 @@ def _parts(configuration):
     for scene in configuration.plain:
         own = {"name": scene.name, "box": scene.box.parameters()} | events | seed
         first = scene == configuration.main
-        inertias = {"inertias": INERTIAS if first else OTHERS}
-        parts[f"near_threshold_{scene.name}"] = {"part": "near_threshold"} | own | inertias
+        hops = [hop for hop in HOPS if scene.box.threshold(hop) in scene.box.thresholds]
+        for hop in hops:
+            inertias = INERTIAS if first and hop == hops[-1] else OTHERS
+            near = {"part": "near_threshold", "hop": hop, "inertias": inertias}
+            parts[f"near_threshold_{scene.name}_{hop}"] = near | own
         if first and scene.box.fits(scene.box.height / 4):
             own_parts = ("on_ring", "with_friction", "in_file")
             parts |= {part: {"part": part} | own for part in own_parts}
