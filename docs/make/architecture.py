@@ -62,15 +62,21 @@ def purpose(room):
 
 
 def centres(found):
-    """Return {room: abscissa}: above the middle of what it imports, beside others of its floor."""
+    """Return {room: abscissa}: near the middle of what it imports, clear of others of its floor."""
+    from twodiscs.figures.kit.panels import spread
+
     height, below = floors(found), direct(found)
     middle = {}
     for level in range(max(height.values()) + 1):
-        here = [room for room in ROOMS if height[room] == level]
-        for i, room in enumerate(here):
+        wanted = {}
+        for room in (room for room in ROOMS if height[room] == level):
             under = [middle[other] for other in below[room]] or [WIDTH / 2]
-            apart = (i - (len(here) - 1) / 2) * (WIDE + GAP / 2)
-            middle[room] = sum(under) / len(under) + apart
+            wanted[room] = sum(under) / len(under)
+        here = sorted(wanted, key=wanted.get)
+        widths = [WIDE] * len(here)
+        places = spread([wanted[room] for room in here], widths, GAP / 2, WIDTH - MARGIN)
+        inside = max(0, MARGIN + WIDE / 2 - places[0])
+        middle |= {room: x + inside for room, x in zip(here, places, strict=True)}
     return middle
 
 
@@ -92,7 +98,7 @@ def draw():
         for other in below:
             ends = [(middle[other], bottom[other] + FLOOR), (middle[room], bottom[room])]
             line = {"arrowstyle": "-|>", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
-            axes.annotate("", *ends, arrowprops=line)
+            axes.annotate("", *ends, arrowprops=line, zorder=0)  # behind rooms that it passes
     for room in ROOMS:
         x, y = middle[room], bottom[room]
         axes.add_patch(

@@ -10,7 +10,7 @@ from twodiscs.model.events import HOPS
 from twodiscs.theory import tails
 
 #: Inches: heights of the panels of the rates and of the first passages, the gap, the margin above.
-RATES, PASSAGES, GAP, TOP = 2.0, 1.25, 0.42, 0.22
+RATES, PASSAGES, GAP, TOP = 1.85, 1.2, 0.42, 0.22
 
 #: The longest time shown, in mean times, and the largest relative error of a rate.
 LONGEST, LARGEST_ERROR = 12, 0.15

@@ -7,7 +7,7 @@ from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, VERMILLION, new_figure
 
 #: Inches: heights of the panels of the tails, their ratio to the law and the exponential; gaps.
-TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.75, 0.95, 1.3, 0.07, 0.42, 0.22
+TAILS, RATIO, EXPONENTIAL, JOINT, GAP, TOP = 1.6, 0.85, 1.15, 0.07, 0.42, 0.22
 
 #: Colour and marker of the cases, in the order of the table.
 LOOKS = ((BLUE, "o"), (VERMILLION, "s"), (GREEN, "^"))

@@ -11,7 +11,7 @@ from twodiscs.theory.laws import leading_law
 from twodiscs_paper.studies.thresholds.measure import near, passages, start
 
 #: Inches: heights of the panels of the hops and of the ratios, the gap, the margin above.
-HOP_TIMES, RATIOS, GAP, TOP = 2.0, 1.6, 0.4, 0.22
+HOP_TIMES, RATIOS, GAP, TOP = 1.8, 1.45, 0.4, 0.22
 
 #: The least distance below the limit, relative to it, and points on a curve.
 NEAREST, POINTS = 2e-5, 80
@@ -103,7 +103,7 @@ def _points(axes, law, rows, name, style, unit=np.ones_like):
 def _slopes(axes):
     """Draw the two powers that the figure compares."""
     x = np.array([4e-5, 1e-3])
-    for power, name in ((-2, r"$\delta^{-2}$"), (-1.5, r"$\delta^{-3/2}$")):
-        y = 100 * (x / x[0]) ** power
+    for power, name, up in ((-2, r"$\delta^{-2}$", -3), (-1.5, r"$\delta^{-3/2}$", 3)):
+        y = 10 * (x / x[0]) ** power
         axes.plot(x, y, color=GREY, lw=0.8)
-        drawing.label(axes, name, (x[1], y[1]), (3, 0), ha="left", va="center", color=GREY)
+        drawing.label(axes, name, (x[1], y[1]), (3, up), ha="left", va="center", color=GREY)
