@@ -251,7 +251,7 @@ class NearThreshold:
         sums, events = strip.run_blocks(self.scene, self.hop, around, stream, 0, blocks)
         fractions = strip.fractions_of(self.scene, self.hop, around)
         per_time = around.fraction / (2 * around.time)
-        mean, error = (per_time * part for part in strata.mean_of(fractions, *sums))
+        mean, error = (per_time * part for part in strata.stratified_mean(fractions, *sums))
         found = Estimate(mean, error, blocks * STARTS)
         return self.make_row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
 
