@@ -14,7 +14,7 @@ from twodiscs.dynamics.two import strip
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
-from twodiscs.points.strata import mean_of
+from twodiscs.points.strata import stratified_mean
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins, states
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
@@ -68,7 +68,7 @@ class Endless(strip.Strip):
 def check_rate(scene, hop, band, blocks=24, seed=1):
     """Five sigma."""
     found, events = strip.run_blocks(scene, hop, band, seed, 0, blocks)
-    mean, error = mean_of(strip.fractions_of(scene, hop, band), *found)
+    mean, error = stratified_mean(strip.fractions_of(scene, hop, band), *found)
     assert error / mean < 0.05
     true = exact.rate(scene, hop) * 2 * band.time / band.fraction
     assert abs(mean - true) < 5 * error
@@ -110,8 +110,11 @@ def test_starts_fill_the_strata_as_their_exact_shares_say(scene, hop):
 def test_strata_take_most_of_the_scatter(scene, hop):
     band = strip.strip_of(scene, hop)
     found, _ = strip.run_blocks(scene, hop, band, 2, 0, 100)
-    unstratified = mean_of([[1.0]], *(part.sum(keepdims=True) for part in found))
-    assert mean_of(strip.fractions_of(scene, hop, band), *found)[1] ** 2 < unstratified[1] ** 2 / 3
+    unstratified = stratified_mean([[1.0]], *(part.sum(keepdims=True) for part in found))
+    assert (
+        stratified_mean(strip.fractions_of(scene, hop, band), *found)[1] ** 2
+        < unstratified[1] ** 2 / 3
+    )
 
 
 @at_places
@@ -212,7 +215,7 @@ def test_intervals_cover_as_they_say(scene, hop):
         found, _ = strip.run_blocks(scene, hop, band, 9, block, block + 1)
         total, squares = int(found[1].sum()), int(found[2].sum())
         time = estimates.mean_time(
-            total, squares, REPLICAS, 2 * band.time / band.fraction, mean_of(shares, *found)
+            total, squares, REPLICAS, 2 * band.time / band.fraction, stratified_mean(shares, *found)
         )
         covered.append(time.covers(true))
     assert 0.92 <= np.mean(covered) <= 0.98

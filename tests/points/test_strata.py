@@ -11,7 +11,7 @@ from twodiscs.points.strata import (
     PARTS,
     fraction_below,
     fractions_of_speeds,
-    mean_of,
+    stratified_mean,
 )
 
 
@@ -55,7 +55,9 @@ def test_means_have_no_bias(starts, number):
     """
     rng = np.random.default_rng(starts)
     fillings = [filled(rng, starts) for _ in range(number)]
-    off = np.array([mean_of(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
+    off = (
+        np.array([stratified_mean(SHARES, n, n * MEANS, n * MEANS**2)[0] for n in fillings]) - TRUE
+    )
     # With enough starts to keep all strata, the mean has no variance.
     assert abs(off.mean()) <= 5 * off.std() / math.sqrt(off.size) + 1e-15
 
@@ -71,7 +73,7 @@ def test_errors_are_honest(starts):
         counts, squares = (
             np.reshape([int((v**power).sum()) for v in values], n.shape) for power in (1, 2)
         )
-        mean, error = mean_of(SHARES, n, counts, squares)
+        mean, error = stratified_mean(SHARES, n, counts, squares)
         off.append(mean - TRUE)
         variances.append(error**2)
     spread = np.array(off) ** 2 - variances
@@ -85,7 +87,7 @@ def test_errors_are_honest(starts):
 
 
 def test_one_stratum_is_the_plain_mean():
-    mean, error = mean_of([[1.0]], [[50]], [[20]], [[30]])
+    mean, error = stratified_mean([[1.0]], [[50]], [[20]], [[30]])
     values = np.repeat([0, 1, 2], [35, 10, 5])
     assert (values.sum(), (values**2).sum()) == (20, 30)
     assert mean == pytest.approx(values.mean())
@@ -97,16 +99,16 @@ def test_strata_of_few_starts_are_taken_together_and_one_start_has_no_error():
     # 16 are expected in each of 6 strata as soon as there are 96 starts, whatever there were.
     for last, parts in ((21, 6), (20, 2)):
         starts = np.array([[15, 15, 15], [15, 15, last]])
-        mean, _ = mean_of(shares, starts, counts, counts)
+        mean, _ = stratified_mean(shares, starts, counts, counts)
         pairs = 2 / 3 * 8 / 60 + 1 / 3 * 7 / (15 + last)
         assert mean == pytest.approx(pairs if parts == 2 else np.mean(counts / starts))
     # A stratum that is almost empty has no separate mean.
     starts = np.array([[99, 99, 99], [99, 99, 1]])
-    mean, _ = mean_of(shares, starts, counts, counts)
+    mean, _ = stratified_mean(shares, starts, counts, counts)
     assert mean == pytest.approx(2 / 3 * 8 / 396 + 1 / 3 * 7 / 100)
     one = np.zeros((2, 3), int)
     one[1, 1] = 1
-    assert mean_of(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
+    assert stratified_mean(shares, one, 3 * one, 9 * one) == (3.0, math.inf)
 
 
 GOOD = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares": [[1, 2]]}
@@ -126,6 +128,6 @@ GOOD = {"shares": [[0.5, 0.5]], "starts": [[9, 9]], "counts": [[1, 2]], "squares
     ],
 )
 def test_what_are_no_strata_is_refused(wrong, said):
-    mean_of(**GOOD)
+    stratified_mean(**GOOD)
     with pytest.raises(ValueError, match=said):
-        mean_of(**GOOD | wrong)
+        stratified_mean(**GOOD | wrong)

@@ -296,7 +296,7 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
         "LONG_FILE": 64, "LONG_REPLICAS": 24, "OPEN": (4,), "RECORDS": 96, "FILE_SAMPLES": 2**17,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
-    rows = list(measure.in_long_file("long", BOX, 1))
+    rows = list(measure.in_long_file("long", BOX, 0.28 * BOX.height, 1))
     judged = [row for row in rows if row.get("z") is not None]
     assert {row["quantity"] for row in judged} == {"single_file"}
     assert len(judged) == 2
@@ -333,8 +333,9 @@ def joined(name, box, inertias=(0.5,)):
         rows[hop] = Passages.part(part="near_threshold", hop=hop, inertias=some, **own)
     for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
         rows[part] = Passages.part(part=part, **own)
-    if box.fits(0.28 * box.height):
-        rows["in_long_file"] = Passages.part(part="in_long_file", name=name, box=box, seed=1)
+    if box.fits(blocked := 0.28 * box.height):
+        given = {"name": name, "box": box, "blocked": blocked, "seed": 1}
+        rows["in_long_file"] = Passages.part(part="in_long_file", **given)
     alone = ("on_lattice", "in_the_limit")
     return Passages.rows(rows | {part: Passages.part(part=part, seed=1) for part in alone})
 

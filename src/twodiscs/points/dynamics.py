@@ -11,7 +11,7 @@ from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import EVENTS
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, require_positive, require_same_keys
-from twodiscs.points.strata import mean_of
+from twodiscs.points.strata import stratified_mean
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ class StripCount(Count):
     def mean(self):
         """⟨N⟩ and its error, from the strata."""
         of = self.strata
-        return mean_of(of.shares, of.starts, of.counts, of.squares)
+        return stratified_mean(of.shares, of.starts, of.counts, of.squares)
 
 
 @dataclass(frozen=True)

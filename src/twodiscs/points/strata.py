@@ -58,7 +58,7 @@ def _merged(sums):
     return sums
 
 
-def mean_of(shares, starts, counts, squares):
+def stratified_mean(shares, starts, counts, squares):
     """Return the mean of N and its standard error from strata.
 
     Arguments are arrays (n, m): their exact ``shares``, which add up to 1, the numbers of initial

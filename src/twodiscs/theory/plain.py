@@ -112,7 +112,7 @@ def measures(arc):
     return Measures(volume, 2 * math.sqrt(2) * disc, right, top)
 
 
-def exact(scene):
+def volume_and_areas(scene):
     """Return (volume, {event: area}) of a plain ``Scene``, in length⁴ and length³."""
     arc = Arc.of(scene)
     volume, disc, right, top = measures(arc)

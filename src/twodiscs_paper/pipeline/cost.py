@@ -8,7 +8,7 @@ reached, usually earlier.
 
 import math
 
-from twodiscs_paper.pipeline.jobs.point import STAGES
+from twodiscs_paper.pipeline.jobs.point import RUNS
 
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
@@ -35,7 +35,7 @@ def run_of(scene, stage, radius):
 
     ``stage`` is monte_carlo, dynamics or intervals.
     """
-    return STAGES[stage](scene.box.scene(radius), **scene.arguments(stage, radius))
+    return RUNS[stage](scene.box.scene(radius), **scene.arguments(stage, radius))
 
 
 def _work(run):

@@ -17,7 +17,7 @@ def cluster_integrals(side):
     With Q_N = V_N/N! they are the coefficients of z² and z³ in ln Ξ (Mayer).
     """
     one = side * side
-    two = plain.exact(Scene(side + 1, side + 1, 0.5))[0] / 2
+    two = plain.volume_and_areas(Scene(side + 1, side + 1, 0.5))[0] / 2
     three_discs = three.integrals(side, side, 1.0)[0] / 6
     return two - one**2 / 2, three_discs - one * two + one**3 / 3
 

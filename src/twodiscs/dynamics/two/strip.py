@@ -36,7 +36,7 @@ from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.points.dynamics import Strata, StripCount
-from twodiscs.points.strata import PARTS, fractions_of_speeds, mean_of
+from twodiscs.points.strata import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import neck_of, prism_of, proposed_measure
@@ -313,7 +313,7 @@ def relative_error(fractions, sums):
 
     ``fractions`` come from ``fractions_of``, and the ``sums`` by strata from ``run_blocks``.
     """
-    mean, error = mean_of(fractions, *sums)
+    mean, error = stratified_mean(fractions, *sums)
     return error / mean if mean else math.inf
 
 

@@ -3,8 +3,7 @@
 import math
 
 from twodiscs.model.events import DECLARED, SHELLS
-from twodiscs.theory import plain
-from twodiscs.theory.plain import shell_expectation
+from twodiscs.theory.plain import shell_expectation, volume_and_areas
 
 __all__ = [
     "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation",
@@ -14,11 +13,6 @@ __all__ = [
 
 #: Initial states are drawn at separations at which the discs fit, not in the prism.
 least_free_fraction = 0.0
-
-
-def volume_and_areas(scene):
-    """Return (volume, {event: area}) of a ``Scene``."""
-    return plain.exact(scene)
 
 
 def rate(scene, event, volume, areas):

@@ -35,7 +35,7 @@ def measures(scene, hops=True):
     """
     known = method(scene)
     if known == "plain":
-        volume, areas = plain.exact(Scene(scene.width, scene.height, scene.radius))
+        volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
         root = math.sqrt(2)
         return Measures(
             math.log(volume),

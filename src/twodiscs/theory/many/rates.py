@@ -100,7 +100,7 @@ def overlap_of_two(scene):
         moment = sigma**3 * (1 - math.cos(phi) ** 3) / 3
         return 4 * (whole - moment) / (b * b * scene.width)
     two = Scene(scene.width, scene.height, scene.radius)
-    return 1 - plain.exact(two)[0] / (scene.range_x * scene.range_y) ** 2
+    return 1 - plain.volume_and_areas(two)[0] / (scene.range_x * scene.range_y) ** 2
 
 
 def small_disc_rates(scene):

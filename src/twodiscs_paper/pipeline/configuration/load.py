@@ -196,18 +196,18 @@ def _scene(block, path, common):
     box = _box(block, path)
     radii = _radii(block["radii"], box, f"{path}.radii")
     scene = box.scene(radii[0])
-    watched, many = block["watch"], "discs" in box.calls_for
-    if isinstance(watched, bool):
-        watched = dict.fromkeys(Quantities.__dataclass_fields__, watched)
-        watched["trajectory"] &= bool(_hops(scene))
-        watched["hop_histogram"] &= bool(_hops(scene)) and _is_ergodic(scene) and not many
-    histogram = _histogram(watched["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
+    wanted, many = block["watch"], "discs" in box.calls_for
+    if isinstance(wanted, bool):
+        wanted = dict.fromkeys(Quantities.__dataclass_fields__, wanted)
+        wanted["trajectory"] &= bool(_hops(scene))
+        wanted["hop_histogram"] &= bool(_hops(scene)) and _is_ergodic(scene) and not many
+    histogram = _histogram(wanted["hop_histogram"], box, scene, f"{path}.watch.hop_histogram")
     quantities = Quantities(
-        volume=watched["volume"],
-        areas=_events(watched["areas"], scene, f"{path}.watch.areas"),
-        mean_times=_events(watched["mean_times"], scene, f"{path}.watch.mean_times"),
+        volume=wanted["volume"],
+        areas=_events(wanted["areas"], scene, f"{path}.watch.areas"),
+        mean_times=_events(wanted["mean_times"], scene, f"{path}.watch.mean_times"),
         hop_histogram=histogram.pop("radii"),
-        trajectory=_trajectory(watched["trajectory"], box, scene, f"{path}.watch.trajectory"),
+        trajectory=_trajectory(wanted["trajectory"], box, scene, f"{path}.watch.trajectory"),
     )
     if not quantities.names:
         known = ", ".join(Quantities.__dataclass_fields__)

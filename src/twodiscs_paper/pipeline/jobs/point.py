@@ -46,16 +46,16 @@ def intervals(scene, event, intervals, budget, seed):
     return IntervalRun(scene, event, intervals, seed, budget)
 
 
-STAGES = {"monte_carlo": monte_carlo, "dynamics": dynamics, "intervals": intervals}
+RUNS = {"monte_carlo": monte_carlo, "dynamics": dynamics, "intervals": intervals}
 
 
 def work_of(stage, scene, options):
     """Return the run of a ``stage`` with the ``options`` of the command line."""
-    _, *names = inspect.signature(STAGES[stage]).parameters
+    _, *names = inspect.signature(RUNS[stage]).parameters
     given = {name: getattr(options, name) for name in names}
     if missing := [name for name, value in given.items() if value is None]:
         raise InputError(f"{stage} needs --{missing[0]}")
-    return STAGES[stage](scene, **given)
+    return RUNS[stage](scene, **given)
 
 
 def shard(work, part, first, stop):
@@ -81,7 +81,7 @@ def joined(work, paths):
 
 def main():
     parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
-    parser.add_argument("stage", choices=STAGES)
+    parser.add_argument("stage", choices=RUNS)
     add_scene(parser)
     parser.add_argument("--quantities", nargs="+", help="monte_carlo: volume, <event>_area")
     parser.add_argument("--samples", type=whole_number, help="monte_carlo: how many at least")

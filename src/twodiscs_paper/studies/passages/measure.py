@@ -37,7 +37,6 @@ from twodiscs.points import strata
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages import exclusion, file, limit
-from twodiscs_paper.studies.passages.study import BLOCKED
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
@@ -251,7 +250,7 @@ class NearThreshold:
         sums, events = strip.run_blocks(self.scene, self.hop, around, stream, 0, blocks)
         fractions = strip.fractions_of(self.scene, self.hop, around)
         per_time = around.fraction / (2 * around.time)
-        mean, error = (per_time * part for part in strata.mean_of(fractions, *sums))
+        mean, error = (per_time * part for part in strata.stratified_mean(fractions, *sums))
         found = Estimate(mean, error, blocks * STARTS)
         return self.make_row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
 
@@ -358,15 +357,15 @@ def one_file(name, box, discs, events, seed):
         yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
 
 
-def one_long_file(name, box, halvings, friction, known, seed):
-    """Yield the rows of one long file at a distance below h/4, or blocked if ``halvings`` is None.
+def one_long_file(name, box, radius, friction, known, seed):
+    """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
 
     If ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
     file of smooth discs has rows of the ``density`` and of the ``rate`` of hops, which do not
     depend on friction. With friction they are ``known``, {quantity: ``Estimate``}.
     """
     limit, per_disc = box.height / 4, box.width / 2
-    radius = BLOCKED * box.height if halvings is None else radius_at(limit, halvings)
+    is_open = radius < limit
     scene = Scene(per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x")
     unit = box.height / file.thermal_speed(scene)
     rate = None if friction is None else friction / unit
@@ -391,7 +390,7 @@ def one_long_file(name, box, halvings, friction, known, seed):
     steps = file.squares(numbers, LAGS)
 
     variance = None
-    if halvings is not None:
+    if is_open:
         variance = known.get("density")
         if variance is None:
             variance = file.measured_density(scene, places)
@@ -404,7 +403,7 @@ def one_long_file(name, box, halvings, friction, known, seed):
 
     for k, lag in enumerate(LAGS):
         yield make_row("displacement", "states", mean_of(moved[k]), lag)
-        if halvings is not None:
+        if is_open:
             yield make_row("order", "states", mean_of(steps[k]), lag)
         yield make_row("file", "states", mean_of(whole_file[k]), lag, reference=law(lag))
     if rate is not None:
@@ -419,7 +418,7 @@ def one_long_file(name, box, halvings, friction, known, seed):
             "single_file", "states", found, SINGLE[1], reference=due,
             reference_stderr=error or None, z=student_deviate(z, found.n - 1), test="normal",
         )  # fmt: skip
-    if halvings is not None:
+    if is_open:
         hops = known.get("rate")
         if hops is None:
             ring = Scene(
@@ -497,12 +496,15 @@ def in_file(name, box, events, seed):
         yield from one_file(name, box, discs, 2 * events, seed)
 
 
-def in_long_file(name, box, seed):
-    """Yield the rows of long files on a ring, blocked and open, smooth and with kicks."""
-    for halvings in (None, *OPEN):
+def in_long_file(name, box, blocked, seed):
+    """Yield the rows of long files on a ring, smooth and with kicks.
+
+    One is blocked, at the radius ``blocked``; the others are open.
+    """
+    for radius in (blocked, *(radius_at(box.height / 4, n) for n in OPEN)):
         found = {}
         for friction in (None, FRICTION):
-            for row in one_long_file(name, box, halvings, friction, {**found}, seed):
+            for row in one_long_file(name, box, radius, friction, {**found}, seed):
                 if row["quantity"] in ("density", "rate"):
                     parts = (row[part] for part in ("estimate", "stderr", "replicas"))
                     found[row["quantity"]] = Estimate(*parts)

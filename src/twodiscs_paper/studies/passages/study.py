@@ -28,8 +28,8 @@ def _parts(configuration):
         if first and scene.box.fits(scene.box.height / 4):
             own_parts = ("on_ring", "with_friction", "in_file")
             parts |= {part: {"part": part} | own for part in own_parts}
-        if first and scene.box.fits(BLOCKED * scene.box.height):
-            alone = {"name": scene.name, "box": scene.box.parameters()} | seed
+        if first and scene.box.fits(blocked := BLOCKED * scene.box.height):
+            alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone
     return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
 
