@@ -241,7 +241,8 @@ def test_key_figures_have_their_captions_beneath_them(front, complete):
 
 
 def test_a_section_a_scene_and_thumbnails_of_the_rest(front, complete):
-    assert front["sections"] == ["Scene six", "Scene walls", "Studies, over all scenes"]
+    names = ["Scene six", "Scene walls", "Studies, over all scenes", "How it was made"]
+    assert front["sections"] == names
     drawn = {*(complete.path / "results").glob("*/figures/*.png")}
     drawn |= {*(complete.path / "results" / "figures").glob("*.png")}
     assert len(front["thumbnails"]) + len(front["figures"]) == len(drawn)

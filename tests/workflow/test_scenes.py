@@ -47,6 +47,7 @@ CALLED = {
     "torus": ALL - about(*HOPS, *WALLS, "any_wall") - {"hopping_trajectory", "hop_histogram"},
     "channel": ALL - about("horizontal_hop", "right_wall"),
     "field": ALL - {"pressure"},
+    "friction": ALL - {"hop_histogram"},
     "rough": ALL - {"hop_histogram"},
     "three": ALL,
     "channel-of-eight": ALL - {"hop_histogram"},

@@ -320,7 +320,12 @@ def _with_error(value, error):
     digits = 2
     if value:
         digits += math.floor(math.log10(abs(value))) - math.floor(math.log10(error))
-    return f"{value:.{min(max(digits, 2), 17)}g}", f"{error:.2g}"
+    return _to_digits(value, min(max(digits, 2), 17)), _to_digits(error, 2)
+
+
+def _to_digits(x, n):
+    """Return ``x`` to ``n`` significant digits, zeros at the end among them: 1.3380."""
+    return f"{x:#.{n}g}".rstrip(".")
 
 
 def aligned(lines, widths):

@@ -386,7 +386,7 @@ def _ends(name, where, column=ESTIMATE, form=WITH_ERROR, suffix=""):
 
 RING = {"method": "hops", "discs": 2}
 KICKED = {"scene": MAIN, "discs": 2, "friction": ..., "quantity": "coefficient"}
-POWERS = KICKED | {"quantity": "local_exponent"}
+LOCAL_POWERS = KICKED | {"quantity": "local_exponent"}
 ORDER = {"scene": MAIN, "quantity": "diffusion", "method": "order"}
 KAPPA = _near("coefficient")
 PASSAGES = (
@@ -418,7 +418,9 @@ PASSAGES = (
         for name, which in (("least", "smallest"), ("most", "largest"))
     ),
     *(
-        passages(f"friction_power_{name}", POWERS | {"friction": rate}, ESTIMATE, WITH_ERROR, pick)
+        passages(
+            f"friction_power_{name}", LOCAL_POWERS | {"friction": rate}, ESTIMATE, WITH_ERROR, pick
+        )
         for name, rate, pick in (("diffusive", 160.0, FARTHEST), ("ballistic", 10.0, NEAREST))
     ),
     passages("friction_rates_z", KICKED | {"quantity": "rate"}, "z", largest()),
