@@ -153,12 +153,25 @@ def test_rare_swaps_make_a_random_walk():
 
 def test_particles_move_by_one_site():
     """At most one site by an exchange; none where none is made, and the same for the same seed."""
-    (first,) = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)[:1]
-    assert first[0] == 0
-    assert 0 < first[1] < 2
+    moved, passed = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
+    assert moved[0, 0] == passed[0, 0] == 0
+    # Most exchanges are with empty sites.
+    assert 0 < passed[0, 1] < moved[0, 1] < 2
     again = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
-    np.testing.assert_array_equal(again[0], first)
-    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0], first[1:])
+    np.testing.assert_array_equal(again, (moved, passed))
+    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0, 0], moved[0, 1:])
+    assert not exclusion.displacements(0.0, [8.0], 2, 4)[1].any()
+
+
+def test_places_and_displacements_on_the_lattice_have_the_same_diffusion():
+    """With the term ∝ √t removed from both: five standard errors of the difference."""
+    swap, time = 0.3, 64.0
+    moved, passed = exclusion.displacements(swap, [time / 4, time], 128, 6)
+    by_moves, by_places = (
+        (x[:, 1] - 2 * x[:, 0]) / time for x in (moved, passed / exclusion.DENSITY**2)
+    )
+    apart = mean_of(by_moves - by_places)
+    assert abs(apart.value) < 5 * apart.stderr
 
 
 @pytest.mark.parametrize(
