@@ -75,7 +75,8 @@ def draw(box, tables):
         return figure
     panels.name_box(ring, first_scene(rows, box)[0])
     _ring(ring, rows)
-    residuals(lower, rows, RESIDUAL_LOOKS)
+    # Two discs with friction have a figure of their own.
+    residuals(lower, [r for r in rows if not r["friction"] or r["discs"] > 2], RESIDUAL_LOOKS)
     long_files = [row for row in rows if row["quantity"] in LONG]
     _moved(moved, long_files)
     _collapse(collapse, rows)
@@ -217,7 +218,7 @@ def _collapse(axes, rows):
         unit = f * math.sqrt(crossover)
         name = rf"$\delta=1/{round(1 / row['distance'])}$"
         points(axes, time / crossover, value / unit, error / unit, next(looks), name)
-    s = np.geomspace(1e-3, 1e2, 60)
+    s = np.geomspace(1e-3, 10, 60)
     axes.plot(s, np.sqrt(s) + s, color=BLACK, lw=0.8, zorder=5)
     axes.set(xscale="log", yscale="log", xlabel=r"time $t/t_\times$")
     axes.set_ylabel(r"$\langle x^2\rangle/F\sqrt{t_\times}$")
