@@ -328,6 +328,31 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     assert bulk["stderr"] < 0.2 * bulk["estimate"]
 
 
+def test_the_longest_wave_of_a_blocked_file_is_sound_and_heat():
+    """For two fifths of a period, before they are damped: five standard errors.
+
+    Sound is 1/(c² S) of the variance, and heat, which rests, is the other part.
+    """
+    scene = Scene(96.0, 1.0, 0.28, discs=128, periodic="x")
+    density, speed = file.exact_density(1.0, 0.28, 0.75), file.thermal_speed(scene)
+    places = file.recorded(scene, 0.5 / speed, 32, 128, 3)
+    wave = np.exp(2j * math.pi / scene.width * places).sum(axis=1)
+    lag, share = 18, 1 / (density.speed**2 * density.variance)
+    later = (wave[lag:] * wave[:-lag].conj()).real.mean(axis=0)
+    now = (np.abs(wave) ** 2).mean(axis=0)
+
+    def apart(speed_of_sound, share):
+        angle = 2 * math.pi / scene.width * speed_of_sound * lag / 2
+        found = mean_of(
+            later / now.mean() - (share * math.cos(angle) + 1 - share) * now / now.mean()
+        )
+        return abs(found.value) / found.stderr
+
+    assert apart(density.speed, share) < 5
+    # Sound at constant temperature would be all of it, and slower.
+    assert apart(1 / math.sqrt(density.variance), 1.0) > 5
+
+
 def test_the_measured_density_is_exact_in_an_ordered_channel():
     """At r = 0.28: five standard errors."""
     scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
