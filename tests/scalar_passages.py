@@ -2,7 +2,8 @@
 
 It shares nothing with the package. Initial states are Gaussian vectors whose component normal to
 the surface x1 = x2 has the flux-weighted (Rayleigh) law, scaled to the energy 1/2. On a ring the
-separation along x is never wrapped: disc 2 has an image in every period.
+separation along x is never wrapped: disc 2 has an image in every period. With friction all
+velocities are drawn anew, at random times or, as in Brownian dynamics, after equal steps.
 """
 
 import math
@@ -37,11 +38,23 @@ def on_surface(w, h, r, inertia, ring):
 
 
 @numba.njit
-def follow(state, w, h, r, inertia, ring, times, found, gap):
+def drawn_again(inertia, ring):
+    """Return velocities and angular velocities times r, uniform on the sphere of the energy 1/2."""
+    u1, v1, u2, v2, o1, o2 = np.random.standard_normal(6)
+    if ring and inertia == 0:
+        u1, u2 = (u1 - u2) / 2, (u2 - u1) / 2
+    o1, o2 = (o1 / math.sqrt(inertia), o2 / math.sqrt(inertia)) if inertia > 0 else (0.0, 0.0)
+    norm = math.sqrt(u1**2 + v1**2 + u2**2 + v2**2 + inertia * (o1**2 + o2**2))
+    return u1 / norm, v1 / norm, u2 / norm, v2 / norm, o1 / norm, o2 / norm
+
+
+@numba.njit
+def follow(state, w, h, r, inertia, ring, times, found, gap, wait=math.inf, mean=1.0, equal=False):
     """Follow a state from x1 = x2; fill ``found`` with 1 + 2 Σ s_0 s_k at ``times``.
 
     With a ``gap`` and no times, return instead how many hops come after the first one, each within
-    the gap after the last.
+    the gap after the last. After ``wait`` velocities are drawn anew, and again and again after
+    times of this ``mean``, which are all ``equal`` or those of a Poisson process.
     """
     x1, y1, x2, y2, u1, v1, u2, v2, o1, o2 = state
     sigma, b = 2 * r, h / 2 - r
@@ -69,6 +82,8 @@ def follow(state, w, h, r, inertia, ring, times, found, gap):
                 t = max((-p - math.sqrt(p * p - a * q)) / a, 0.0)
                 if t < best:
                     best, kind, image = t, 5, middle + shift * w
+        if wait < best:
+            best, kind = wait, 6
         if ring:  # look again when another image may be near
             best, kind = (best, kind) if best < w / 4 else (w / 4, 0)
         # Hops on the way, and the times that are passed.
@@ -89,6 +104,7 @@ def follow(state, w, h, r, inertia, ring, times, found, gap):
                 return hops
             hops, latest = hops + 1, clock + until
         clock += best
+        wait -= best
         x1, y1, x2, y2 = x1 + u1 * best, y1 + v1 * best, x2 + u2 * best, y2 + v2 * best
         if kind == 1 or kind == 2 or kind == 3 or kind == 4:
             # Normal n into the box; the slip of the surface that touches, along t = (−n_y, n_x).
@@ -117,6 +133,9 @@ def follow(state, w, h, r, inertia, ring, times, found, gap):
                 u1, v1, o1 = u, v, o
             else:
                 u2, v2, o2 = u, v, o
+        elif kind == 6:
+            u1, v1, u2, v2, o1, o2 = drawn_again(inertia, ring)
+            wait = mean if equal else np.random.exponential(mean)
         elif kind == 5:
             nx, ny = (x1 - x2 - image) / sigma, (y1 - y2) / sigma
             speed = du * nx + dv * ny
@@ -141,14 +160,22 @@ def replicas(seed, number, w, h, r, inertia, ring, times):
 
 
 @numba.njit
-def clusters(seed, number, w, h, r, inertia, gap):
-    """Return the sizes of the clusters in a box of ``number`` hops, to both sides in time."""
+def clusters(seed, number, w, h, r, inertia, gap, mean=math.inf, equal=False):
+    """Return the sizes of the clusters in a box of ``number`` hops, to both sides in time.
+
+    Velocities are drawn anew after times of this ``mean``, as in ``follow``.
+    """
     np.random.seed(seed)
     sizes, none = np.ones(number), np.zeros(0)
     for i in range(number):
         x1, y1, x2, y2, u1, v1, u2, v2, o1, o2 = on_surface(w, h, r, inertia, False)
         past = x1, y1, x2, y2, -u1, -v1, -u2, -v2, -o1, -o2
         future = x1, y1, x2, y2, u1, v1, u2, v2, o1, o2
-        for state in (future, past):
-            sizes[i] += follow(state, w, h, r, inertia, False, none, none, gap)
+        phase = np.random.rand()
+        for state, part in ((future, phase), (past, 1 - phase)):
+            wait = math.inf
+            if mean < math.inf:
+                # The time 0 is somewhere within an equal step.
+                wait = mean * part if equal else np.random.exponential(mean)
+            sizes[i] += follow(state, w, h, r, inertia, False, none, none, gap, wait, mean, equal)
     return sizes

@@ -10,7 +10,13 @@ import numpy as np
 import pytest
 from scalar_passages import clusters, replicas
 
-from twodiscs.comparison.measured.transmission import by_clusters, by_time
+from twodiscs.comparison.measured.transmission import (
+    by_clusters,
+    by_time,
+    of_clusters,
+    of_order,
+    plateau,
+)
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two import passages
@@ -103,6 +109,82 @@ def test_clusters_to_both_sides_are_those_of_another_program(inertia, radius, ga
         values = [np.asarray(of(sizes), float) for sizes in (own, other)]
         errors = [part.std() / math.sqrt(part.size) for part in values]
         five(values[0].mean(), values[1].mean(), math.hypot(*errors))
+
+
+@pytest.mark.parametrize("inertia", [None, 0.5])
+def test_clusters_with_friction_are_those_of_another_program(inertia):
+    """Kicks before and after time 0 are independent."""
+    scene = Scene(1.5, 1.0, NARROW, moment_of_inertia=inertia, friction=20.0)
+    counts, _ = passages.cluster_sizes(scene, HOP, 6.0, 128, 11)
+    own = np.repeat(np.arange(counts.size), counts)
+    other = clusters(12, 4000, 1.5, 1.0, NARROW, inertia or 0.0, 6.0, 1 / 20.0)
+    for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
+        values = [np.asarray(of(sizes), float) for sizes in (own, other)]
+        errors = [part.std() / math.sqrt(part.size) for part in values]
+        five(values[0].mean(), values[1].mean(), math.hypot(*errors))
+
+
+def test_equal_steps_diffuse_as_friction_of_twice_their_rate():
+    """After equal steps Δt, as in Brownian dynamics, D is ⟨v²⟩Δt/2, with friction it is ⟨v²⟩/γ."""
+    rate, found = 40.0, {}
+    for steps in (rate, rate / 2):
+        sizes = clusters(2, 6000, 1.5, 1.0, NARROW, 0.0, 6.0, 1 / steps, True)
+        odd = sizes % 2 / sizes
+        found[steps] = odd.mean(), odd.std() / math.sqrt(odd.size)
+    scene = Scene(1.5, 1.0, NARROW, friction=rate)
+    kappa = by_clusters(passages.cluster_sizes(scene, HOP, 6.0, 96, 1)[0])
+    (half, half_error), (equal, error) = found.values()
+    five(equal, kappa.value, math.hypot(error, kappa.stderr))
+    five(2 * half, kappa.value, math.hypot(2 * half_error, kappa.stderr))
+    assert equal - half > 10 * math.hypot(error, half_error)
+
+
+def test_the_slope_at_zero_grows_with_friction():
+    """A kick soon after a hop may lead back: −κ'(0⁺) gains γ⟨v'/(v + v')⟩ over the speeds v, v'.
+
+    v is the normal speed at the hop, weighted by the flux, and v' that after a kick. Components n
+    of a unit vector in four dimensions have a density ∝ √(1 − n²); with n = sin φ the integrals are
+    over φ. The mean is 2/5.
+    """
+    rate, time = 20.0, 5e-3
+    x, weights = np.polynomial.legendre.leggauss(64)
+    angle, weights = math.pi / 4 * (x + 1), weights * np.cos(math.pi / 4 * (x + 1)) ** 2
+    speed = np.sin(angle)
+    ratio = speed[:, None] * speed / (speed[:, None] + speed)
+    mean = weights @ ratio @ weights / (weights @ speed) / weights.sum()
+    assert mean == pytest.approx(2 / 5, rel=1e-6)
+    plain = 2 * 3 * math.sqrt(2) / (16 * 1.06)
+    scene = Scene(1.5, 1.0, 0.22, friction=rate)
+    early, late = (
+        by_time(passages.hop_sums(scene, HOP, [n * time], 4096, n)[0])[0] for n in (1, 2)
+    )
+    slope = (4 * (1 - early.value) - (1 - late.value)) / (2 * time)
+    error = math.hypot(4 * early.stderr, late.stderr) / (2 * time)
+    five(slope, plain + rate * mean, error)
+    assert error < 0.05 * rate * mean
+
+
+EFFECTS = {
+    "friction": (HOP, Scene(1.5, 1.0, 0.248, friction=8.0)),
+    "unequal": (HOP, Scene(1.5, 1.0, 0.165, radius_ratio=2.0, mass_ratio=3.0)),
+    "field": ("vertical_hop", Scene(1.0, 1.5, 0.248, field=0.2, friction=0.5)),
+    "channel": (HOP, Scene(1.5, 1.0, 0.249, periodic="y", friction=8.0)),
+    "balls": (HOP, Scene(1.5, 0.8, 0.232, depth=0.8)),
+}
+
+
+@pytest.mark.parametrize(
+    "name", ["friction", *(pytest.param(n, marks=pytest.mark.slow) for n in [*EFFECTS][1:])]
+)
+def test_both_estimates_of_effects_agree(name):
+    """By clusters and by κ(t), where passages are rare; corrected for those in the gap."""
+    (hop, scene), gap = EFFECTS[name], 6.0
+    mean = 1 / exact.passing_rate(scene, hop)
+    early = by_clusters(passages.cluster_sizes(scene, hop, gap, 128, 6)[0])
+    (late,) = by_time(passages.hop_sums(scene, hop, [gap], 256, 7)[0])
+    kappa, other = plateau(early, gap, mean, of_clusters), plateau(late, gap, mean, of_order)
+    five(kappa.value, other.value, math.hypot(kappa.stderr, other.stderr))
+    assert 0 < kappa.value < 1
 
 
 @pytest.mark.parametrize("inertia", [None, 0.5])

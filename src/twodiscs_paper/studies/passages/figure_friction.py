@@ -51,7 +51,7 @@ def draw(box, tables):
     large = np.array([DIFFUSIVE, SHOWN[1]])
     upper.plot(large, DIFFUSIVE / large, label=r"$1$ and $3/(4x)$", **style)
     for exponent, name, side in (
-        (-1.5, r"$-\frac{3}{2}$  Bowles, Mon, Percus 2004", 3),
+        (-1.5, r"$-\frac{3}{2}$  Bowles, Mon, Percus 2004", 5),
         (-2.0, r"$-2$  Mon 2009", 3),
     ):
         lower.axhline(exponent, color=GREY, lw=0.8, ls=(0, (4, 2)), zorder=1)

@@ -67,7 +67,7 @@ AROUND, FEWEST = 16, 2**11
 #: {rate of kicks: halvings of the distance}.
 KICKED = {
     10.0: (5, 6, 8, 10, 12, 14, 16), 40.0: range(6, 17, 2), 160.0: range(8, 17, 2),
-    640.0: (8, 10, 12),
+    640.0: (8, 12),
 }  # fmt: skip
 
 #: With kicks, the time without a hop that ends a cluster, in ``box_time``: a pause four times as
