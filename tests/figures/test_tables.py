@@ -3,7 +3,7 @@
 import math
 from functools import cache
 from importlib import import_module
-from itertools import groupby
+from itertools import groupby, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
+from twodiscs_paper.studies.passages import figure_friction as friction
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import near
 
@@ -108,7 +109,7 @@ def _over_cube_root(row):
 def _passages():
     rows = table("passages")
     first = rows[0]["scene"]
-    ours = of(rows, scene=first, event="horizontal_hop", periodic=None)
+    ours = of(rows, scene=first, event="horizontal_hop", periodic=None, friction=None)
     for inertia, look in passages.LOOKS.items():
         own = of(ours, moment_of_inertia=inertia)
         kappa, times = of(own, quantity="coefficient"), of(own, quantity="passage_time")
@@ -133,8 +134,22 @@ def _passages():
     for discs, look in diffusion.FILES.items():
         own = of(rows, quantity="diffusion", discs=discs)
         yield "diffusion", "ring", *look, _columns(own, "distance")
+    for rate, look in friction.LOOKS.items():
+        own = of(rows, friction=rate, quantity="coefficient")
+        yield "friction", "kappa", *look, [(_scaled(r), r["estimate"], r["stderr"]) for r in own]
+        steps = of(rows, friction=rate, quantity="local_exponent")
+        # The first distance has no exponent.
+        middle = [math.sqrt(_scaled(a) * _scaled(b)) for a, b in pairwise(own)]
+        due = [(x, r["estimate"], r["stderr"]) for x, r in zip(middle, steps, strict=True)]
+        yield "friction", "exponent", *look, due
     lattice = of(rows, quantity="diffusion", method="lattice")
     yield "diffusion", "lattice", style.GREEN, "^", _columns(lattice, "swap")
+
+
+def _scaled(row):
+    """Return γ√(εσ) of a ``row`` with friction."""
+    sigma = 2 * row["radius"]
+    return row["friction"] * math.sqrt((row["height"] - 2 * sigma) * sigma)
 
 
 def _unit(row):
@@ -224,6 +239,7 @@ def test_every_figure_of_a_study_is_compared():
 def test_what_passages_leave_falls_at_twice_their_rate():
     """The curves κ exp(−2κt/τ) of the figure, at all their times."""
     rows = of(table("passages"), scene=table("passages")[0]["scene"], event="horizontal_hop")
+    rows = of(rows, friction=None)
     shown = [
         line.get_data()
         for line in drawn("passages")["curves"].lines
@@ -245,7 +261,7 @@ def test_what_passages_leave_falls_at_twice_their_rate():
 def test_residuals_are_those_of_the_table():
     for name, looks in (("passages", passages), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
-            rows = of(table("passages"), quantity=quantity)
+            rows = of(table("passages"), quantity=quantity, friction=None)
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             assert points(drawn(name)["residuals"], colour, marker) == due
 

@@ -303,7 +303,7 @@ def scores(rows):
 def exponent(tables):
     """Return the slope of ln(1 − κ) against ln δ by the normal equations."""
     rows = of(tables["passages"], scene="paper", event="horizontal_hop", quantity="coefficient")
-    rows = of(rows, moment_of_inertia=None)[-5:]
+    rows = of(rows, moment_of_inertia=None, friction=None)[-5:]
     x, y, error = (
         np.array([f(row) for row in rows])
         for f in (
