@@ -423,10 +423,13 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         _, collapse, _, between, _ = figure.draw(BOX, {"passages": rows}).axes
         ring, _, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
     names = [text.get_text() for text in ring.get_legend().get_texts()]
-    assert {"4 smooth discs", "24 with kicks"} <= {*names}
+    assert {"4 smooth discs", "24 with friction"} <= {*names}
     # Displacements in units of ℓ², at times in units of h and the thermal speed.
     shown = {one.get_label(): one.lines[0].get_data() for one in moved.containers}
-    for friction, distance, name in ((None, -0.12, "smooth, blocked"), (1, 1 / 8, "kicks, open")):
+    for friction, distance, name in (
+        (None, -0.12, "smooth, blocked"),
+        (1, 1 / 8, "friction, open"),
+    ):
         due = [
             (row["time"] / math.sqrt(2 * 24 - 1), row["estimate"]) for row in rows
             if row["quantity"] == "displacement" and (row["friction"] is None) == (friction is None)
