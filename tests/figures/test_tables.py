@@ -134,6 +134,7 @@ def _passages():
     for discs, look in diffusion.FILES.items():
         own = of(rows, quantity="diffusion", discs=discs)
         yield "diffusion", "ring", *look, _columns(own, "distance")
+    yield from _long_files(rows)
     for rate, look in friction.LOOKS.items():
         own = of(rows, friction=rate, quantity="coefficient")
         yield "friction", "kappa", *look, [(_scaled(r), r["estimate"], r["stderr"]) for r in own]
@@ -144,6 +145,39 @@ def _passages():
         yield "friction", "exponent", *look, due
     lattice = of(rows, quantity="diffusion", method="lattice")
     yield "diffusion", "lattice", style.GREEN, "^", _columns(lattice, "swap")
+
+
+def _long_files(rows):
+    """Yield the symbols of long files in the figure of diffusion."""
+    looks = {False: diffusion.SMOOTH_FILE, True: diffusion.KICKED_FILE}
+    order = of(rows, quantity="diffusion", method="order")
+    for is_kicked, look in looks.items():
+        own = [row for row in order if bool(row["friction"]) == is_kicked]
+        yield "diffusion", "ring", *look, _columns(own, "distance")
+        # Blocked, and at the farthest distance where discs pass.
+        moved = [
+            row for row in of(rows, quantity="displacement")
+            if bool(row["friction"]) == is_kicked and (row["distance"] < 0 or row["distance"] > 0.1)
+        ]  # fmt: skip
+        due = [
+            (row["time"] / math.sqrt(2 * row["discs"] - 1), row["estimate"], row["stderr"])
+            for row in moved
+        ]
+        yield "diffusion", "moved", *look, due
+    kicked = [row for row in order if row["friction"]]
+    for look, row in zip(diffusion.OPEN, kicked, strict=True):
+        where = {"distance": row["distance"], "friction": row["friction"]}
+        (single,) = of(rows, quantity="single_file", **where)
+        (rate,) = of(rows, quantity="rate", method="insertion", distance=row["distance"])
+        twice_d = row["estimate"] * rate["estimate"]
+        # F √t = 2 D t at this time.
+        time = (single["estimate"] / twice_d) ** 2
+        unit = twice_d * time
+        due = [
+            (r["time"] / time, r["estimate"] / unit, r["stderr"] / unit)
+            for r in of(rows, quantity="displacement", **where)
+        ]
+        yield "diffusion", "collapse", *look, due
 
 
 def _scaled(row):
@@ -261,7 +295,9 @@ def test_what_passages_leave_falls_at_twice_their_rate():
 def test_residuals_are_those_of_the_table():
     for name, looks in (("passages", passages), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
-            rows = of(table("passages"), quantity=quantity, friction=None)
+            rows = of(table("passages"), quantity=quantity)
+            # Two discs with friction have a figure of their own.
+            rows = [row for row in rows if row["friction"] is None or row["discs"] > 2]
             due = {(r["distance"], r["z"]) for r in rows if r["z"] is not None and r["distance"]}
             assert points(drawn(name)["residuals"], colour, marker) == due
 

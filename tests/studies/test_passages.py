@@ -153,12 +153,25 @@ def test_rare_swaps_make_a_random_walk():
 
 def test_particles_move_by_one_site():
     """At most one site by an exchange; none where none is made, and the same for the same seed."""
-    (first,) = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)[:1]
-    assert first[0] == 0
-    assert 0 < first[1] < 2
+    moved, passed = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
+    assert moved[0, 0] == passed[0, 0] == 0
+    # Most exchanges are with empty sites.
+    assert 0 < passed[0, 1] < moved[0, 1] < 2
     again = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
-    np.testing.assert_array_equal(again[0], first)
-    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0], first[1:])
+    np.testing.assert_array_equal(again, (moved, passed))
+    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0, 0], moved[0, 1:])
+    assert not exclusion.displacements(0.0, [8.0], 2, 4)[1].any()
+
+
+def test_places_and_displacements_on_the_lattice_have_the_same_diffusion():
+    """With the term ∝ √t removed from both: five standard errors of the difference."""
+    swap, time = 0.3, 64.0
+    moved, passed = exclusion.displacements(swap, [time / 4, time], 128, 6)
+    by_moves, by_places = (
+        (x[:, 1] - 2 * x[:, 0]) / time for x in (moved, passed / exclusion.DENSITY**2)
+    )
+    apart = mean_of(by_moves - by_places)
+    assert abs(apart.value) < 5 * apart.stderr
 
 
 @pytest.mark.parametrize(
@@ -315,6 +328,31 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     assert bulk["stderr"] < 0.2 * bulk["estimate"]
 
 
+def test_the_longest_wave_of_a_blocked_file_is_sound_and_heat():
+    """For two fifths of a period, before they are damped: five standard errors.
+
+    Sound is 1/(c² S) of the variance, and heat, which rests, is the other part.
+    """
+    scene = Scene(96.0, 1.0, 0.28, discs=128, periodic="x")
+    density, speed = file.exact_density(1.0, 0.28, 0.75), file.thermal_speed(scene)
+    places = file.recorded(scene, 0.5 / speed, 32, 128, 3)
+    wave = np.exp(2j * math.pi / scene.width * places).sum(axis=1)
+    lag, share = 18, 1 / (density.speed**2 * density.variance)
+    later = (wave[lag:] * wave[:-lag].conj()).real.mean(axis=0)
+    now = (np.abs(wave) ** 2).mean(axis=0)
+
+    def apart(speed_of_sound, share):
+        angle = 2 * math.pi / scene.width * speed_of_sound * lag / 2
+        found = mean_of(
+            later / now.mean() - (share * math.cos(angle) + 1 - share) * now / now.mean()
+        )
+        return abs(found.value) / found.stderr
+
+    assert apart(density.speed, share) < 5
+    # Sound at constant temperature would be all of it, and slower.
+    assert apart(1 / math.sqrt(density.variance), 1.0) > 5
+
+
 def test_the_measured_density_is_exact_in_an_ordered_channel():
     """At r = 0.28: five standard errors."""
     scene = Scene(24.0, 1.0, 0.28, discs=32, periodic="x")
@@ -388,10 +426,13 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         _, collapse, _, between, _ = figure.draw(BOX, {"passages": rows}).axes
         ring, _, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
     names = [text.get_text() for text in ring.get_legend().get_texts()]
-    assert {"4 smooth discs", "24 with kicks"} <= {*names}
+    assert {"4 smooth discs", "24 with friction"} <= {*names}
     # Displacements in units of ℓ², at times in units of h and the thermal speed.
     shown = {one.get_label(): one.lines[0].get_data() for one in moved.containers}
-    for friction, distance, name in ((None, -0.12, "smooth, blocked"), (1, 1 / 8, "kicks, open")):
+    for friction, distance, name in (
+        (None, -0.12, "smooth, blocked"),
+        (1, 1 / 8, "friction, open"),
+    ):
         due = [
             (row["time"] / math.sqrt(2 * 24 - 1), row["estimate"]) for row in rows
             if row["quantity"] == "displacement" and (row["friction"] is None) == (friction is None)

@@ -68,7 +68,7 @@ def draw(box, tables):
     _smooth(smooth, rows, ours)
     _rough(rough, ours)
     _times(times, main, hop, limit, ours)
-    residuals(lower, rows, RESIDUAL_LOOKS)
+    residuals(lower, select(rows, friction=None), RESIDUAL_LOOKS)
     panels.name_box(curves, main, f",  (a, c, d) {name_of(hop)}")
     return figure
 
@@ -239,15 +239,10 @@ RESIDUAL_LOOKS = {
 
 
 def residuals(axes, rows, looks):
-    """Draw z of each quantity in ``looks`` that has an exact value or a second estimate.
-
-    Rows with friction are left out.
-    """
+    """Draw z of each quantity in ``looks`` that has an exact value or a second estimate."""
     for quantity, (colour, marker, name) in looks.items():
         judged = [
-            r
-            for r in select(rows, quantity=quantity, friction=None)
-            if r["z"] is not None and r["distance"]
+            r for r in select(rows, quantity=quantity) if r["z"] is not None and r["distance"]
         ]
         if judged:
             x, z = columns(judged, "distance", "z")

@@ -36,7 +36,7 @@ WIDTH, RING, RESIDUALS, LATTICE, GAP, TOP = 7.0, 1.9, 0.8, 1.15, 0.42, 0.22
 #: Short files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
 
-#: Long files, smooth and with kicks.
+#: Long files, smooth and with friction.
 SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (ORANGE, "v")
 
 #: Looks of distances in a collapse.
@@ -75,7 +75,8 @@ def draw(box, tables):
         return figure
     panels.name_box(ring, first_scene(rows, box)[0])
     _ring(ring, rows)
-    residuals(lower, rows, RESIDUAL_LOOKS)
+    # Two discs with friction have a figure of their own.
+    residuals(lower, [r for r in rows if not r["friction"] or r["discs"] > 2], RESIDUAL_LOOKS)
     long_files = [row for row in rows if row["quantity"] in LONG]
     _moved(moved, long_files)
     _collapse(collapse, rows)
@@ -102,16 +103,16 @@ def caption(shown):
     walk with ν hops of a disc per time in either direction, each by ℓ (dashed): of two discs by
     correlations of hops (open symbols) and by displacements (dots), of four and eight discs by
     displacements, and of long files by the order of the discs; at distances δ = (r_c − r)/r_c from
-    the radius r_c at which hops become blocked. With kicks, all velocities are drawn anew at a rate
-    γ. (b) Residuals z in standard errors, from the exact rate, between two estimators, or of F from
-    theory. (c) A single file on a lattice, whose neighbours swap with the probability p: the same
-    ratio. (d) Mean square displacement of a tagged disc in a long file on a ring, blocked
-    (r = 0.28 h, full symbols) and open (δ = 1/8), in units of ℓ² and of the thermal speed. Black
-    lines are theory of the blocked files, without a free parameter: sound, until it has gone around
-    half of the ring, and damped sound. Grey
-    lines add what hops do to the file of places, as the order of the discs has it. (e) Files with
-    kicks: displacements over F√t×, at times over t× = (F/2D)², where single file and hops
-    contribute equally. The line is √s + s. Error bars are one standard error.
+    the radius r_c at which hops become blocked. With friction, all velocities are drawn anew at
+    random times, at a rate γ. (b) Residuals z in standard errors, from the exact rate, between two
+    estimators, or of F from theory. (c) A single file on a lattice, whose neighbours swap with the
+    probability p: the same ratio. (d) Mean square displacement of a tagged disc in a long file on a
+    ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8), in units of ℓ² and of the thermal
+    speed. Black lines are theory of the blocked files, without a free parameter: sound, until it
+    has gone around half of the ring, and damped sound. Grey lines add what hops do to the file of
+    places, as the order of the discs has it. (e) Files with friction: displacements over F√t×, at
+    times over t× = (F/2D)², where single file and hops contribute equally. The line is √s + s.
+    Error bars are one standard error.
     """
 
 
@@ -139,7 +140,7 @@ def _ring(axes, rows):
         ]  # fmt: skip
         if own:
             x, y, error = columns(own, "distance", "estimate", "stderr")
-            name = f"{own[0]['discs']} {'with kicks' if kicked else 'smooth discs'}"
+            name = f"{own[0]['discs']} {'with friction' if kicked else 'smooth discs'}"
             points(axes, x, y, error, look, name)
     axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
     axes.axhline(1, **RANDOM_WALK)
@@ -175,7 +176,7 @@ def _moved(axes, rows):
         for friction in dict.fromkeys(row["friction"] for row in here):
             own = select(here, friction=friction)
             look = SMOOTH_FILE if friction is None else KICKED_FILE
-            kind = "smooth" if friction is None else "kicks"
+            kind = "smooth" if friction is None else "friction"
             x, y, error = _of(own, "displacement")
             name = f"{kind}, {'blocked' if blocked else 'open'}"
             points(axes, x, y, error, look, name, blocked)
@@ -202,7 +203,7 @@ def _moved(axes, rows):
 
 
 def _collapse(axes, rows):
-    """Draw displacements with kicks over F √t×, against t/t×."""
+    """Draw displacements with friction over F √t×, against t/t×."""
     looks = iter(OPEN)
     for row in select(rows, quantity="diffusion", method="order"):
         if row["friction"] is None:
@@ -217,7 +218,7 @@ def _collapse(axes, rows):
         unit = f * math.sqrt(crossover)
         name = rf"$\delta=1/{round(1 / row['distance'])}$"
         points(axes, time / crossover, value / unit, error / unit, next(looks), name)
-    s = np.geomspace(1e-3, 1e2, 60)
+    s = np.geomspace(1e-3, 10, 60)
     axes.plot(s, np.sqrt(s) + s, color=BLACK, lw=0.8, zorder=5)
     axes.set(xscale="log", yscale="log", xlabel=r"time $t/t_\times$")
     axes.set_ylabel(r"$\langle x^2\rangle/F\sqrt{t_\times}$")
