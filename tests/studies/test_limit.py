@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import dblquad
 
 from twodiscs.model.checks import InputError
-from twodiscs_paper.studies.passages import limit
+from twodiscs_paper.studies.passages.models import limit
 
 #: False alarms of a comparison with an error bar: one in a million.
 SIGMA = 5

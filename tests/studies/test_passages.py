@@ -22,13 +22,13 @@ from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import (
-    exclusion,
     figure,
     figure_diffusion,
     file,
     fits,
     measure,
 )
+from twodiscs_paper.studies.passages.models import exclusion
 from twodiscs_paper.studies.passages.table import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
