@@ -168,5 +168,3 @@ def test_too_many_kicks_are_refused():
     for bad in (2e6, math.inf, -1.0, "1"):
         with pytest.raises(InputError, match=r"^friction must"):
             Scene(1.5, 1.0, 0.2, friction=bad)
-    with pytest.raises(InputError, match="friction must be left out with 3 discs"):
-        Scene(1.5, 1.0, 0.1, friction=1.0, discs=3)

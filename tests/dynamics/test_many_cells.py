@@ -139,13 +139,13 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     start = initial.states(scene, 20, 9)
     duration = many.replica_duration(scene, 4 * scene.discs)
     states, laps = start.copy(), np.zeros((scene.discs, 20))
-    kernels.advance_scene(scene, states, laps, duration)
+    kernels.advance_scene(scene, states, laps, duration, None)
     other, rounds = start.copy(), np.zeros((scene.discs, 20))
-    many.advance_states(other, rounds, duration, many.law_of(scene))
+    many.advance_states(other, rounds, duration, many.law_of(scene), None)
     assert np.array_equal(laps, rounds)
     assert states == pytest.approx(other, abs=1e-7 * scene.width)
     states[2 * scene.discs :] *= -1
-    kernels.advance_scene(scene, states, laps, duration)
+    kernels.advance_scene(scene, states, laps, duration, None)
     states[2 * scene.discs :] *= -1
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
@@ -221,7 +221,7 @@ def check_conserved(scene, events):
     pieces, laps = 20, np.zeros((n, 1))
     duration = many.replica_duration(scene, events / pieces)
     for _ in range(pieces):
-        many_cells.advance_all(states, laps, duration, epoch, law, grid)
+        many_cells.advance_all(states, laps, duration, epoch, law, grid, None)
         x, y, u, v = np.split(states[:, 0], 4)
         half = law.ring[1] * (1 + 1e-15) if law.ring else scene.range_x / 2
         assert np.max(np.abs(x)) <= half

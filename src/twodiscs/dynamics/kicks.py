@@ -39,11 +39,11 @@ class Kicks(NamedTuple):
 def new_kicks(lanes, friction):
     """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
 
-    ``friction`` has a ``rate``.
+    ``friction`` has a ``rate``. A lane that never begins has no kick.
     """
     streams = np.zeros((lanes, 4), np.uint64)
-    stream = np.zeros(4, np.uint64)
-    return Kicks(friction.rate, np.zeros(lanes), streams, stream, np.zeros(6), np.zeros(8))
+    stream, waits = np.zeros(4, np.uint64), np.full(lanes, np.inf)
+    return Kicks(friction.rate, waits, streams, stream, np.zeros(6), np.zeros(8))
 
 
 @optional(lambda i, seed, replica, kicks: None)

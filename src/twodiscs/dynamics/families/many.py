@@ -4,11 +4,11 @@ import math
 
 from twodiscs.dynamics.ensemble import RETURNS
 from twodiscs.dynamics.many import kernels, lockstep
+from twodiscs.dynamics.many.kernels import kicks_of
 from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duration
 from twodiscs.dynamics.many.path import (
     advance_all,
     events_of,
-    kicks_of,
     new_wraps,
     state_of,
     trajectory_rate,
@@ -37,6 +37,9 @@ PAIR = 0.8
 
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
 TOUCHED, COMPARED = 50.0, 0.25
+
+#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event.
+KICK = 0.7
 
 #: The most by which the window of a chain of ``LARGE`` numbers of discs is longer.
 LONGER = 64
@@ -70,8 +73,13 @@ def rare_hops(scene):
 
 
 def work_per_event(scene):
-    """Return 1: an event costs as usual."""
-    return 1.0
+    """Return the cost of an event over the usual cost, with kicks.
+
+    A kick costs as an event, which looks at all discs; for ``LARGE`` numbers of discs as ``KICK``
+    events for each disc.
+    """
+    kick = KICK * scene.discs if scene.discs >= LARGE else 1.0
+    return 1.0 + kick * scene.friction / expected_event_rate(scene)
 
 
 def cost_ratio(scene):
@@ -114,7 +122,8 @@ def intervals_of_chain(scene, hop):
 def events_per_interval(scene, hop):
     """Return the wall and disc events per interval, as if there were ``intervals_of_chain``."""
     window = _window(scene, hop)
-    return window * expected_event_rate(scene) / intervals_of_chain(scene, hop)
+    events = window * expected_event_rate(scene) * work_per_event(scene)
+    return events / intervals_of_chain(scene, hop)
 
 
 def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):

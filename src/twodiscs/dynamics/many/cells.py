@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.dynamics.kicks import before_kick, open_kicks
 from twodiscs.dynamics.law import NEVER, VANISHING, contact_quotient, crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
     ABOVE,
@@ -31,6 +32,8 @@ from twodiscs.dynamics.many.lockstep import (
     VERTICAL,
     N,
     nearest,
+    new_kicks,
+    redraw,
 )
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many.cells import (
@@ -44,6 +47,9 @@ from twodiscs.sampling.many.cells import (
 )
 from twodiscs.sampling.many.initial import draw_states
 from twodiscs.sampling.streams import open_stream
+
+#: The class of the entries of a log that a kick makes, one for each disc.
+KICK = N
 
 #: After about this number of events per disc times begin at 0 again, so that they lose no digits.
 EPOCH = 64
@@ -93,7 +99,8 @@ class Log(NamedTuple):
 def new_log(discs, entries):
     """Return an empty ``Log`` for about a number of ``entries``.
 
-    When it is full, each pair of discs may still have a hop of each kind to enter.
+    When it is full, each pair of discs may still have a hop of each kind to enter, and each disc a
+    kick.
     """
     entries += discs * discs
     return Log(
@@ -104,8 +111,8 @@ def new_log(discs, entries):
 
 @optional(lambda discs, log: False)
 def is_full(discs, log):
-    """Return whether there is no room for another event and all hops that may come with it."""
-    return log.size[0] + discs * discs > log.times.size
+    """Return whether there is no room for an event, and then a kick and all hops before it."""
+    return log.size[0] + discs * discs >= log.times.size
 
 
 @optional(lambda time, kind, i, k, log: None)
@@ -312,24 +319,48 @@ def start_from(states, replica, motion, grid, law):
         motion.time[i] = 0.0
         column, row = interval_of(motion.x[i], grid.x), interval_of(motion.y[i], grid.y)
         enter(i, column, row, motion.places, grid)
-    for i in range(discs):
+    look_for_all(motion, grid, law)
+
+
+@compiled
+def look_for_all(motion, grid, law):
+    """Find the contacts and borders of all discs, at the time 0 that all have come to."""
+    for i in range(motion.x.size):
         look_around(i, 0.0, motion, grid, law)
         find_border(i, motion, grid)
         enlist(i, motion)
 
 
+@optional(lambda time, lane, kicks: False)
+def is_kicked(time, lane, kicks):
+    """Return whether the kick of a ``lane`` is due after another ``time``."""
+    kicks.waits[lane] -= time
+    return kicks.waits[lane] <= 0.0
+
+
+@optional(lambda motion, laps, grid, law, log, lane, kicks: None)
+def kick_discs(motion, laps, grid, law, log, lane, kicks):
+    """Draw the velocities of all discs anew, at the time 0 that all have come to."""
+    discs = motion.x.size
+    redraw(motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1)), 0, lane, law, kicks)
+    look_for_all(motion, grid, law)
+    for i in range(discs):
+        note_event(0.0, KICK, i, i, motion, laps, law.ring, log)
+
+
 @compiled
-def follow(duration, epoch, motion, laps, grid, law, counts, log, hops, hops_x):
+def follow(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, hops, hops_x):
     """Follow the discs for a ``duration`` and add to ``counts`` (n,) what happens.
 
     On a ring the rounds of the discs are added to ``laps`` (N,). A ``log``, which may be None, gets
     all events and counted hops; the discs stop when it is full. Returns the time that is left. All
-    discs have come to the same time, from which they can be followed on.
+    discs have come to the same time, from which they can be followed on. ``kicks`` are those of a
+    ``lane``, None without friction.
     """
     discs, tree = motion.x.size, motion.tree
     columns, rows = grid.x.size - 1, grid.y.size - 1
     while True:
-        end = min(duration, epoch)
+        end = before_kick(min(duration, epoch), lane, kicks)
         while True:
             now = tree[1]
             full = is_full(discs, log)
@@ -395,8 +426,8 @@ def follow(duration, epoch, motion, laps, grid, law, counts, log, hops, hops_x):
                 if i == j:
                     break
                 i = j
-        done = full | (end == duration)
-        if done:
+        done, kicked = full | (end == duration), is_kicked(end, lane, kicks)
+        if done | kicked:
             for i in range(discs):
                 fly(i, end, motion, counts, log, hops, hops_x)
         for i in range(discs):
@@ -406,6 +437,8 @@ def follow(duration, epoch, motion, laps, grid, law, counts, log, hops, hops_x):
             enlist(i, motion)
         duration -= end
         go_on(end, log)
+        if kicked:
+            kick_discs(motion, laps, grid, law, log, lane, kicks)
         if done:
             return duration
 
@@ -420,13 +453,15 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
     discs = initial.discs
     states, laps = np.zeros((4 * discs, replicas)), np.zeros(discs)
     motion, count = new_motion(discs, grid), np.zeros(N, np.int64)
+    kicks = new_kicks(1, discs, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     for block in range(first, stop):
         draw_states(open_stream(seed, block), initial, states)
         for replica in range(replicas):
             count[:] = 0
             start_from(states, replica, motion, grid, law)
-            follow(duration, epoch, motion, laps, grid, law, count, None, hops, hops_x)
+            open_kicks(0, seed, block * replicas + replica, kicks)
+            follow(duration, epoch, motion, laps, grid, law, count, 0, kicks, None, hops, hops_x)
             for e in range(N):
                 sums[e] += count[e]
                 for f in range(e, N):
@@ -435,17 +470,20 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
 
 
 @compiled
-def advance_all(states, laps, time, epoch, law, grid):
+def advance_all(states, laps, time, epoch, law, grid, kicks):
     """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
 
-    On a ring the rounds of discs are added to ``laps`` (N, replicas).
+    On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
+    columns, None without friction.
     """
     discs, replicas = laps.shape
     motion, counts, rounds = new_motion(discs, grid), np.zeros(N, np.int64), np.zeros(discs)
     for replica in range(replicas):
         rounds[:] = 0.0
         start_from(states, replica, motion, grid, law)
-        follow(time, epoch, motion, rounds, grid, law, counts, None, None, None)
+        follow(
+            time, epoch, motion, rounds, grid, law, counts, replica, kicks, None, None, None
+        )  # fmt: skip
         for i in range(discs):
             states[i, replica], states[discs + i, replica] = motion.x[i], motion.y[i]
             states[2 * discs + i, replica] = motion.u[i]

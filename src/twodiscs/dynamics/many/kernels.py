@@ -3,6 +3,7 @@
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, RETURNS
+from twodiscs.dynamics.kicks import open_all
 from twodiscs.dynamics.many import cells, lockstep
 from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid
 from twodiscs.sampling.streams import open_stream
@@ -33,12 +34,20 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
     )  # fmt: skip
 
 
-def advance_scene(scene, states, laps, time):
+def advance_scene(scene, states, laps, time, kicks):
     """Advance the columns of ``states`` (4N, replicas), as ``advance_states`` does."""
     law, grid = lockstep.law_of(scene), large_grid(scene)
     if grid is None:
-        return lockstep.advance_states(states, laps, time, law)
-    return cells.advance_all(states, laps, time, lockstep.epoch_of(scene), law, grid)
+        return lockstep.advance_states(states, laps, time, law, kicks)
+    return cells.advance_all(states, laps, time, lockstep.epoch_of(scene), law, grid, kicks)
+
+
+def kicks_of(scene, number, seed, block=0):
+    """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
+    kicks = lockstep.new_kicks(number, scene.discs, scene.friction or None)
+    if kicks is not None:
+        open_all(np.uint64(seed), block * number, kicks)
+    return kicks
 
 
 class Followed:
@@ -54,8 +63,9 @@ class Followed:
         self.log, self.counts = cells.new_log(scene.discs, ENTRIES), np.zeros(lockstep.N, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
-    def start(self, state):
-        """Begin with a ``state``, a column of 4N numbers."""
+    def start(self, state, seed, replica=0):
+        """Begin with a ``state``, a column of 4N numbers, and the kicks of its stream."""
+        self.kicks = kicks_of(self.scene, 1, seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
         cells.start_from(state, 0, self.motion, self.grid, self.law)
 
@@ -65,7 +75,7 @@ class Followed:
             self.log.size[0] = 0
             duration = cells.follow(
                 duration, self.epoch, self.motion, self.laps, self.grid, self.law, self.counts,
-                self.log, *self.hops,
+                0, self.kicks, self.log, *self.hops,
             )  # fmt: skip
             yield self.log, np.argsort(self.log.times[: self.log.size[0]], kind="stable")
 
@@ -82,7 +92,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, window, bins, sums, 
         if chain % chains == 0:
             stream = open_stream(np.uint64(seed), first + chain // chains)
         draw_states(stream, initial, state)
-        path.start(state)
+        path.start(state, seed, first * chains + chain)
         times, step = np.zeros(0), window
         # If there is a hop in the window, also the first one after it ends an interval.
         while step == window or (times.size and times[-1] < window):

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, nearest_power_of_two
+from twodiscs.dynamics.kicks import Kicks, before_kick, open_kicks, renew_kicks
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     NEVER,
@@ -29,7 +30,13 @@ from twodiscs.dynamics.law import (
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
-from twodiscs.sampling.many.initial import LARGE, draw_states, initial_of, method
+from twodiscs.sampling.many.initial import (
+    LARGE,
+    draw_states,
+    draw_velocities,
+    initial_of,
+    method,
+)
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import exact
 from twodiscs.theory.many.rates import bulk_measures, rates
@@ -60,15 +67,17 @@ PARTS = by_kind(
 
 
 class ManyLaw(NamedTuple):
-    """The constants of the motion: half-ranges of the centres, σ, and the ring or None.
+    """The constants of the motion: half-ranges of the centres, σ, the ring, the rate of kicks.
 
-    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then.
+    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. Between
+    walls ``ring`` is None, and so is ``friction`` without kicks.
     """
 
     half_x: float | None
     half_y: float
     sigma: float
     ring: tuple | None = None
+    friction: float | None = None
 
 
 def law_of(scene):
@@ -76,8 +85,49 @@ def law_of(scene):
     half_y, sigma = scene.range_y / 2, scene.contact_distance
     if scene.periodic:
         half = scene.width / 2
-        return ManyLaw(None, half_y, sigma, (scene.width, half, half / math.sqrt(2)))
-    return ManyLaw(scene.range_x / 2, half_y, sigma)
+        ring = scene.width, half, half / math.sqrt(2)
+        return ManyLaw(None, half_y, sigma, ring, scene.friction or None)
+    return ManyLaw(scene.range_x / 2, half_y, sigma, None, scene.friction or None)
+
+
+@optional(lambda lanes, discs, friction: None)
+def new_kicks(lanes, discs, friction):
+    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
+
+    The working memory of a draw is that of ``draw_velocities``.
+    """
+    streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
+    waits, cuts, velocities = np.full(lanes, NEVER), np.zeros(discs - 1), np.zeros((2, discs))
+    return Kicks(friction, waits, streams, stream, cuts, velocities)
+
+
+@optional(lambda u, l, ring: 0.0)
+def drift(u, l, ring):
+    """Return the mean velocity along a ring in lane ``l``, which is conserved; 0 between walls."""
+    return np.sum(u[:, l]) / u.shape[0]
+
+
+@compiled
+def redraw(u, v, l, lane, law, kicks):
+    """Draw the velocities in column ``l`` of ``u`` and ``v`` anew, in a kick of a ``lane``.
+
+    They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum.
+    """
+    discs, mean = u.shape[0], drift(u, l, law.ring)
+    draw_velocities(kicks.streams[lane], kicks.velocity, kicks.direction, law.ring)
+    scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
+    for i in range(discs):
+        u[i, l], v[i, l] = mean + scale * kicks.velocity[0, i], scale * kicks.velocity[1, i]
+    renew_kicks(lane, kicks)
+
+
+@optional(lambda u, v, times, law, kicks: None)
+def kick_lanes(u, v, times, law, kicks):
+    """Kick the lanes whose kick is due after flights of ``times`` (lanes,)."""
+    for l in range(times.size):
+        kicks.waits[l] -= times[l]
+        if kicks.waits[l] <= 0.0:
+            redraw(u, v, l, l, law, kicks)
 
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
@@ -137,11 +187,15 @@ def on_wall(position, hit, half):
 
 
 @compiled
-def find_events(x, y, u, v, remaining, times, codes, speeds, law):
-    """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time."""
+def find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks=None):
+    """Fill ``times`` and ``codes`` (lanes,) with the first event of each lane within its time.
+
+    A flight that a kick ends has the code of the end of time, and ``kick_lanes`` has to follow.
+    """
     discs, lanes = x.shape
     for l in range(lanes):
-        times[l], codes[l] = soonest(remaining[l], END_OF_TIME, law.ring)
+        left = before_kick(remaining[l], l, kicks)
+        times[l], codes[l] = soonest(left, END_OF_TIME, law.ring)
         speeds[l] = 1.0
     number = 1.0
     for i in range(discs):
@@ -231,6 +285,7 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
     remaining, times = np.zeros(lanes), np.zeros(lanes)
     codes, speeds = np.zeros(lanes), np.zeros(lanes)
     counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
+    kicks = new_kicks(lanes, discs, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
     block, used, running = first, replicas, 0
@@ -255,6 +310,7 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
                 for i in range(discs):
                     x[i, l], y[i, l] = states[i, used], states[discs + i, used]
                     u[i, l], v[i, l] = states[2 * discs + i, used], states[3 * discs + i, used]
+                open_kicks(l, seed, (block - 1) * replicas + used, kicks)
                 remaining[l] = duration
                 busy[l] = True
                 running += 1
@@ -262,8 +318,9 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
         if running == 0:
             return sums, products
         for _ in range(PASSES):
-            find_events(x, y, u, v, remaining, times, codes, speeds, law)
+            find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
             advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x)
+            kick_lanes(u, v, times, law, kicks)
 
 
 @optional(lambda laps, x, u, times, ring: None)
@@ -275,11 +332,21 @@ def count_laps(laps, x, u, times, ring):
             laps[i, l] += (1.0 if then > ring[1] else 0.0) - (1.0 if then < -ring[1] else 0.0)
 
 
+@optional(lambda first, stop, kicks: None)
+def of_lanes(first, stop, kicks):
+    """Return the ``Kicks`` of the lanes ``first`` … ``stop`` − 1, which share their memory."""
+    waits, streams = kicks.waits[first:stop], kicks.streams[first:stop]
+    return Kicks(
+        kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity
+    )  # fmt: skip
+
+
 @compiled
-def advance_states(states, laps, time, law, lanes=LANES):
+def advance_states(states, laps, time, law, kicks, lanes=LANES):
     """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
 
-    On a ring the rounds of discs are added to ``laps`` (N, replicas).
+    On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
+    columns, None without friction.
     """
     discs, replicas = laps.shape
     for first in range(0, replicas, lanes):
@@ -290,11 +357,12 @@ def advance_states(states, laps, time, law, lanes=LANES):
         old_x, old_y, rounds = np.zeros_like(x), np.zeros_like(y), np.zeros_like(x)
         remaining, times = np.full(stop - first, time), np.zeros(stop - first)
         codes, speeds = np.zeros(stop - first), np.zeros(stop - first)
-        counts = np.zeros((N, stop - first))
+        counts, some_kicks = np.zeros((N, stop - first)), of_lanes(first, stop, kicks)
         while np.max(remaining) > 0.0:
-            find_events(x, y, u, v, remaining, times, codes, speeds, law)
+            find_events(x, y, u, v, remaining, times, codes, speeds, law, some_kicks)
             count_laps(rounds, x, u, times, law.ring)
             advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None)
+            kick_lanes(u, v, times, law, some_kicks)
         states[:, first:stop] = some
         laps[:, first:stop] += rounds
 
@@ -343,6 +411,9 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
             old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
             endless, times = np.full(lanes, np.inf), np.zeros(lanes)
             codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+            kicks = new_kicks(lanes, discs, law.friction)
+            for l in range(lanes):
+                open_kicks(l, seed, block * replicas + start + l, kicks)
             # The time of the last hop, negative before the first one, and the time since then.
             elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
             counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
@@ -351,8 +422,9 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
             while busy and going[0]:
                 busy = False
                 for _ in range(PASSES):
-                    find_events(x, y, u, v, endless, times, codes, speeds, law)
+                    find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
                     advance(x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x)
+                    kick_lanes(u, v, times, law, kicks)
                     for l in range(lanes):
                         at = 0.0
                         if hits[hop, l] > seen[l]:

@@ -3,8 +3,10 @@
 import numpy as np
 
 from twodiscs.dynamics.ensemble import nearest_power_of_two
+from twodiscs.dynamics.kicks import before_kick
 from twodiscs.dynamics.law import END_OF_TIME, crosses, crossing_time
-from twodiscs.dynamics.many.kernels import Followed, advance_scene
+from twodiscs.dynamics.many.cells import KICK
+from twodiscs.dynamics.many.kernels import Followed, advance_scene, kicks_of
 from twodiscs.dynamics.many.lockstep import (
     BESIDE,
     COLLISIONS,
@@ -15,12 +17,14 @@ from twodiscs.dynamics.many.lockstep import (
     expected_event_rate,
     expected_rates,
     find_events,
+    kick_lanes,
     law_of,
 )
 from twodiscs.dynamics.trajectory import ROUNDING, no_state
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import ENERGY
+from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many.initial import large_grid
 from twodiscs.sampling.starts import components
 
@@ -30,16 +34,12 @@ LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
 
 def advance_all(scene, states, wraps, time, kicks):
     """Advance the columns of ``states``, see ``trajectory.advance_all``."""
-    advance_scene(scene, states, wraps, time)
+    advance_scene(scene, states, wraps, time, kicks)
 
 
 def new_wraps(scene, number):
     """Return the counts of rounds for ``number`` states: none."""
     return np.zeros((scene.discs, number))
-
-
-def kicks_of(scene, number, seed, block=0):
-    """Return None: more than two discs have no friction."""
 
 
 def unwrap(scene, columns, wraps):
@@ -49,9 +49,10 @@ def unwrap(scene, columns, wraps):
 
 
 def trajectory_rate(scene):
-    """Return the rows of a trajectory per time: wall hits, collisions and hops."""
+    """Return the rows of a trajectory per time: wall hits, collisions, hops and kicks."""
     known = expected_rates(scene)
-    return expected_event_rate(scene) + sum(known.get(hop, 0.0) for hop in HOPS)
+    hops = sum(known.get(hop, 0.0) for hop in HOPS)
+    return expected_event_rate(scene) + hops + scene.friction
 
 
 def usual_duration(scene):
@@ -69,9 +70,9 @@ def events_of(scene, state, duration, seed=0):
     ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.
     """
     if large_grid(scene) is not None:
-        yield from _logged(scene, np.array(state), duration)
+        yield from _logged(scene, np.array(state), duration, seed)
         return
-    n, law, time = scene.discs, law_of(scene), 0.0
+    n, law, time, kicks = scene.discs, law_of(scene), 0.0, kicks_of(scene, 1, seed)
     x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
     ring = law.ring[0] if law.ring else None
     # By so much places are beyond the cell that the kernel keeps to.
@@ -85,9 +86,11 @@ def events_of(scene, state, duration, seed=0):
     yield time, "start", None, None, np.ravel([x + beyond, y, u, v])
     while True:
         before, speed = np.ravel([x + beyond, y]), np.ravel([u, v])
-        find_events(x, y, u, v, remaining, times, codes, speeds, law)
+        is_kick = before_kick(remaining[0], 0, kicks) < remaining[0]
+        find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
         flight, code = float(times[0]), int(codes[0])
         advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
+        kick(u, v, times, law, kicks)
         if ring:
             beyond = ring * np.round(((before + flight * speed)[:n, None] - x) / ring)
         after, hops = np.ravel([x + beyond, y]), []
@@ -101,7 +104,9 @@ def events_of(scene, state, duration, seed=0):
             then = before + until * speed
             yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
         time, now = time + flight, np.ravel([x + beyond, y, u, v])
-        if code == int(END_OF_TIME):
+        if code == int(END_OF_TIME) and is_kick:
+            yield time, "kick", None, None, now
+        elif code == int(END_OF_TIME):
             yield float(duration), "end", None, None, now
             return
         if code > 2 * n:
@@ -112,17 +117,24 @@ def events_of(scene, state, duration, seed=0):
             yield time, f"wall_{'xy'[(code - 1) % 2]}{disc}", disc, None, now
 
 
-def _logged(scene, state, duration):
+@compiled
+def kick(u, v, times, law, kicks):
+    """Kick the lanes whose kick is due, see ``kick_lanes``."""
+    kick_lanes(u, v, times, law, kicks)
+
+
+def _logged(scene, state, duration, seed):
     """Yield the ``events_of`` a scene whose kernel has a log; only the state needs all discs."""
     path = Followed(scene, scene.events)
     rounds = np.round(state[: scene.discs] / scene.width) if scene.periodic else 0.0
     inside = state.copy()
     inside[: scene.discs] -= rounds * scene.width
-    path.start(inside[:, None])
+    path.start(inside[:, None], seed)
     path.laps[:] = rounds
     # Each disc was here at its time.
     at, since = np.reshape(state, (4, scene.discs)).copy(), np.zeros(scene.discs)
-    names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop", COLLISIONS: "disc_collision"}
+    names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop"}
+    names |= {COLLISIONS: "disc_collision", KICK: "kick"}
     yield 0.0, "start", None, None, state
     for log, order in path.go_on(duration):
         for k in order:
@@ -130,8 +142,11 @@ def _logged(scene, state, duration):
             if kind not in (VERTICAL, HORIZONTAL):
                 at[:, i], at[:, j] = log.states[k]
                 since[[i, j]] = time
+            if kind == KICK and i < scene.discs - 1:
+                continue
             first, second = min(i, j) + 1, max(i, j) + 1 if i != j else None
             name = names.get(kind) or f"wall_{'x' if kind == BESIDE else 'y'}{first}"
+            first = None if kind == KICK else first
             yield time, name, first, second, _then(at, time - since)
     yield float(duration), "end", None, None, _then(at, duration - since)
 

@@ -21,7 +21,7 @@ MOST_DIGITS = 150
 
 def check(scene):
     """Raise ``InputError`` for an invalid ``Scene``: effects, or a radius that does not fit."""
-    if other := [name for name in scene.effects if name != "periodic"]:
+    if other := [name for name in scene.effects if name not in ("periodic", "friction")]:
         raise InputError(
             f"{other[0]} must be left out with {scene.discs} discs, because more than two are "
             f"equal and smooth discs in the plane, not {scene.effects[other[0]]!r}"

@@ -1,0 +1,88 @@
+"""Friction of many discs: kicks keep energy and momentum, and no mean time changes.
+
+Statistical comparisons allow five standard errors.
+"""
+
+import math
+from collections import Counter
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from twodiscs.dynamics.ensemble import relative_errors
+from twodiscs.dynamics.many import kernels, path
+from twodiscs.dynamics.many import lockstep as many
+from twodiscs.model.events import SHELLS
+from twodiscs.model.scene import Scene
+from twodiscs.sampling.many import initial
+from twodiscs.theory.many import exact
+from twodiscs.theory.many.rates import rates
+
+FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
+CHANNEL = Scene(8.75, 0.6, 0.18, discs=20, friction=4.0)
+RING = Scene(3.0, 1.0, 0.15, discs=3, periodic="x", friction=4.0)
+
+
+@pytest.mark.parametrize("scene", [FEW, CHANNEL], ids=["few", "channel"])
+def test_no_mean_time_changes(scene):
+    """Kicks come several times in a replica, in both kernels."""
+    duration, replicas = many.replica_duration(scene, 256), 2048
+    assert duration * scene.friction > 3
+    sums, products = kernels.run_blocks(scene, 1, 0, 1, duration, replicas=replicas)
+    found, relative = sums / replicas / duration, relative_errors(sums, products, replicas)
+    for event, rate in rates(scene, exact.measures(scene)).items():
+        k = [*SHELLS].index(event)
+        error = 5 * found[k] * relative[k] if rate else 0.0
+        assert abs(found[k] - rate) <= error, (event, found[k], rate, error)
+
+
+@pytest.mark.parametrize("scene", [FEW, RING], ids=["few", "ring"])
+def test_a_kick_keeps_places_energy_and_momentum(scene):
+    """Kicks are rows of a trajectory, and their number is that of a Poisson process."""
+    time = 32.0
+    start = initial.states(scene, 1, 3)[:, 0]
+    if scene.periodic:
+        # Another momentum along the ring, which has to stay.
+        start[2 * scene.discs : 3 * scene.discs] += 0.1
+        start[2 * scene.discs :] /= np.linalg.norm(start[2 * scene.discs :])
+    rows = [*path.events_of(scene, start, time, seed=3)]
+    names = Counter(row[1] for row in rows)
+    assert abs(names["kick"] - scene.friction * time) <= 5 * math.sqrt(scene.friction * time)
+    momentum = start[2 * scene.discs : 3 * scene.discs].sum()
+    for (before, *_, old), (now, name, first, second, new) in pairwise(rows):
+        (x, y, u, v), (*_, w) = np.split(new, 4), np.split(old, 4)
+        assert np.sum(u * u + v * v) == pytest.approx(1, abs=1e-12)
+        assert not scene.periodic or np.sum(u) == pytest.approx(momentum, abs=1e-12)
+        if name == "kick":
+            assert (first, second) == (None, None)
+            assert np.all(v != w)
+            old_x, old_y, old_u, _ = np.split(old, 4)
+            assert x == pytest.approx(old_x + old_u * (now - before), abs=1e-9)
+            assert y == pytest.approx(old_y + w * (now - before), abs=1e-9)
+    other = [*path.events_of(scene, start, time, seed=4)]
+    assert np.array_equal(other[0][-1], rows[0][-1])
+    assert not np.array_equal(other[-1][-1], rows[-1][-1])
+
+
+def test_both_kernels_have_the_same_kicks(monkeypatch):
+    """Counts, rows and states are the same, before roundings have grown."""
+    duration = many.replica_duration(CHANNEL, 160)
+    start = initial.states(CHANNEL, 4, 1)
+    given = CHANNEL, 5, 0, 1, duration
+    found = {}
+    for name in ("cells", "all pairs"):
+        states, laps = start.copy(), np.zeros((20, 4))
+        kernels.advance_scene(CHANNEL, states, laps, duration, kernels.kicks_of(CHANNEL, 4, 5))
+        counts, _ = kernels.run_blocks(*given, replicas=4)
+        rows = [*path.events_of(CHANNEL, start[:, 0], duration, 5)]
+        found[name] = states, counts, [row[1:4] for row in rows], rows[-1][-1]
+        monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
+        monkeypatch.setattr(path, "large_grid", lambda scene: None)
+    one, other = found["cells"], found["all pairs"]
+    assert one[0] == pytest.approx(other[0], abs=1e-7)
+    # The trajectory has the kicks of the first of these states.
+    assert one[3] == pytest.approx(one[0][:, 0], abs=1e-7)
+    assert np.array_equal(one[1], other[1])
+    assert one[2] == other[2]
+    assert Counter(name for name, *_ in one[2])["kick"] > 3
