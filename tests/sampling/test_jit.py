@@ -10,7 +10,6 @@ from inspect import iscode
 from pathlib import Path
 from types import FunctionType
 
-import numba
 import numpy as np
 import pytest
 
@@ -344,20 +343,3 @@ def test_absent_effects_leave_no_instruction(package):
         env=environment, capture_output=True, check=False,
     )  # fmt: skip
     assert failed.returncode != 0
-
-
-def test_a_function_within_others_has_no_machine_code_and_python_may_call_it():
-    @jit.inlined
-    def twice(x):
-        return 2 * x
-
-    @numba.njit
-    def caller(x):
-        return twice(x) + 1
-
-    assert caller(3) == 7
-    ((signature, result),) = twice.overloads.items()
-    assert signature == (numba.int64,)
-    assert not result.library.codegen._engine.is_symbol_defined(result.fndesc.llvm_func_name)
-    assert (twice(3), twice(2.5)) == (6, 5.0)
-    assert [*twice.overloads] == [signature]

@@ -45,7 +45,7 @@ collecting = gc.isenabled()
 gc.disable()
 
 import numba  # noqa: E402
-from numba.core import caching, codegen, compiler, types  # noqa: E402
+from numba.core import caching, types  # noqa: E402
 from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
 from numba.extending import overload  # noqa: E402
 
@@ -216,41 +216,9 @@ def _compile_once(cache, name):
     cache.load_overload, cache.save_overload = load_or_lock, save_and_unlock
 
 
-class CodeForCallers(codegen.JITCodeLibrary):
-    """The optimized code of a function that exists only in its callers, without machine code."""
-
-    def _finalize_final_module(self):
-        self._finalized = True
-
-
-class CompilerForCallers(compiler.Compiler):
-    """Compiles a function for its callers: machine code of its own takes a sixth of the time."""
-
-    def define_pipelines(self):
-        """Return numba's pipelines, after changing where they put the code."""
-        state = self.state
-        state.library = CodeForCallers(state.targetctx.codegen(), state.func_id.func_qualname)
-        # Numba knows a function by its machine code, a builtin. Any other builtin does.
-        absent = object().__sizeof__
-        state.targetctx = state.targetctx.subtarget(get_executable=lambda *code: absent)
-        return super().define_pipelines()
-
-
-#: The options of a function that exists only in its callers.
-FOR_CALLERS = OPTIONS | {
-    "forceinline": True, "no_cpython_wrapper": True, "pipeline_class": CompilerForCallers,
-}  # fmt: skip
-
-
 def inlined(function):
-    """Compile ``function`` into its callers, whatever its length: for the innermost loops.
-
-    If Python calls it, it is compiled once more.
-    """
-    within = numba.njit(function, **FOR_CALLERS)
-    within.add_overload = lambda result: within.overloads.update({result.signature.args: result})
-    within._compile_for_args = numba.njit(function, **OPTIONS)._compile_for_args
-    return within
+    """Compile ``function`` into its callers, whatever its length: for the innermost loops."""
+    return numba.njit(function, forceinline=True, **OPTIONS)
 
 
 def optional(absent):
@@ -266,7 +234,7 @@ def optional(absent):
 
         chosen.__name__, chosen.__doc__ = present.__name__, present.__doc__
 
-        @overload(chosen, strict=False, jit_options=FOR_CALLERS)
+        @overload(chosen, strict=False, jit_options=OPTIONS | {"forceinline": True})
         def choose(*arguments):
             missing = isinstance(arguments[-1], types.NoneType | types.Omitted)
             return absent if missing else present
