@@ -129,8 +129,12 @@ def kicked(state, i, time, law, kicks):
 @optional(lambda rows, times, law, kicks: None)
 def kick_lanes(rows, times, law, kicks):
     """Kick the lanes whose kick is due after flights of ``times`` (lanes,)."""
+    waits = kicks.waits
     for i in range(times.size):
-        put_state(rows, i, kicked(state_at(rows, i, law), i, times[i], law, kicks), law)
+        if waits[i] <= times[i]:
+            put_state(rows, i, kicked(state_at(rows, i, law), i, times[i], law, kicks), law)
+        else:
+            waits[i] -= times[i]
 
 
 @inlined

@@ -24,7 +24,7 @@ SEED = np.uint64(1 << 63)
 class Kicks(NamedTuple):
     """The rate of kicks, and for each lane the time to the next one and its stream.
 
-    ``stream``, ``direction`` and ``velocity`` are the working memory of a draw.
+    ``stream``, ``direction`` and ``velocity`` are working memory.
     """
 
     rate: float
@@ -62,7 +62,8 @@ def renew_kicks(i, kicks):
 @optional(lambda remaining, i, kicks: remaining)
 def before_kick(remaining, i, kicks):
     """Return the ``remaining`` time of lane ``i``, or the time to its next kick if it is less."""
-    return min(remaining, kicks.waits[i])
+    wait = kicks.waits[i]
+    return remaining if remaining < wait else wait
 
 
 @compiled

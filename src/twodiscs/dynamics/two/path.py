@@ -1,6 +1,7 @@
 """One trajectory of two discs, event by event."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -206,8 +207,9 @@ def events_of(scene, state, duration, seed=0):
 
 
 def event_rate(scene):
-    """Return the wall and disc events per time, and what jumps cost in their unit."""
-    return exact.event_rate(scene) * exact.work_per_event(scene)
+    """Return the wall and disc events and kicks per time, and what jumps cost in their unit."""
+    work = exact.work_per_event(replace(scene, friction=0.0))
+    return exact.event_rate(scene) * work + scene.friction
 
 
 def usual_duration(scene):

@@ -21,7 +21,7 @@ __all__ = [
 PASSES_PER_EVENT = 64
 
 #: The time of a kick over the time of an event.
-KICK = 4
+KICK = 15
 
 
 def volume_and_areas(scene):
