@@ -23,7 +23,7 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import components, states
-from twodiscs.theory import exact, virial
+from twodiscs.theory import exact
 
 PLAIN = Scene(1.5, 1.0, 0.2)
 ALL = Scene(
@@ -157,11 +157,6 @@ def test_velocities_forget_at_the_rate_of_kicks():
         assert abs(mean - 0.25 * math.exp(-2.0 * time)) <= 5 * error + 0.02 * 0.25
     together = td.observe(scene, product, times[-1:], 2**15, seed=1)
     assert together.mean[0] == pytest.approx(found.mean[-1], rel=1e-12)
-
-
-def test_the_virial_theorem_holds():
-    scene = replace(PLAIN, friction=5.0)
-    assert virial.weights(scene) == virial.weights(PLAIN)
 
 
 def test_too_many_kicks_are_refused():

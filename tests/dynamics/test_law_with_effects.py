@@ -185,6 +185,7 @@ def test_a_trajectory_names_what_its_scene_has(scene):
         set(DECLARED)
         | {"start", "end"}
         | {f"wall_{axis}{disc}" for axis in "xyz" for disc in (1, 2)}
+        | ({"kick"} if scene.friction else set())
     )
     assert names <= known
     assert all((row[6] is None) == (scene.depth is None) for row in rows)
