@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from dynamics.rates import check_rates
 from effect_scenes import SCENES
+from sampling.uniformity import assert_uniform
+from scipy.special import betainc
 
 import twodiscs as td
 from twodiscs.dynamics import counting, trajectory
@@ -75,6 +77,32 @@ def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
     for axis in scene.axes:
         same = np.abs(after[0][axis] - before[0][axis]) < 1e-14
         assert np.all(same) if axis in scene.conserved else not np.any(same)
+
+
+@pytest.mark.parametrize("name", ["friction", "torus", "rough", "combination"])
+def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
+    """Components scaled by √mass, along conserved axes the relative one, by √(reduced mass)."""
+    scene = replace(SCENES[name], friction=1.0)
+    start = states(scene, 1, 5)[: len(components(scene)), 0]
+    found = np.array(kick_again(tuple(start), 20_000, np.uint64(2), law_of(scene)))
+    of, (m1, m2), rows = dict(zip(components(scene), found, strict=True)), scene.masses, []
+    for axis, v in zip(scene.axes, "uvw", strict=False):
+        if axis in scene.conserved:
+            rows.append(math.sqrt(m1 * m2 / (m1 + m2)) * (of[f"{v}1"] - of[f"{v}2"]))
+        else:
+            rows += [math.sqrt(m1) * of[f"{v}1"], math.sqrt(m2) * of[f"{v}2"]]
+    if scene.moment_of_inertia:
+        rows += [math.sqrt(scene.moment_of_inertia) * of[f"s{disc}"] for disc in (1, 2)]
+    unit = np.array(rows) / np.sqrt(np.sum(np.square(rows), axis=0))
+    d, n = unit.shape
+    assert d == scene.velocity_components
+    for i, a in enumerate(unit):
+        assert abs(np.mean(np.sign(a))) <= 5 / math.sqrt(n)
+        assert_uniform(betainc(1 / 2, (d - 1) / 2, a**2))
+        for b in unit[:i]:
+            assert abs(np.mean(a * b)) <= 5 * np.std(a * b) / math.sqrt(n)
+        # One kick does not know of the one before.
+        assert abs(np.mean(a[1:] * a[:-1])) <= 5 / (d * math.sqrt(n))
 
 
 @pytest.mark.parametrize("rate", [0.5, 20.0])
