@@ -8,6 +8,7 @@ from sampling.uniformity import assert_uniform
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.streams import (
     GOLDEN,
+    exponential,
     largest_of,
     next_bits,
     open_stream,
@@ -35,6 +36,22 @@ def test_order_statistics():
         assert_uniform(single)
         assert_uniform(largest**n)
         assert_uniform(n * second ** (n - 1) - (n - 1) * second**n)
+
+
+@compiled
+def exponentials(seed, many):
+    state = open_stream(seed, 0)
+    found = np.empty(many)
+    for i in range(many):
+        found[i] = exponential(state)
+    return found
+
+
+def test_exponential_numbers():
+    values = exponentials(np.uint64(7), 100_000)
+    assert_uniform(np.exp(-values))
+    # They do not know of one another.
+    assert abs(np.corrcoef(values[1:], values[:-1])[0, 1]) <= 5 / math.sqrt(values.size)
 
 
 def test_streams_differ_by_seed_and_by_block():
