@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,6 +41,12 @@ def moments(scene, found):
          np.abs(six.sum(0)) ** 2, np.cos(2 * math.pi * x / scene.width).mean(0) ** 2]
     )  # fmt: skip
     return seen.mean(1), seen.std(1) / math.sqrt(seen.shape[1])
+
+
+@cache
+def usual(scene, number):
+    """Return the ``moments`` of the chains as they are."""
+    return moments(scene, drawn(scene, number, 1))
 
 
 EDGES = (1.0, 1.05, 1.2, 1.5, 2.0, 2.5, 3.5)
@@ -86,8 +93,8 @@ def test_states_are_allowed(scene):
     ids=repr,
 )
 def test_chains_of_single_moves_agree(scene):
-    one = moments(scene, drawn(scene, 4000, 1))
-    check(one, moments(scene, drawn(scene, 300, 2, chain=one_by_one(scene, 4000))))
+    one = moments(scene, drawn(scene, 900, 1))
+    check(one, moments(scene, drawn(scene, 400, 2, chain=one_by_one(scene, 4000))))
 
 
 @pytest.mark.slow
@@ -104,14 +111,14 @@ def test_much_longer_chains_of_single_moves_agree(scene):
 )
 def test_longer_event_chains_are_no_different(scene, monkeypatch):
     number = 2**16 // scene.discs
-    one = moments(scene, drawn(scene, number, 1))
+    one = usual(scene, number)
     monkeypatch.setattr(chains, "CONTACTS", 4 * chains.CONTACTS)
     check(one, moments(scene, drawn(scene, number // 2, 2)))
 
 
 def test_event_chains_that_are_too_short_are_seen(monkeypatch):
     scene = box(64, 0.6)
-    one = moments(scene, drawn(scene, 1000, 1))
+    one = usual(scene, 1024)
     monkeypatch.setattr(chains, "CONTACTS", 16)
     mean, error = moments(scene, drawn(scene, 1000, 2))
     assert np.max(np.abs(mean - one[0]) / np.hypot(error, one[1])) > 10
@@ -121,5 +128,5 @@ def test_event_chains_that_are_too_short_are_seen(monkeypatch):
     "scene", [Scene(28.0, 0.6, 0.18, discs=80), Scene(22.0, 0.6, 0.18, discs=80)], ids=repr
 )
 def test_long_channels_are_those_of_exact_draws(scene):
-    one = moments(scene, drawn(scene, 400, 1))
-    check(one, moments(scene, drawn(scene, 100, 2, chain=None)))
+    one = moments(scene, drawn(scene, 120, 1))
+    check(one, moments(scene, drawn(scene, 250, 2, chain=None)))
