@@ -38,8 +38,9 @@ PAIR = 0.8
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
 TOUCHED, COMPARED = 50.0, 0.25
 
-#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event.
-KICK = 0.7
+#: The time of a kick for each of ``LARGE`` numbers of discs, over the time of an event. The time to
+#: draw the velocity of a disc, over the time of an event of the plain ensemble.
+KICK, DRAW = 0.45, 8.0
 
 #: The most by which the window of a chain of ``LARGE`` numbers of discs is longer.
 LONGER = 64
@@ -75,10 +76,11 @@ def rare_hops(scene):
 def work_per_event(scene):
     """Return the cost of an event over the usual cost, with kicks.
 
-    A kick costs as an event, which looks at all discs; for ``LARGE`` numbers of discs as ``KICK``
-    events for each disc.
+    For few discs a kick costs an event and the draw of all velocities; for ``LARGE`` numbers of
+    discs it costs ``KICK`` events for each disc.
     """
-    kick = KICK * scene.discs if scene.discs >= LARGE else 1.0
+    few = scene.discs < LARGE
+    kick = 1.0 + DRAW * scene.discs / cost_ratio(scene) if few else KICK * scene.discs
     return 1.0 + kick * scene.friction / expected_event_rate(scene)
 
 
