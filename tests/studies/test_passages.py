@@ -289,20 +289,6 @@ def test_order_changes_by_exchanges_alone():
     assert walk == pytest.approx([2 / 9])
 
 
-def test_kicks_keep_energy_and_momentum_and_forget_velocities():
-    """The correlation of velocities falls as exp(−γt): five of its standard errors."""
-    scene = Scene(12.0, 1.0, 0.05, discs=16, periodic="x")
-    states = file.initial.states(scene, 512, 1)
-    kicked = states.copy()
-    file.kick(file.open_stream(np.uint64(2), 0), kicked)
-    np.testing.assert_array_equal(kicked[:32], states[:32])
-    u, v = kicked[32:48], kicked[48:]
-    np.testing.assert_allclose((u**2 + v**2).sum(axis=0), 1, rtol=1e-12)
-    assert np.abs(u.sum(axis=0)).max() < 1e-12
-    common = (kicked[32:] * states[32:]).sum(axis=0)
-    assert abs(common.mean()) < 5 * common.std() / math.sqrt(common.size)
-
-
 def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     """F and, where discs pass, D: within five standard errors of theory and of Monte Carlo."""
     for name, value in {

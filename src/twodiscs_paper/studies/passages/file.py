@@ -16,6 +16,7 @@ that draw all velocities anew at a rate γ damp the sound at constant temperatur
 """
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -28,7 +29,6 @@ from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
-from twodiscs.sampling.streams import open_stream, uniform
 from twodiscs.theory.many import channel
 from twodiscs.theory.many.rates import rates
 
@@ -197,47 +197,20 @@ def law(scene, friction, time, variance=None):
     return moved / per_disc**2
 
 
-@compiled
-def kick(stream, states):
-    """Draw the velocities of all columns of ``states`` (4N, number) on a ring anew."""
-    n = states.shape[0] // 4
-    velocities, cuts = np.empty((2, n)), np.empty(n - 1)
-    for k in range(states.shape[1]):
-        initial.draw_velocities(stream, velocities, cuts, 1.0)
-        for i in range(n):
-            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
-
-
-def _wait(stream, friction):
-    # Rounded, so that it is the same on every machine.
-    return float(np.float32(-math.log(1 - uniform(stream)) / friction))
-
-
 def recorded(scene, step, number, replicas, seed, friction=None):
     """Return the places of discs along a ring at ``number`` + 1 times, ``step`` apart.
 
     They have the shape (times, N, replicas), and go on beyond the ends of the ring. If ``friction``
     is given, all velocities are drawn anew at the times of a Poisson process of this rate.
     """
-    n = scene.discs
-    states = initial.states(scene, replicas, seed)
-    places = np.zeros((number + 1, n, replicas))
-    # Without kicks all replicas go together.
-    width = replicas if friction is None else 1
-    for first in range(0, replicas, width):
-        some, laps = states[:, first : first + width].copy(), np.zeros((n, width))
-        stream = open_stream(~np.uint64(seed), first)
-        wait = math.inf if friction is None else _wait(stream, friction)
-        places[0, :, first : first + width] = some[:n]
-        for k in range(1, number + 1):
-            left = step
-            while wait < left:
-                kernels.advance_scene(scene, some, laps, wait)
-                kick(stream, some)
-                left, wait = left - wait, _wait(stream, friction)
-            kernels.advance_scene(scene, some, laps, left)
-            wait -= left
-            places[k, :, first : first + width] = some[:n] + scene.width * laps
+    moving = scene if friction is None else replace(scene, friction=friction)
+    states, laps = initial.states(scene, replicas, seed), np.zeros((scene.discs, replicas))
+    places = np.empty((number + 1, scene.discs, replicas))
+    places[0] = states[: scene.discs]
+    kicks = kernels.kicks_of(moving, replicas, seed)
+    for k in range(1, number + 1):
+        kernels.advance_scene(moving, states, laps, step, kicks)
+        places[k] = states[: scene.discs] + scene.width * laps
     return places
 
 
