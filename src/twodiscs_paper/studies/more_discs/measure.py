@@ -11,7 +11,8 @@ import numpy as np
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
-from twodiscs.model.events import SHELLS
+from twodiscs.model.events import DECLARED, SHELLS
+from twodiscs.model.families.many import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import exact
@@ -58,7 +59,8 @@ def _time(scene, event, rate, error=0.0):
     """Return (mean time, its error) of events that share a rate, or (None, None) without rate."""
     if not rate:
         return None, None
-    time = scene.multiplicity(event) / rate / math.sqrt(scene.discs / 2)
+    # Of two discs, too, over all initial states, so that different numbers are compared.
+    time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
 
