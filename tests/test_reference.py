@@ -60,13 +60,8 @@ def test_numpydoc_finds_nothing_wrong(name):
     assert [error for error in found["errors"] if error[0] not in OTHERWISE] == []
 
 
-#: Methods of results and trajectories, whose examples run, too.
-METHODS = [
-    name
-    for name in MEMBERS
-    if name.partition(".")[0] not in ("Box", "Scene", "Transmission")
-    and inspect.isfunction(_value(name))
-]
+#: Methods, whose examples run, too.
+METHODS = [name for name in MEMBERS if inspect.isfunction(_value(name))]
 
 
 @pytest.mark.parametrize("name", [*FUNCTIONS, *CLASSES, *METHODS])

@@ -140,6 +140,11 @@ class Box:
         -------
         dict
             {"discs": …, "effects": …, "height": …, "width": …}.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).parameters()
+        {'height': 1.0, 'width': 1.5}
         """
         box = {"height": self.height, "width": self.width}
         box = {"effects": dict(self.effects)} | box if self.effects else box
@@ -182,6 +187,11 @@ class Box:
         ------
         InputError
             If the discs do not fit or cannot move.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).scene(0.3).regime
+        'vertical-hops'
         """
         return Scene(self.width, self.height, radius, **self.effects, discs=self.discs)
 
@@ -197,6 +207,11 @@ class Box:
         -------
         bool
             True if the discs fit and can move.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).fits(0.39)
+        False
         """
         radius = check_length("radius", radius)
         try:
@@ -233,6 +248,11 @@ class Box:
         ------
         InputError
             In a field, which is along y.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).turned().parameters()
+        {'height': 1.5, 'width': 1.0}
         """
         return Box.of(self.tiny.turned())
 
@@ -277,6 +297,11 @@ class Box:
         -------
         float or None
             In length; None if the event is always impossible.
+
+        Examples
+        --------
+        >>> td.Box(1.5, 1.0).threshold("horizontal_hop")
+        0.25
         """
         if check_choice("event", event, EVENTS) not in HOPS:
             # In a field maybe only a large disc can touch the top.

@@ -192,6 +192,11 @@ class Scene:
         -------
         str
             The unit, such as "length⁴".
+
+        Examples
+        --------
+        >>> scene.unit("any_wall_area")
+        'length³'
         """
         dimensions = self.discs * len(self.axes)
         powers = {"volume": dimensions, "area": dimensions - 1}
@@ -217,6 +222,11 @@ class Scene:
         ------
         InputError
             If the discs do not fit or cannot move.
+
+        Examples
+        --------
+        >>> scene.with_radius(0.3).regime
+        'vertical-hops'
         """
         return replace(self, radius=radius)
 
@@ -232,6 +242,11 @@ class Scene:
         ------
         InputError
             In a field, which is along y.
+
+        Examples
+        --------
+        >>> scene.turned().width
+        1.0
         """
         if self.field:
             raise InputError(f"field must be 0 to exchange the axes, not {self.field!r}")
@@ -484,6 +499,11 @@ class Scene:
         ------
         InputError
             For anything but one of ``EVENTS``.
+
+        Examples
+        --------
+        >>> scene.is_possible("horizontal_hop")
+        True
         """
         if check_choice("event", event, EVENTS) not in self.events:
             return False
