@@ -418,10 +418,12 @@ PASSAGES = (
         for name, which in (("least", "smallest"), ("most", "largest"))
     ),
     *(
-        passages(
-            f"friction_power_{name}", LOCAL_POWERS | {"friction": rate}, ESTIMATE, WITH_ERROR, pick
-        )
+        passages(f"friction_{what}_{name}", LOCAL_POWERS | {"friction": rate}, column, form, pick)
         for name, rate, pick in (("diffusive", 160.0, FARTHEST), ("ballistic", 10.0, NEAREST))
+        for what, column, form in (
+            ("power", ESTIMATE, WITH_ERROR),
+            ("rate", "friction", digits(3)),
+        )
     ),
     passages("friction_rates_z", KICKED | {"quantity": "rate"}, "z", largest()),
     *_ends("passages_ring_smooth", _near("diffusion", **RING)),
