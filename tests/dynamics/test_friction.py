@@ -33,6 +33,11 @@ ALL = Scene(
 )
 
 
+def slow(*names):
+    """Return the names as parameters of slow tests: each compiles kicks of its own."""
+    return [pytest.param(name, marks=pytest.mark.slow) for name in names]
+
+
 @compiled
 def kick_again(state, number, seed, law):
     """Return the states after each of a ``number`` of kicks, one a column."""
@@ -59,7 +64,7 @@ def momenta_and_energy(scene, state):
     return momenta, energy
 
 
-@pytest.mark.parametrize("name", ["friction", "torus", "field", "rough", "combination"])
+@pytest.mark.parametrize("name", ["friction", *slow("torus", "field", "rough"), "combination"])
 def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
     """The momentum along a periodic axis stays what it is, 0 in the ensemble and not 0 here."""
     scene = replace(SCENES[name], friction=1.0)
@@ -79,7 +84,7 @@ def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
         assert np.all(same) if axis in scene.conserved else not np.any(same)
 
 
-@pytest.mark.parametrize("name", ["friction", "torus", "rough", "combination"])
+@pytest.mark.parametrize("name", ["friction", *slow("torus", "rough"), "combination"])
 def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
     """Components scaled by √mass, along conserved axes the relative one, by √(reduced mass)."""
     scene = replace(SCENES[name], friction=1.0)

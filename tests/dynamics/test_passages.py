@@ -111,7 +111,7 @@ def test_clusters_to_both_sides_are_those_of_another_program(inertia, radius, ga
         five(values[0].mean(), values[1].mean(), math.hypot(*errors))
 
 
-@pytest.mark.parametrize("inertia", [None, 0.5])
+@pytest.mark.parametrize("inertia", [None, pytest.param(0.5, marks=pytest.mark.slow)])
 def test_clusters_with_friction_are_those_of_another_program(inertia):
     """Kicks before and after time 0 are independent."""
     scene = Scene(1.5, 1.0, NARROW, moment_of_inertia=inertia, friction=20.0)

@@ -107,7 +107,9 @@ def test_much_longer_chains_of_single_moves_agree(scene):
 
 
 @pytest.mark.parametrize(
-    "scene", [box(64, 0.6), pytest.param(box(256, 0.6), marks=pytest.mark.slow)], ids=repr
+    "scene",
+    [box(20, 0.1), *(pytest.param(box(n, 0.6), marks=pytest.mark.slow) for n in (32, 64, 256))],
+    ids=repr,
 )
 def test_longer_event_chains_are_no_different(scene, monkeypatch):
     number = 2**16 // scene.discs
@@ -125,7 +127,12 @@ def test_event_chains_that_are_too_short_are_seen(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "scene", [Scene(28.0, 0.6, 0.18, discs=80), Scene(22.0, 0.6, 0.18, discs=80)], ids=repr
+    "scene",
+    [
+        Scene(28.0, 0.6, 0.18, discs=80),
+        pytest.param(Scene(22.0, 0.6, 0.18, discs=80), marks=pytest.mark.slow),
+    ],
+    ids=repr,
 )
 def test_long_channels_are_those_of_exact_draws(scene):
     one = moments(scene, drawn(scene, 120, 1))

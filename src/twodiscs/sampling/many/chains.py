@@ -28,6 +28,10 @@ from twodiscs.sampling.streams import next_bits, uniform
 #: The approximate numbers of contacts of each disc, and of a chain.
 CONTACTS, CONTACTS_OF_CHAIN = 512, 16
 
+#: Below this room of discs, relative to their radius, contacts are more in proportion: each moves a
+#: disc by less.
+ROOMY = 1 / 3
+
 
 def plan(scene):
     """Return (number, mean length) of the chains for a new arrangement of a ``Scene``.
@@ -39,7 +43,8 @@ def plan(scene):
     length = CONTACTS_OF_CHAIN * math.pi / 4 * scene.contact_distance * room
     # Small discs hardly touch.
     length = min(length, 4 * max(scene.width, scene.height))
-    return math.ceil(CONTACTS * scene.discs / CONTACTS_OF_CHAIN), length
+    contacts = CONTACTS * max(1.0, ROOMY / room)
+    return math.ceil(contacts * scene.discs / CONTACTS_OF_CHAIN), length
 
 
 @optional(lambda column, columns, ring: column if 0 <= column < columns else -1)
