@@ -153,6 +153,13 @@ def test_bits_do_not_depend_on_shards_or_lanes():
         assert np.array_equal(total, other)
 
 
+def test_lanes_without_a_replica_are_not_kicked():
+    """A lane that never began has no time to its next kick: a kick in it would never end."""
+    kicks = new_kicks(3, law_of(replace(PLAIN, friction=2.0)).friction)
+    open_kicks(1, np.uint64(3), 0, kicks)
+    assert np.isfinite(kicks.waits).tolist() == [False, True, False]
+
+
 @pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])
 def test_a_trajectory_has_the_kicks_of_the_ensemble(scene):
     """It has the same events as a replica of the ensemble, and kicks at random times."""

@@ -51,9 +51,6 @@ from twodiscs.sampling.streams import open_stream
 #: The class of the entries of a log that a kick makes, one for each disc.
 KICK = N
 
-#: After about this number of events per disc times begin at 0 again, so that they lose no digits.
-EPOCH = 64
-
 
 class Motion(NamedTuple):
     """The state of the discs between events, arrays (N,) except the last two.
@@ -81,7 +78,7 @@ class Motion(NamedTuple):
 
 
 class Log(NamedTuple):
-    """What happens in a stretch of time, ``size[0]`` entries.
+    """The events in a stretch of time, ``size[0]`` entries.
 
     An entry has its time after ``origin[0]``'s zero, its class, and its two discs, the same one
     twice at a wall. Its ``states`` (n, 2, 4) are x, y, u and v of both right after an event; hops

@@ -59,7 +59,7 @@ def _time(scene, event, rate, error=0.0):
     """Return (mean time, its error) of events that share a rate, or (None, None) without rate."""
     if not rate:
         return None, None
-    # Of two discs, too, over all initial states, so that different numbers are compared.
+    # The mean is over all initial states, for two discs too, so that all numbers of discs compare.
     time = multiplicity(scene, DECLARED[event]) / rate / math.sqrt(scene.discs / 2)
     return time, time * error / rate
 
