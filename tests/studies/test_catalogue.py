@@ -146,10 +146,10 @@ def test_budgets_follow_the_main_scene_within_limits():
         return STUDIES[study].parameters(load({"scenes": [scene | {"radii": [0.1]}]}))
 
     tails = [parameters("tails", budget) for budget in (10**4, 10**8, 10**12)]
-    assert [one["replicas"] for one in tails] == [4_000, 20_000, 400_000]
-    assert [one["samples"] for one in tails] == [2, 10, 200]
+    assert [one["replicas"] for one in tails] == [4_000, 5_000, 100_000]
+    assert [one["samples"] for one in tails] == [2, 5, 100]
     found = [parameters("distributions", budget)["events"] for budget in (10**4, 10**8, 10**12)]
-    assert found == [2**16, 500_000, 2**23]
+    assert found == [2**16, 250_000, 2**22]
 
 
 def test_a_configuration_without_plain_scenes_has_studies(only_effects):

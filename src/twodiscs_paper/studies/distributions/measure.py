@@ -41,7 +41,7 @@ BLOCKS, BINS = 128, 512
 #: The most wall and disc events for the intervals of one radius, and again for its first passages;
 #: the most intervals and first passages. The density at 0 has an error of half a per cent from 4e6
 #: intervals.
-EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**23, 2**22, 2**19
+EVENTS, MOST_INTERVALS, MOST_PASSAGES = 2**22, 2**22, 2**18
 
 #: For a test, first passages are cut at this many mean times.
 CUT = 20

@@ -7,7 +7,7 @@ from twodiscs_paper.study import Study, scaled
 
 def _parameters(configuration):
     return {
-        "events": scaled(configuration.main.event_budget, 200, 2**16, 2**23),
+        "events": scaled(configuration.main.event_budget, 400, 2**16, 2**22),
         "scenes": [
             {
                 "box": scene.box.parameters(),
@@ -25,7 +25,7 @@ STUDY = Study(
     "distributions",
     builds="how intervals between hops are distributed",
     tables=(Distributions,),
-    seconds=20.0,
+    seconds=10.0,
     order=5,
     figures={
         "distributions": Entry(

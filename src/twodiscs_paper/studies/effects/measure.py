@@ -23,7 +23,7 @@ from twodiscs.theory import exact, tails
 
 #: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
 #: the starts without a meeting are counted.
-BLOCKS = 1024
+BLOCKS = 256
 TIMES = (1e2, 1e3, 1e4)
 
 #: Discs with chaotic motion meet within this many mean times, except for a fraction e^−20.

@@ -29,7 +29,7 @@ STUDY = Study(
     families=("plain", "effects"),
     builds="how each effect changes the mean times, and its cost",
     tables=(Effects, EffectsCost, EffectsCurves),
-    seconds=80.0,
+    seconds=40.0,
     order=7,
     figures={
         "effects": Entry(

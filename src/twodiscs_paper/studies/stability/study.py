@@ -7,7 +7,7 @@ from twodiscs_paper.study import Study, main_box, scaled
 
 def _parameters(times):
     def parameters(configuration):
-        ordinary = times * scaled(configuration.main.event_budget, 2, 10**7, 10**9)
+        ordinary = times * scaled(configuration.main.event_budget, 8, 10**7, 25 * 10**7)
         return {**main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
 
     return parameters
@@ -17,7 +17,7 @@ STUDY = Study(
     "stability",
     builds="how accurate each method is in numerically hard cases",
     tables=(Stability,),
-    seconds=30.0,
+    seconds=20.0,
     order=3,
     figures={
         "stability": Entry(
@@ -40,7 +40,7 @@ LONG_RUNS = Study(
     "long_runs",
     builds="`stability` of the dynamics over ten times the events",
     tables=(LongRuns,),
-    seconds=200.0,
+    seconds=60.0,
     order=8,
     parameters=_parameters(10),
     shared=False,

@@ -9,8 +9,8 @@ def _parameters(configuration):
     budget = configuration.main.event_budget
     return {
         **main_box(configuration),
-        "replicas": scaled(budget, 5_000, 4_000, 400_000),
-        "samples": scaled(budget, 10**7, 2, 200),
+        "replicas": scaled(budget, 20_000, 4_000, 100_000),
+        "samples": scaled(budget, 2 * 10**7, 2, 100),
     }
 
 
@@ -18,7 +18,7 @@ STUDY = Study(
     "tails",
     builds="how probable long intervals are",
     tables=(Tails,),
-    seconds=15.0,
+    seconds=8.0,
     order=4,
     figures={
         "tails": Entry(
