@@ -49,7 +49,9 @@ def new_kicks(lanes, friction):
 @optional(lambda i, seed, replica, kicks: None)
 def open_kicks(i, seed, replica, kicks):
     """Begin the kicks of a ``replica`` of the streams of ``seed`` (uint64) in lane ``i``."""
-    kicks.streams[i] = open_stream(seed ^ SEED, replica)
+    stream = open_stream(seed ^ SEED, replica)
+    for k in range(stream.size):
+        kicks.streams[i, k] = stream[k]
     kicks.waits[i] = exponential(kicks.streams[i]) / kicks.rate
 
 

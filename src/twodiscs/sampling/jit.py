@@ -8,6 +8,9 @@ Numba's cache keeps compiled code, in a folder named by the ``fingerprint`` of t
 Numba itself compares only the file of that module, and would keep a kernel after an edit of the
 event law that the module imports. Import this module, not numba, to compile anything: the settings
 must precede the import of numba.
+
+Kernels copy arrays element by element. The assignment of one array to a part of another compiles
+the error message for shapes that differ, which takes seconds.
 """
 
 import atexit

@@ -296,7 +296,8 @@ def move_discs(state, initial, centres, chain, grid):
 @optional(_rejected)
 def by_chain(state, initial, centres, chain):
     """Fill ``centres`` (2, N) by a chain of moves, or by rejection if there is no chain."""
-    centres[:] = chain.centres
+    for i in range(initial.discs):
+        centres[0, i], centres[1, i] = chain.centres[0, i], chain.centres[1, i]
     move_discs(state, initial, centres, chain, chain.grid)
 
 

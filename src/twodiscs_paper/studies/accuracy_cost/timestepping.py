@@ -60,7 +60,9 @@ def step_blocks(seed, first, stop, replicas, lanes, steps, step, sigma, draw):
     for block in range(first, stop):
         draw_starts(open_stream(seed, block), draw, 0, 0, starts)
         for group in range(0, replicas, lanes):
-            state[:] = starts[:, group : group + lanes]
+            for k in range(8):
+                for i in range(lanes):
+                    state[k, i] = starts[k, group + i]
             for now in range(steps):
                 for i in range(lanes):
                     before_x, before_y, tally = x1[i] - x2[i], y1[i] - y2[i], packed[i]

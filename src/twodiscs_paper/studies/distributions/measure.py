@@ -90,8 +90,8 @@ def draw_passages(seed, first, stop, intervals, passages, cut, law, draw, width,
             time = time_to_next(start, law, True, np.inf)
             sums[3] += time
             sums[4] += min(time, cut)
-        sums[:3] /= intervals
-        sums[3:] /= passages
+        for k in range(5):
+            sums[k] /= intervals if k < 3 else passages
     return rows
 
 

@@ -51,9 +51,10 @@ def follow(states, lanes, times, law, squares, crossings):
     for first in range(0, replicas, lanes):
         moved[:], level[:] = 0.0, 0.0
         for i in range(discs):
-            x[i], y[i] = states[i, first : first + lanes], states[discs + i, first : first + lanes]
-            u[i] = states[2 * discs + i, first : first + lanes]
-            v[i] = states[3 * discs + i, first : first + lanes]
+            for l in range(lanes):
+                x[i, l], y[i, l] = states[i, first + l], states[discs + i, first + l]
+                u[i, l] = states[2 * discs + i, first + l]
+                v[i, l] = states[3 * discs + i, first + l]
         before = 0.0
         for k in range(times.size):
             remaining[:] = times[k] - before
@@ -75,7 +76,8 @@ def follow(states, lanes, times, law, squares, crossings):
                 for i in range(discs):
                     total += moved[i, l] * moved[i, l]
                 squares[first + l, k] = total / discs
-        crossings[first : first + lanes] = level
+        for l in range(lanes):
+            crossings[first + l] = level[l]
 
 
 def diffusion(scene, time, replicas, seed):
