@@ -50,7 +50,7 @@ MOST_HOPS, FEWEST_HOPS = 2**17, 2**11
 
 #: Replicas for κ over replicas for κ(t), and events for κ over events for other estimates: most
 #: events for κ are in pauses, where they cost least.
-RECORDED, IN_PAUSES = 4, 4
+RECORDED, IN_PAUSES = 4, 3
 
 #: {rough: (factor, power)}: about factor/distance^power wall and disc events belong to a hop. In a
 #: neck of the relative length √distance, smooth discs fly and rough discs diffuse.
@@ -77,12 +77,12 @@ PAUSE, WORK, KICK, FEWEST_KICKED, STRIPS = 12, 4, 4, 2**9, 16
 
 #: Numbers of discs in a file on a ring; the time from which on displacements count, in mean times
 #: between hops of a disc in one direction; the most replicas and the fewest; samples for the rate.
-FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**20
+FILES, FOLLOWED, MOST_FILES, FEWEST_FILES, FILE_SAMPLES = (4, 8), 2, 2**12, 2**8, 2**19
 
 #: Long files: the number of discs, and of replicas; halvings of the distance below h/4 where discs
 #: can pass; the rate of kicks, and the time between records, with the thermal speed and h as units;
 #: the number of records, and the lags in records.
-LONG_FILE, LONG_REPLICAS, OPEN = 128, 64, range(3, 6)
+LONG_FILE, LONG_REPLICAS, OPEN = 128, 32, range(3, 6)
 FRICTION, STEP, RECORDS, LAGS = 4.0, 0.5, 128, (1, 2, 4, 8, 16, 32, 64)
 
 #: The lags between which displacements give F, and those between which they give D.
@@ -93,7 +93,7 @@ SAMPLED_FILE = 8
 
 #: Probabilities of swaps on the lattice; numbers of rings for runs longer than ``LONG`` and for
 #: shorter runs.
-SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 16, 256, 1000
+SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 8, 128, 1000
 
 #: Blocks of pairs of discs for c.
 LIMIT_BLOCKS = 512
@@ -482,7 +482,7 @@ def near_threshold(name, box, hop, inertias, events, seed):
 def on_ring(name, box, events, seed):
     """Yield the rows of two discs on a ring, smooth and rough."""
     for inertia in (None, ONE_INERTIA):
-        yield from one_ring(name, box, inertia, events, seed)
+        yield from one_ring(name, box, inertia, 3 * events, seed)
 
 
 def with_friction(name, box, events, seed):
