@@ -29,7 +29,7 @@ PANELS = {
     "effects": ("effects", 0, "radius $r$"),
     "price": ("accuracy_cost_by_radius", 0, "radius $r$"),
     "cost": ("accuracy_cost", 2, "processor time (s)"),
-    "passages": ("passages", 1, ""),
+    "passages": ("transmission", 0, ""),
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
 

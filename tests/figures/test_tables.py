@@ -22,6 +22,7 @@ from twodiscs_paper.studies.effects import figure as effects
 from twodiscs_paper.studies.passages import figure as passages
 from twodiscs_paper.studies.passages import figure_diffusion as diffusion
 from twodiscs_paper.studies.passages import figure_friction as friction
+from twodiscs_paper.studies.passages import figure_transmission as transmission
 from twodiscs_paper.studies.tails import figure as tails
 from twodiscs_paper.studies.thresholds.measure import near
 
@@ -116,7 +117,7 @@ def _passages():
         yield "passages", "times", *look, _columns(times, "distance")
         if inertia is None:
             kappa = [_over_cube_root(row) for row in kappa]
-        yield "passages", "rough" if inertia else "smooth", *look, _columns(kappa, "distance")
+        yield "transmission", "rough" if inertia else "smooth", *look, _columns(kappa, "distance")
         shown = [2.0**-n for n in passages.SHOWN.get(inertia, ())]
         curves = [row for row in of(own, quantity="correlation") if row["distance"] in shown]
         if curves:
@@ -293,7 +294,7 @@ def test_what_passages_leave_falls_at_twice_their_rate():
 
 
 def test_residuals_are_those_of_the_table():
-    for name, looks in (("passages", passages), ("diffusion", diffusion)):
+    for name, looks in (("transmission", transmission), ("diffusion", diffusion)):
         for quantity, (colour, marker, _) in looks.RESIDUAL_LOOKS.items():
             rows = of(table("passages"), quantity=quantity)
             # Two discs with friction have a figure of their own.

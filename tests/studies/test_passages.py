@@ -24,6 +24,7 @@ from twodiscs.theory import exact
 from twodiscs_paper.studies.passages import (
     figure,
     figure_diffusion,
+    figure_transmission,
     file,
     fits,
     measure,
@@ -409,7 +410,8 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         )
         assert far / near == pytest.approx(2 ** row["estimate"])
     with style.context():
-        _, collapse, _, between, _ = figure.draw(BOX, {"passages": rows}).axes
+        _, between = figure.draw(BOX, {"passages": rows}).axes
+        collapse, _, _ = figure_transmission.draw(BOX, {"passages": rows}).axes
         ring, _, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
     names = [text.get_text() for text in ring.get_legend().get_texts()]
     assert {"4 smooth discs", "24 with friction"} <= {*names}
@@ -436,6 +438,9 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
         r = 0.25 * (1 - x)
         value = y * (4 * r**2 * (1 - 4 * r)) ** (1 / 3) / (1.5 - 2 * r)
         assert value == pytest.approx(left[HOP, None, x])
+    (amplitude,) = (row["estimate"] for row in rows if row["quantity"] == "amplitude")
+    (c,) = (line for line in collapse.lines if "$c$" in line.get_label())
+    assert {*c.get_ydata()} == {amplitude}
     tau = between.lines[0]
     limit = measure.thresholds(BOX)[HOP]
     for distance, value in zip(tau.get_xdata()[::20], tau.get_ydata()[::20], strict=True):
@@ -450,7 +455,7 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     assert events == {"vertical_hop", "swap", None}
     with style.context():
         lattice = [row for row in rows if row["event"] == "swap"]
-        for module in (figure, figure_diffusion):
+        for module in (figure, figure_transmission, figure_diffusion):
             for some in (rows, lattice, []):
                 assert module.draw(Box(1.0, 4.0), {"passages": some})
 

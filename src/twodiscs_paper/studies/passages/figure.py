@@ -4,27 +4,26 @@ import numpy as np
 
 from twodiscs.comparison.measured.transmission import box_time
 from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.limits import QUARTERS
 from twodiscs.figures.kit.looks import name_of
 from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
     GREEN,
-    GREY,
     ORANGE,
     PURPLE,
     SIZES,
-    SKY,
     VERMILLION,
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs.model.events import AXIS
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 
-#: Inches: the width of the figure, heights of the three rows of panels, the gap, the margin above.
-WIDTH, CURVES, POWERS, RESIDUALS, GAP, TOP = 7.0, 1.7, 1.9, 0.8, 0.4, 0.24
+#: Points between a panel and the name of its box, above a legend.
+UP = 24
+
+#: Inches: the heights of the panels of κ(t) and of the times, the gap, the margin above.
+CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.5
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
@@ -35,61 +34,56 @@ LOOKS = {
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
-#: Colour and marker of further boxes and hops of smooth discs.
-OTHERS = ((SKY, "P"), (BLACK, "D"))
-
 
 def draw(box, tables):
-    """Draw the rows of passages.csv; κ(t) is drawn for the first scene."""
+    """Draw the rows of passages.csv: κ(t) and mean times, for the last hop of the first scene."""
     rows = tables["passages"]
-    full_width = WIDTH - panels.LEFT - panels.RIGHT
-    third = (WIDTH - 3 * (panels.LEFT + panels.RIGHT)) / 3
-    middle = panels.BOTTOM + RESIDUALS + GAP
-    upper = middle + POWERS + GAP
-    figure = new_figure(upper + CURVES + TOP, WIDTH)
-    curves = panels.add_panel(figure, upper, CURVES, width=full_width, name="curves")
-    across = [panels.LEFT + i * WIDTH / 3 for i in range(3)]
-    smooth, rough, times = (
-        panels.add_panel(figure, middle, POWERS, left, third, name)
-        for left, name in zip(across, ("smooth", "rough", "times"), strict=True)
-    )
-    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, width=full_width, name="residuals")
-    for axes, name in zip(figure.axes, "abcde", strict=True):
-        panels.letter(axes, name)
-    if not rows:
-        panels.name_box(curves, box, ": no hop becomes blocked")
-        for axes in figure.axes:
-            axes.set_axis_off()
+    bottom = panels.BOTTOM + TIMES + GAP
+    figure = new_figure(bottom + CURVES + TOP)
+    curves = panels.add_panel(figure, bottom, CURVES, name="curves")
+    times = panels.add_panel(figure, panels.BOTTOM, TIMES, name="times")
+    if is_empty(figure, curves, rows, box):
         return figure
-    main, own = first_scene(rows, box)
-    hop, limit = [*thresholds(main).items()][-1]
-    ours = select(own, event=hop, periodic=None, friction=None)
+    main, hop, limit, ours = measured(rows, box)
     _curves(curves, main, hop, limit, ours)
-    _smooth(smooth, rows, ours)
-    _rough(rough, ours)
     _times(times, main, hop, limit, ours)
-    residuals(lower, select(rows, friction=None), RESIDUAL_LOOKS)
-    panels.name_box(curves, main, f",  (a, c, d) {name_of(hop)}")
+    panels.name_box(curves, main, f",  {name_of(hop)}", up=UP)
     return figure
 
 
 def caption(shown):
     """Return the caption."""
     return """
-    Transmission of hops near the radius r_c at which they become blocked, at distances
-    δ = (r_c − r)/r_c that are halved from one to the next. (a) Transmission coefficient κ(t): the
-    correlation between the order of the discs at a time t after a hop and the direction of the hop,
-    averaged over states on the surface of the hop, for smooth discs (circles) and rough ones
-    (squares). It starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare
-    it has a plateau, which falls as passages follow one another (lines): κ is the fraction of odd
-    clusters among all hops, from independent runs. (b) Smooth discs: 1 − κ, multiplied by the range
-    A along the hop and divided by ∛(εσ²), with σ = 2r and the room ε that the discs leave in the
-    neck. It would be constant if 1 − κ fell as ∛ε. (c) Rough discs: κ falls, and its slope depends
-    on their moment of inertia I, in units of mr². The grey line is for a separation that diffuses
-    in the neck. (d) Exact mean time τ between hops (lines, ∝ δ⁻² close to the threshold) and mean
-    time τ/κ between passages (symbols). (e) Residuals z in standard
-    errors, from exact values or between two estimators. Error bars are one standard error.
+    Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c that are
+    halved from one to the next. (a) Transmission coefficient κ(t): the correlation between the
+    order of the discs at a time t after a hop and the direction of the hop, averaged over states on
+    the surface of the hop, for smooth discs (circles) and rough ones (squares). It starts with the
+    exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls
+    as passages follow one another (lines): κ is the fraction of odd clusters among all hops, from
+    independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻² close to the threshold) and
+    mean time τ/κ between passages (symbols). Error bars are one standard error.
     """
+
+
+def is_empty(figure, upper, rows, box):
+    """Letter the panels of a ``figure``; return whether there are no ``rows``, and say so."""
+    for axes, name in zip(figure.axes, "abcde", strict=False):
+        panels.letter(axes, name)
+    if not rows:
+        panels.name_box(upper, box, ": no hop becomes blocked")
+        for axes in figure.axes:
+            axes.set_axis_off()
+    return not rows
+
+
+def measured(rows, box):
+    """Return (box, hop, radius where it becomes blocked, rows) of the last hop of one scene.
+
+    It is the first scene with rows; those with friction or on a ring are left out.
+    """
+    main, own = first_scene(rows, box)
+    hop, limit = [*thresholds(main).items()][-1]
+    return main, hop, limit, select(own, event=hop, periodic=None, friction=None)
 
 
 def first_scene(rows, box):
@@ -154,60 +148,18 @@ def _curves(axes, box, hop, limit, rows):
         axes.plot([], [], color=colour, marker=marker, markersize=2.5, lw=0.6, label=name)
     axes.plot([], [], color=BLACK, lw=0.7, label=r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters")
     axes.plot([], [], color=BLACK, lw=0.8, ls=(0, (3, 1.5)), label="exact slope at 0")
-    axes.set(xscale="log", xlim=(0.095, 13.5), ylim=(0, 1.06))
+    axes.set(xscale="log", xlim=(0.095, 26), ylim=(0, 1.06))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set(xlabel="time $t$ / range along the hop", ylabel=r"transmission $\kappa(t)$")
-    # Above the panel, beside the name of the box.
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=4, columnspacing=1.2)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.02, 1), ncols=2, columnspacing=1.2)
 
 
-def _smooth(axes, rows, ours):
-    """Draw 1 − κ of smooth discs over ∛(σ²ε)/A, at every threshold of every scene."""
-    others = iter(OTHERS)
-    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None, friction=None)
-    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in coefficients):
-        own = select(coefficients, scene=scene, event=event)
-        distance, value, error = columns(own, "distance", "estimate", "stderr")
-        where = (
-            f"${panels.sides(Box(own[0]['width'], own[0]['height']))}$, ${QUARTERS[AXIS[event]]}$"
-        )
-        look = LOOKS[None] if own[0] in ours else next(others)
-        unit = np.array([cube_root(row) for row in own])
-        points(axes, distance, (1 - value) / unit, error / unit, look, where)
-    label = r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$"
-    _scaling(axes, (4e-5, 0.25), (0, 2.4), label, yscale="linear")
-
-
-def cube_root(row):
-    """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
-    scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
-    return (scene.contact_distance**2 * scene.room(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
-
-
-def _rough(axes, ours):
-    """Draw κ of rough discs."""
-    for inertia, look in LOOKS.items():
-        own = select(ours, quantity="coefficient", moment_of_inertia=inertia)
-        if own and inertia is not None:
-            distance, value, error = columns(own, "distance", "estimate", "stderr")
-            points(axes, distance, value, error, look, rf"$I={inertia:g}$")
-    _power(axes, 1 / 2, r"$\delta^{1/2}$", 2e-3, 0.009)
-    _scaling(axes, (1e-3, 0.1), (0.007, 0.5), r"$\kappa$, rough discs")
-
-
-def _power(axes, power, name, start, height):
-    """Draw a power law that starts at (``start``, ``height``)."""
-    x = np.array([start, 20 * start])
-    axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
-    drawing.label(axes, name, (x[1], height * 20**power), (3, 0), ha="left", color=GREY)
-
-
-def _scaling(axes, xlim, ylim, label, yscale="log"):
+def scale(axes, xlim, ylim, label, yscale="log", **legend):
     """Make the scales logarithmic, or one of them, between the limits, over the distance δ."""
     axes.set(xscale="log", yscale=yscale, xlim=xlim, ylim=ylim, ylabel=label)
     axes.set_xlabel(r"distance $\delta=(r_{\rm c}-r)/r_{\rm c}$")
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(loc="upper left")
+        axes.legend(**{"loc": "upper left"} | legend)
 
 
 def _times(axes, box, hop, limit, rows):
@@ -227,15 +179,7 @@ def _times(axes, box, hop, limit, rows):
         name = "smooth" if inertia is None else f"$I={inertia:g}$"
         distance, value, error = columns(own, "distance", "estimate", "stderr")
         points(axes, distance, value, error, look, rf"$\tau/\kappa$, {name}")
-    _scaling(axes, (4e-5, 0.25), (0.3, None), r"times $\tau$ and $\tau/\kappa$")
-    axes.legend(loc="lower left", fontsize=6.8)
-
-
-#: {quantity: colour, marker, name} of residuals.
-RESIDUAL_LOOKS = {
-    "slope": (BLUE, "o", r"$\kappa'(0)$, from exact"),
-    "plateau": (VERMILLION, "s", r"$\kappa$, by $\kappa(t)$ and by clusters"),
-}
+    scale(axes, (4e-5, 0.25), (0.3, None), r"times $\tau$ and $\tau/\kappa$", loc="lower left")
 
 
 def residuals(axes, rows, looks):

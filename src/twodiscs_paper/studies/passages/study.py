@@ -48,6 +48,12 @@ STUDY = Study(
             "twodiscs_paper.studies.passages.figure",
             tables=("passages",),
         ),
+        "transmission": Entry(
+            "Passages near the threshold",
+            DYNAMICS,
+            "twodiscs_paper.studies.passages.figure_transmission",
+            tables=("passages",),
+        ),
         "friction": Entry(
             "Passages with friction",
             DYNAMICS,

@@ -1,0 +1,110 @@
+"""How the transmission coefficient scales at the threshold, for smooth discs and for rough ones."""
+
+import numpy as np
+
+from twodiscs.figures.kit import drawing, panels
+from twodiscs.figures.kit.limits import QUARTERS
+from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SKY, VERMILLION, new_figure
+from twodiscs.model.box import Box
+from twodiscs.model.events import AXIS
+from twodiscs_paper.studies.passages.figure import (
+    LOOKS,
+    columns,
+    is_empty,
+    measured,
+    points,
+    residuals,
+    scale,
+    select,
+)
+
+#: Inches: the heights of the panels of smooth discs, rough discs and residuals, the gap, the margin
+#: above.
+SMOOTH, ROUGH, RESIDUALS, GAP, TOP = 1.8, 1.8, 0.8, 0.4, 0.22
+
+#: Colour and marker of further boxes and hops of smooth discs.
+OTHERS = ((SKY, "P"), (BLACK, "D"))
+
+#: {quantity: colour, marker, name} of residuals.
+RESIDUAL_LOOKS = {
+    "slope": (BLUE, "o", r"$\kappa'(0)$, from exact"),
+    "plateau": (VERMILLION, "s", r"$\kappa$, by $\kappa(t)$ and by clusters"),
+}
+
+
+def draw(box, tables):
+    """Draw the rows of passages.csv: smooth discs at every threshold, rough discs at one."""
+    rows = tables["passages"]
+    middle = panels.BOTTOM + RESIDUALS + GAP
+    upper = middle + ROUGH + GAP
+    figure = new_figure(upper + SMOOTH + TOP)
+    smooth = panels.add_panel(figure, upper, SMOOTH, name="smooth")
+    rough = panels.add_panel(figure, middle, ROUGH, name="rough")
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, name="residuals")
+    if is_empty(figure, smooth, rows, box):
+        return figure
+    main, hop, _, ours = measured(rows, box)
+    _smooth(smooth, rows, ours)
+    _rough(rough, ours, place(main, hop))
+    residuals(lower, select(rows, friction=None), RESIDUAL_LOOKS)
+    return figure
+
+
+def caption(shown):
+    """Return the caption."""
+    return """
+    Transmission coefficient κ near the radius r_c at which hops become blocked, w/4 or h/4, over
+    the distance δ = (r_c − r)/r_c. (a) Smooth discs: 1 − κ, multiplied by the range A along the hop
+    and divided by ∛(εσ²), with σ = 2r and the room ε that the discs leave in the neck. It would be
+    constant if 1 − κ fell as ∛ε. Dashed: its limit c for δ → 0, which is computed in that limit.
+    (b) Rough discs: κ falls, and its slope depends on their moment of inertia I, in units of mr².
+    The grey line is for a separation that diffuses in the neck. (c) Residuals z in standard errors,
+    from exact values or between two estimators. Error bars are one standard error.
+    """
+
+
+def _smooth(axes, rows, ours):
+    """Draw 1 − κ of smooth discs over ∛(σ²ε)/A, at every threshold of every scene."""
+    others = iter(OTHERS)
+    coefficients = select(rows, quantity="coefficient", moment_of_inertia=None, friction=None)
+    for scene, event in dict.fromkeys((row["scene"], row["event"]) for row in coefficients):
+        own = select(coefficients, scene=scene, event=event)
+        distance, value, error = columns(own, "distance", "estimate", "stderr")
+        where = place(Box(own[0]["width"], own[0]["height"]), event)
+        look = LOOKS[None] if own[0] in ours else next(others)
+        unit = np.array([cube_root(row) for row in own])
+        points(axes, distance, (1 - value) / unit, error / unit, look, where)
+    for row in select(rows, quantity="amplitude"):
+        axes.axhline(row["estimate"], color=BLACK, lw=0.8, ls=(0, (4, 2)), zorder=5,
+                     label=r"$c$, at $\delta=0$")  # fmt: skip
+    label = r"$(1-\kappa)\,A/\sigma^{2/3}\varepsilon^{1/3}$"
+    scale(axes, (4e-5, 0.25), (0, 2), label, "linear", loc="lower left")
+
+
+def place(box, hop):
+    """Return the sides of a ``Box`` and the radius where a ``hop`` becomes blocked, in mathtext."""
+    return f"${panels.sides(box)}$, ${QUARTERS[AXIS[hop]]}$"
+
+
+def cube_root(row):
+    """Return ∛(σ²ε)/A of a ``row``: the range A along its hop, the room ε left in the neck."""
+    scene, hop = Box(row["width"], row["height"]).scene(row["radius"]), row["event"]
+    return (scene.contact_distance**2 * scene.room(hop)) ** (1 / 3) / scene.reach(AXIS[hop])
+
+
+def _rough(axes, ours, where):
+    """Draw κ of rough discs, with ``where`` above the legend."""
+    for inertia, look in LOOKS.items():
+        own = select(ours, quantity="coefficient", moment_of_inertia=inertia)
+        if own and inertia is not None:
+            distance, value, error = columns(own, "distance", "estimate", "stderr")
+            points(axes, distance, value, error, look, rf"$I={inertia:g}$")
+    _power(axes, 1 / 2, r"$\delta^{1/2}$", 2e-3, 0.009)
+    scale(axes, (1e-3, 0.1), (0.007, 0.5), r"$\kappa$, rough discs", title=where)
+
+
+def _power(axes, power, name, start, height):
+    """Draw a power law that starts at (``start``, ``height``)."""
+    x = np.array([start, 20 * start])
+    axes.plot(x, height * (x / x[0]) ** power, color=GREY, lw=0.8, zorder=1)
+    drawing.label(axes, name, (x[1], height * 20**power), (3, 0), ha="left", color=GREY)
