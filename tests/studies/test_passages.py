@@ -21,6 +21,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
+from twodiscs_paper.pipeline.results import verdict
 from twodiscs_paper.studies.passages import (
     figure,
     figure_diffusion,
@@ -351,18 +352,21 @@ def test_the_measured_density_is_exact_in_an_ordered_channel():
 
 
 def joined(name, box, inertias=(0.5,)):
-    """Return the rows of all parts that there are for a box."""
-    own, rows = {"name": name, "box": box, "events": 2**18, "seed": 1}, {}
+    """Return the rows of all parts that there are for a box; all that are due are among them."""
+    own, parts = {"name": name, "box": box, "events": 2**18, "seed": 1}, []
     for hop in measure.thresholds(box):
         some = inertias if hop == [*measure.thresholds(box)][-1] else (0.5,)
-        rows[hop] = Passages.part(part="near_threshold", hop=hop, inertias=some, **own)
+        parts.append({"part": "near_threshold", "hop": hop, "inertias": some, **own})
     for part in ("on_ring", "in_file") if box.fits(box.height / 4) else ():
-        rows[part] = Passages.part(part=part, **own)
+        parts.append({"part": part, **own})
     if box.fits(blocked := 0.28 * box.height):
         given = {"name": name, "box": box, "blocked": blocked, "seed": 1}
-        rows["in_long_file"] = Passages.part(part="in_long_file", **given)
-    alone = ("on_lattice", "in_the_limit")
-    return Passages.rows(rows | {part: Passages.part(part=part, seed=1) for part in alone})
+        parts.append({"part": "in_long_file", **given})
+    parts += [{"part": part, "seed": 1} for part in ("on_lattice", "in_the_limit")]
+    rows = Passages.rows({i: Passages.part(**given) for i, given in enumerate(parts)})
+    due = [row for given in parts for row in measure.due(**given)]
+    assert not [said for said in verdict.study_failures(rows, due) if "is missing" in said]
+    return rows
 
 
 @pytest.fixture
@@ -450,7 +454,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
 
 def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
-    rows = list(joined("square", Box(1.0, 4.0)))
+    rows = joined("square", Box(1.0, 4.0))
     events = {row["event"] for row in rows}
     assert events == {"vertical_hop", "swap", None}
     with style.context():

@@ -53,7 +53,7 @@ rule check:
         studies=[
             FILES.table(study.tables[0].name())
             for study in STUDIES.values()
-            if study.checked and study.name in CONFIGURATION.shared
+            if study.due and study.name in CONFIGURATION.shared
         ],
         configuration=f"{RESULTS}/configuration.json",
     output:

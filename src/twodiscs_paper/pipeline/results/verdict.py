@@ -6,7 +6,8 @@
 
 The verdict checks each table again. It counts the comparisons, computes the bound from their
 number, and compares z with it. It also compares z with the deviation of the estimate in standard
-errors, computes the rows on all radii again, and requires every comparison of the configuration.
+errors, computes the rows on all radii again, and requires every comparison of the configuration,
+and every row that a study declares as due.
 Without an error bar (few events, or none) z is taken from the table; so are the rows of a study.
 """
 
@@ -196,10 +197,24 @@ def _some(what, keys):
         yield f"{comparison} of {quantity} at radius {radius}{by} {what}{more}"
 
 
-def study_failures(rows):
-    """Yield a sentence on each fault of the scores in the ``rows`` of a study."""
+def study_failures(rows, due=()):
+    """Yield a sentence on each fault of the ``rows`` of a study, which has at least those ``due``.
+
+    Each row that is due, {column: value}, has a score z if it has an estimate and a reference. Each
+    row with a test has a score.
+    """
     from twodiscs.comparison import scores
 
+    due = [tuple(row.items()) for row in due]
+    names = [name for name, _ in due[0]] if due else []
+    usable = (row for row in rows if row["z"] is not None or deviation(row) is None)
+    there = Counter(tuple((name, row[name]) for name in names) for row in usable)
+    if missing := sorted((Counter(due) - there).elements(), key=str):
+        more = f", and so are {len(missing) - 1} more" if len(missing) > 1 else ""
+        yield f"{named_of_study(dict(missing[0]))} is missing, or has no score{more}"
+    if empty := [row for row in rows if row["z"] is None and row.get("test")]:
+        more = f", and so have {len(empty) - 1} more" if len(empty) > 1 else ""
+        yield f"{named_of_study(empty[0])} has a test, but no score{more}"
     found = Counter(tuple(row.items()) for row in rows if row["z"] is not None)
     if not found:
         yield "nothing is compared"
@@ -209,12 +224,13 @@ def study_failures(rows):
     yield from judged(rows, scores.FALSE_ALARM, named_of_study)
 
 
-def verdict(tables, studies, scenes=None):
+def verdict(tables, studies, scenes=None, due=None):
     """Return (failures, summary) of tables, each {name: rows}.
 
     ``tables`` are the check tables of scenes, and ``scenes`` the ``SceneRequest`` of each by its
     name. ``studies`` have scores z without verdicts: by Bonferroni's bound, the probability of a
-    false alarm is the same for each study as for a scene.
+    false alarm is the same for each study as for a scene. ``due``, {name: rows}, are the rows that
+    a study must have.
     """
     failures = [
         f"{name}: {sentence}"
@@ -222,7 +238,9 @@ def verdict(tables, studies, scenes=None):
         for sentence in scene_failures(rows, scenes and scenes[name])
     ]
     failures += [
-        f"{name}: {sentence}" for name, rows in studies.items() for sentence in study_failures(rows)
+        f"{name}: {sentence}"
+        for name, rows in studies.items()
+        for sentence in study_failures(rows, due[name] if due else ())
     ]
     if failures:
         return failures, ""
@@ -246,12 +264,14 @@ def main():
     scenes = {scene.name: scene for scene in configuration.scenes if "check" in scene.tables}
     tables = {path.parent.name: SCENE_TABLES["check"].read(path) for path in options.tables}
     studies = {path.stem: STUDY_TABLES[path.stem].read(path) for path in options.studies}
-    wanted = [name for name in configuration.shared if name in STUDIES and STUDIES[name].checked]
-    wanted = {*scenes, *(STUDIES[name].tables[0].name() for name in wanted)}
+    checked = [STUDIES[name] for name in configuration.shared if name in STUDIES]
+    checked = {study.tables[0].name(): study for study in checked if study.due}
+    wanted = {*scenes, *checked}
     if odd := sorted(wanted ^ {*tables, *studies}):
         names = ", ".join(odd)
         raise InputError(f"tables must be given of {sorted(wanted)}; missing or surplus: {names}")
-    failures, text = verdict(tables, studies, scenes)
+    due = {name: study.due(configuration) for name, study in checked.items()}
+    failures, text = verdict(tables, studies, scenes, due)
     if failures:
         print("\n".join(failures), file=sys.stderr)
         return 1

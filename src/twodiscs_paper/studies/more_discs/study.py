@@ -14,6 +14,13 @@ def _parameters(configuration):
     }
 
 
+def _due(configuration):
+    """Yield the columns that identify each row."""
+    from twodiscs_paper.studies.more_discs import measure
+
+    return measure.due()
+
+
 STUDY = Study(
     "more_discs",
     families=("many",),
@@ -30,5 +37,5 @@ STUDY = Study(
         ),
     },
     parameters=_parameters,
-    checked=True,
+    due=_due,
 )

@@ -9,11 +9,12 @@ coefficient D of diffusion along a ring, by the correlations of hops and by disp
 """
 
 import math
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
 from twodiscs.comparison.measured.transmission import (
+    MOST_MERGED,
     TIMES,
     are_rare,
     box_time,
@@ -120,6 +121,22 @@ def blocks_for(scene, distance, time, events):
     return int(min(max(events / price, FEWEST_HOPS), MOST_HOPS)) // REPLICAS
 
 
+def scene_at(box, hop, halvings, **effects):
+    """Return the ``Scene`` in a plain ``Box`` at a distance below the radius that blocks a hop."""
+    return Box(box.width, box.height, effects).scene(radius_at(box.threshold(hop), halvings))
+
+
+def slope_time(scene, hop):
+    """Return (time at which the slope of κ is measured, density of intervals at 0).
+
+    The time is None if discs that turn round so late do not find the neck again.
+    """
+    density = tails.density_at_zero(scene, hop)
+    time = FIRST / (2 * density)
+    found = time <= math.sqrt(scene.contact_distance * scene.room(hop))
+    return time if found else None, density
+
+
 class NearThreshold:
     """One kind of hop at one radius: its measurements and their rows."""
 
@@ -210,10 +227,9 @@ class NearThreshold:
         At short times κ(t) = 1 − 2 p t + a t². Its values at t and 2t, from independent replicas,
         give p.
         """
-        density = tails.density_at_zero(self.scene, self.hop)
-        time = FIRST / (2 * density)
-        if time > math.sqrt(self.scene.contact_distance * self.scene.room(self.hop)):
-            return  # discs that turn round so late do not find the neck again
+        time, density = slope_time(self.scene, self.hop)
+        if time is None:
+            return
         parts = []
         for n in (1, 2):
             sums, _ = hop_sums(self.scene, self.hop, [n * time], blocks, self._seed(f"slope {n}"))
@@ -262,10 +278,9 @@ def one_hop(name, box, hop, halvings, inertia, events, seed):
     ``inertia`` is the moment of inertia of rough discs, None for smooth discs. An estimate may take
     about ``events`` wall and disc events, κ ``IN_PAUSES`` times as many.
     """
-    limit, measured = thresholds(box)[hop], []
-    effects = {} if inertia is None else {"moment_of_inertia": inertia}
+    measured = []
     for n in halvings:
-        scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
+        scene = scene_at(box, hop, n, moment_of_inertia=inertia)
         near, both = NearThreshold(name, scene, hop, n, seed), 2 * quiet_time(scene, hop)
         blocks = blocks_for(scene, 2.0**-n, both, IN_PAUSES * events)
         kappa, rows = near.clusters(blocks)
@@ -302,9 +317,7 @@ def one_friction(name, box, friction, halvings, events, seed):
     """Yield the rows of discs with ``friction`` at distances below h/4, the largest one first."""
     before = None
     for n in halvings:
-        scene = Box(box.width, box.height, {"friction": friction}).scene(
-            radius_at(box.height / 4, n)
-        )
+        scene = scene_at(box, "horizontal_hop", n, friction=friction)
         near = NearThreshold(name, scene, "horizontal_hop", n, seed)
         gap = PAUSE * box_time(scene, near.hop)
         price = 2 * gap * (exact.event_rate(scene) + KICK * friction)
@@ -326,10 +339,8 @@ def one_friction(name, box, friction, halvings, events, seed):
 
 def one_ring(name, box, inertia, events, seed):
     """Yield the rows of diffusion along x, where a ``Box`` is closed to a ring."""
-    effects = {"periodic": "x"} | ({} if inertia is None else {"moment_of_inertia": inertia})
-    limit = box.height / 4
     for n in RING:
-        scene = Box(box.width, box.height, effects).scene(radius_at(limit, n))
+        scene = scene_at(box, "horizontal_hop", n, periodic="x", moment_of_inertia=inertia)
         yield from NearThreshold(name, scene, "horizontal_hop", n, seed).diffusion(events)
 
 
@@ -518,6 +529,57 @@ PARTS = (
 )  # fmt: skip
 PARTS = {part.__name__: part for part in PARTS}
 FIXED = ("in_long_file", "on_lattice", "in_the_limit")
+
+
+def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=None, **_):
+    """Yield columns that identify rows of a ``part``, whose parameters are those of ``rows``.
+
+    Rows that exist for some measured values only are left out, such as κ if the time that ends a
+    cluster could have more than ``MOST_MERGED`` passages.
+    """
+
+    def row(quantity, method, radius, discs=2, inertia=None, event=hop, of=name):
+        return {
+            "scene": of, "event": event, "discs": discs, "radius": radius,
+            "moment_of_inertia": inertia, "quantity": quantity, "method": method,
+        }  # fmt: skip
+
+    def radii(halvings):
+        return [radius_at(box.threshold(hop), n) for n in halvings]
+
+    if part == "near_threshold":
+        for inertia in (None, *inertias):
+            halvings, known = SMOOTH if inertia is None else ROUGH, 0
+            for n in halvings:
+                scene = scene_at(box, hop, n, moment_of_inertia=inertia)
+                yield from [row("correlation", "hops", scene.radius, inertia=inertia)] * len(TIMES)
+                if inertia is None and slope_time(scene, hop)[0] is not None:
+                    yield row("slope", "hops", scene.radius)
+                if quiet_time(scene, hop) * exact.passing_rate(scene, hop) < 0.9 * MOST_MERGED:
+                    yield row("coefficient", "clusters", scene.radius, inertia=inertia)
+                    if inertia is None:
+                        yield row("plateau", "hops", scene.radius)
+                    known += 1
+            if known > 1:
+                yield row("last_exponent", "fit", scene.radius, inertia=inertia)
+    elif part == "on_ring":
+        for radius, inertia in product(radii(RING), (None, ONE_INERTIA)):
+            for kind in (("diffusion", "hops"), ("diffusion", "states"), ("rate", "states")):
+                yield row(*kind, radius, inertia=inertia)
+    elif part == "with_friction":
+        yield from (row("rate", "states", *radii(halvings[:1])) for halvings in KICKED.values())
+    elif part == "in_file":
+        for radius, discs, what in product(radii(RING), FILES, ("rate", "diffusion")):
+            yield row(what, "states", radius, discs)
+    elif part == "in_long_file":
+        for radius in (blocked, *radii(OPEN)):
+            yield row("single_file", "states", radius, LONG_FILE)
+            yield from [row("displacement", "states", radius, LONG_FILE)] * 2 * len(LAGS)
+    elif part == "on_lattice":
+        for what in ("single_file", *["diffusion"] * len(SWAPS)):
+            yield row(what, "lattice", None, None, event="swap")
+    else:
+        yield row("amplitude", "limit", None, event=None)
 
 
 def rows(part, seed, events=1, **given):

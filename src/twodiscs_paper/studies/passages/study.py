@@ -1,6 +1,7 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
 from twodiscs.figures.catalogue import DYNAMICS, Entry
+from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.passages.table import Passages
 from twodiscs_paper.study import Study, scaled
@@ -32,6 +33,15 @@ def _parts(configuration):
             alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone
     return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
+
+
+def _due(configuration):
+    """Yield columns that identify the rows of all parts."""
+    from twodiscs_paper.studies.passages import measure
+
+    for given in _parts(configuration).values():
+        box = given.get("box") and Box(**given["box"])
+        yield from measure.due(**given | {"box": box})
 
 
 STUDY = Study(
@@ -68,5 +78,5 @@ STUDY = Study(
         ),
     },
     parts=_parts,
-    checked=True,
+    due=_due,
 )
