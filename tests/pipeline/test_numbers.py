@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS

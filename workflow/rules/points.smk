@@ -18,7 +18,7 @@ rule exact:
         radii=lambda w: SCENES[w.scene].exact_radii(w.table),
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
-            "twodiscs.comparison.tables.exact",
+            "twodiscs.comparison.tables.theory",
             *family_modules("theory", SCENES[w.scene].box.family),
         ),
     shell:

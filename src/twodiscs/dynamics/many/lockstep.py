@@ -38,7 +38,7 @@ from twodiscs.sampling.many.initial import (
     method,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import bulk_measures, rates
 
 #: Events of a replica, and of one whose initial state takes as long as some ten thousand events.
@@ -488,7 +488,7 @@ def expected_rates(scene):
     guessed (``replica_duration``), and so is one of them for which insertions give 0. For
     ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent.
     """
-    known = exact.measures(scene)
+    known = methods.measures(scene)
     if known is None:
         known = measures.expected(scene) if scene.discs < LARGE else bulk_measures(scene)
     guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)

@@ -18,8 +18,8 @@ from twodiscs.arguments import Parser, run
 from twodiscs.comparison.measured.measurements import measurement
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.exact import Grid
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.theory import Grid
 from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import box_of, caption
