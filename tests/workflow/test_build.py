@@ -159,7 +159,7 @@ def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     assert set(files) == called
     for name, one in files.items():
         assert one["sha256"] == sha256((built.path / "results" / name).read_bytes()).hexdigest()
-        assert one["description"] != crate.get("_workflow/points.smk")["description"]
+        assert one["description"] != crate.get("_workflow/scenes.smk")["description"]
     assert built.jobs("crate") == []
 
 

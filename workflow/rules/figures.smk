@@ -6,7 +6,7 @@
 rule figure:
     """A figure of a scene, from its tables."""
     input:
-        tables=lambda w: FILES.figure_reads(ENTRIES[w.figure], w.scene).values(),
+        tables=lambda w: CONFIGURATION.figure_reads(ENTRIES[w.figure], w.scene).values(),
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
@@ -38,7 +38,7 @@ rule figure:
 rule shared_figure:
     """A figure of a study, from its tables."""
     input:
-        tables=lambda w: FILES.figure_reads(ENTRIES[w.figure]).values(),
+        tables=lambda w: CONFIGURATION.figure_reads(ENTRIES[w.figure]).values(),
     output:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
