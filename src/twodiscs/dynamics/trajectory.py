@@ -125,10 +125,10 @@ def followed(scene, seed, start=None, duration=None, progress=None):
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``state_of``). Without a ``duration`` each family has its usual one. Raises
-    ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, for
-    a start that is no state, and for a duration that is no length or takes ``MOST_EVENTS``.
-    ``progress``, if given, is called now and then with the time that it has reached, and the
-    ``duration``.
+    ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, and
+    for a start that is no state. The same holds for a duration that is no length or takes
+    ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
+    reached, and the ``duration``.
     """
     seed = check_integer("seed", seed, 0)
     rate = of_family(check_scene(scene), "dynamics", "trajectory_rate")(scene)

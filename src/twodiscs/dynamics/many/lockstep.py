@@ -1,10 +1,10 @@
 """Counts of events of N equal discs in a fixed time: the law of one event in lock step.
 
-An event is what ``law`` has for two discs: quotients ``gap / speed`` of walls and of contacts,
-compared by cross-multiplication, contact a matter of direction, a disc put on the wall exactly,
-velocities exchanged along the line of centres. The states of all lanes are arrays (N, lanes); discs
-and pairs of discs are the outer loops, lanes the inner ones, which become vector instructions. An
-event costs N(N − 1)/2 contacts.
+The law of an event is the law of two discs, in ``law``. Quotients ``gap / speed`` of walls and
+contacts are compared by cross-multiplication. Only the direction decides whether discs in contact
+collide. A disc is put on its wall exactly, and velocities are exchanged along the line of centres.
+The states of all lanes are arrays (N, lanes). The outer loops are over discs and pairs of discs.
+The inner loops are over lanes, and become vector instructions. An event costs N(N − 1)/2 contacts.
 
 On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
 ends after half the circumference over the largest relative speed, √2, and the search begins again.
@@ -94,7 +94,7 @@ def law_of(scene):
 def new_kicks(lanes, discs, friction):
     """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
 
-    The working memory of a draw is that of ``draw_velocities``.
+    The working memory of a draw has the form that ``draw_velocities`` takes.
     """
     streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
     waits, cuts, velocities = np.full(lanes, NEVER), np.zeros(discs - 1), np.zeros((2, discs))
@@ -143,7 +143,8 @@ def first_of(gap, speed, code, other_gap, other_speed, number, half):
 
 @optional(lambda position, velocity, half: (NEVER, 1.0))
 def walled_quotient(position, velocity, half):
-    """Return (gap, speed) to the wall ahead, of which there is none where ``half`` is None."""
+    """Return (gap, speed) to the wall ahead; without walls (``half`` is None) the gap is
+    infinite."""
     return wall_quotient(position, velocity, half)
 
 
@@ -394,9 +395,9 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. Each
     replica starts in the invariant measure; all intervals that begin within a ``window`` of time
-    are followed to their end. ``bins`` are (width, wide) of ``intervals.record_returns``; with c of
-    the n intervals of a replica in a bin, Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins;
-    int64). Returns their total time and number, (2, replicas of all blocks) doubles.
+    are followed to their end. ``bins`` are (width, wide) of ``returns.record_returns``. A replica
+    has n intervals, c of them in a bin. Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins; int64).
+    Returns their total time and number, (2, replicas of all blocks) doubles.
     """
     discs, width, wide = initial.discs, bins[0], bins[1]
     states, totals = np.zeros((4 * discs, replicas)), np.zeros((2, (stop - first) * replicas))
@@ -470,9 +471,9 @@ def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums,
 
 
 def of_events(sums, products):
-    """Return (sums, products) of ``EVENTS`` from those of ``SHELLS``.
+    """Return (sums, products) of ``EVENTS``, given the sums and products of ``SHELLS``.
 
-    Hits of all walls are those of the two classes of them, in every replica.
+    In every replica, the hits of all walls are the hits of the two classes of walls together.
     """
     matrix = np.array([[name in parts for name in SHELLS] for parts in PARTS.values()], np.int64)
     whole = products + np.triu(products, 1).T

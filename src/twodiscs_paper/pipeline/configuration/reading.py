@@ -31,9 +31,9 @@ class ConfigError(InputError):
 def read(path):
     """Return the mapping in the YAML file ``path``.
 
-    Raises ``ConfigError`` with file and line if the text is no YAML, or if a key is given twice:
-    YAML would silently take the last value. The same error names a file that cannot be read,
-    exceeds the limits of this module, or holds no mapping.
+    Raises ``ConfigError`` with file and line if the text is no YAML, or if a key is given twice,
+    because YAML would silently take the last value. The same error names a file that cannot be
+    read, exceeds the limits of this module, or holds no mapping.
     """
     try:
         with open(path, "rb") as file:

@@ -37,8 +37,8 @@ def caption_parts(entry, results, scene):
     """Return the caption of a figure, and apart from it the sentences that other captions share.
 
     ``results`` is the folder of all results. ``scene`` has the "name" of the figure's scene, its
-    "width" and "height", and its "effects" if there are any, with "discs" if these are more than
-    two. A figure without a scene takes the first scene.
+    "width" and "height", and its "effects" if there are any. A number of "discs" above two is among
+    the effects. A figure without a scene takes the first scene.
     """
     box = box_of(scene)
     rows = _rows(entry, results, scene)

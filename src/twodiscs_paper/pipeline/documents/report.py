@@ -25,8 +25,9 @@ from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import box_of, caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
-#: The large figures of a section, of a scene and of all scenes, and how many a scene has; if one is
-#: missing, another figure of the scene replaces it. All other figures are thumbnails.
+#: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
+#: scenes. If a figure of a scene is missing, another one replaces it. All other figures are
+#: thumbnails.
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
 
