@@ -75,8 +75,8 @@ NOT_KEPT = ("cost", "accuracy_cost")
         (formats.span([2.0, 2.0]), "$2$"),
         (formats.in_words(2), "two"),
         (formats.in_words(12), "12"),
-        (formats.box_sides(1.5, 1.0), "$1.5 times 1$"),
-        (formats.box_sides(3e-6, 1e-5), "$(3 times 10^(-6)) times 10^(-5)$"),
+        (formats.box_markup(1.5, 1.0), "$1.5 times 1$"),
+        (formats.box_markup(3e-6, 1e-5), "$(3 times 10^(-6)) times 10^(-5)$"),
     ],
 )
 def test_numbers_are_written_as_physicists_do(number, shown):

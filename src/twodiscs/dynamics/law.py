@@ -127,19 +127,19 @@ def _friction_of(scene):
 
 @optional(lambda other, own: other)
 def value_or(other, own):
-    """Return ``own``, or ``other`` where that is None."""
+    """Return ``own``, or ``other`` if ``own`` is None."""
     return own
 
 
 @optional(lambda a, b: None)
 def difference(a, b):
-    """Return a − b, or None where there is no such coordinate."""
+    """Return a − b, or None without this coordinate."""
     return a - b
 
 
 @optional(lambda a, b: None)
 def product(a, b):
-    """Return a b, or None where there is no b."""
+    """Return a b, or None without b."""
     return a * b
 
 
@@ -182,7 +182,7 @@ def free_flight(position, velocity, time, gravity):
 
 @optional(lambda position, time, velocity: None)
 def moved(position, time, velocity):
-    """Return the position after a straight flight, or None where there is no such coordinate."""
+    """Return the position after a straight flight, or None without this coordinate."""
     return position + velocity * time
 
 
@@ -365,7 +365,7 @@ def fall_quotient(position, velocity, limit, gravity):
     at_top, at_bottom = math.sqrt(left), math.sqrt(square + 2.0 * gravity * below)
     rises = velocity > 0.0
     hits = rises & (left > 0.0)
-    # Downwards (v + root)/g, which is 2 below/(root − v).
+    # Downwards the time is (v + root)/g, which is 2 below/(root − v).
     gap = velocity + at_bottom if rises else 2.0 * below
     speed = gravity if rises else at_bottom - velocity
     return 2.0 * above if hits else gap, velocity + at_top if hits else speed
@@ -374,8 +374,8 @@ def fall_quotient(position, velocity, limit, gravity):
 def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
     gap1, speed1 = fall_quotient(q1, p1, half1, gravity)
     gap2, speed2 = fall_quotient(q2, p2, value_or(half1, half2), gravity)
-    # A speed of 0 never wins, because 0 · gap < gap · speed is false; nor does NaN. Disc 1 at rest
-    # on its wall is 0/0, against which disc 2 would not win either, and is set aside.
+    # A speed of 0 or NaN never comes first, because 0 · gap < gap · speed is false. If disc 1 rests
+    # on its wall, its time is 0/0. Disc 2 would not come before that, so disc 1 is left out.
     second = (gap2 * speed1 < gap1 * speed2) | (speed1 == 0.0)
     return gap2 if second else gap1, speed2 if second else speed1, code2 if second else code1
 
@@ -416,7 +416,7 @@ def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
 def meeting(state, law):
     """Return (gap, speed) of the discs; they touch after gap / speed, if that is a number.
 
-    ``gap`` is infinite where they part or rest, and ``speed`` NaN where they miss.
+    ``gap`` is infinite if they separate or rest, and ``speed`` is NaN if they miss.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
     z1, z2, w1, w2 = depth_part(state, law.depth)
@@ -451,7 +451,7 @@ def first_event(state, remaining, gap_d, speed_d, law):
         y1, y2, v1, v2, law.half_y1, law.half_y2, law.gravity, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
     )
 
-    # A tree of comparisons rather than a chain: shorter for the processor to wait for.
+    # A tree of comparisons has a shorter latency than a chain.
     sooner = gap_x < remaining * speed_x
     gap = gap_x if sooner else remaining
     speed = speed_x if sooner else 1.0

@@ -21,16 +21,16 @@ from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import components, states
 
-#: Events that one may ask for: all of its rows are kept.
+#: The most events of a trajectory, because all its rows are kept.
 MOST_EVENTS = 1e7
 
 #: Rows that are made at a time: some hundredths of a second.
 ROWS = 1000
 
-#: The columns that say which discs an event is of: first < second, None where there is none.
+#: The columns of the discs of an event: first < second, None without a disc.
 DISCS = ("first", "second")
 
-#: How far rounding may have moved a state that is handed in, over the sides and the energy.
+#: The largest error of a given state by rounding, over the sides and the energy.
 ROUNDING = 1e-9
 
 

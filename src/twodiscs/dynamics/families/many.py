@@ -42,7 +42,7 @@ TOUCHED, COMPARED = 50.0, 0.25
 #: draw the velocity of a disc, over the time of an event of the plain ensemble.
 KICK, DRAW = 0.45, 8.0
 
-#: The most by which the window of a chain of ``LARGE`` numbers of discs is longer.
+#: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
 LONGER = 64
 
 

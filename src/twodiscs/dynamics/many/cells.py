@@ -162,7 +162,7 @@ def new_motion(discs, grid):
 
 @inlined
 def find_contact(i, now, columns, rows, motion, grid, law):
-    """Return (time, partner) of the soonest contact of disc ``i`` with one in those cells.
+    """Return (time, partner) of the soonest contact of disc ``i`` with a disc in those cells.
 
     ``columns`` and ``rows`` are the first and the last ones. The time is infinite without any.
     """
@@ -183,7 +183,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
                 other_gap, other_speed, approach = contact_quotient(
                     dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma
                 )
-                # A disc does not approach itself; a speed that is not a number loses.
+                # A disc does not approach itself, and a speed that is not a number is never sooner.
                 if approach & (other_gap * speed < gap * other_speed):
                     gap, speed, partner = other_gap, other_speed, k
                 k = motion.places.after[k]
@@ -244,9 +244,9 @@ def first_disc(tree):
 
 @optional(lambda i, at, now, positions, velocities, times, kind, log, hops: 0)
 def hops_of(i, at, now, positions, velocities, times, kind, log, hops):
-    """Return with how many discs disc ``i`` has changed order, which is ``at`` that place now."""
+    """Return the number of discs with which disc ``i``, now ``at`` a place, has changed order."""
     start, speed, since, count = positions[i], velocities[i], times[i], 0
-    # It has not changed order with itself.
+    # A disc has not changed order with itself.
     positions[i] = -NEVER
     for k in range(positions.size):
         last = max(since, times[k])

@@ -41,7 +41,7 @@ from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import bulk_measures, rates
 
-#: Events of a replica, and of one whose initial state takes as long as some ten thousand events.
+#: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
 #: Events of each disc in a replica of ``LARGE`` numbers of discs.
@@ -132,7 +132,7 @@ def kick_lanes(u, v, times, law, kicks):
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
 def first_of(gap, speed, code, other_gap, other_speed, number, half):
-    """Return (gap, speed, code) of what comes first; the other one is absent where ``half`` is."""
+    """Return (gap, speed, code) of what comes first; without ``half`` (None) there is one only."""
     sooner = other_gap * speed < gap * other_speed
     return (
         other_gap if sooner else gap,
@@ -159,17 +159,17 @@ def nearest(separation, ring):
 
 @optional(lambda dx, dy, du, dv, sigma, ring: contact_of(dx, dy, du, dv, sigma))
 def meeting_of(dx, dy, du, dv, sigma, ring):
-    """Return (gap, speed) of two discs, of the first image that is met on a ring."""
+    """Return (gap, speed) of two discs; on a ring, of the image that is met first."""
     gap, speed = contact_of(dx, dy, du, dv, sigma)
     other_gap, other_speed = contact_of(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
-    # A speed that is not a number loses; where the first one is none, the other one stands.
+    # If one speed is not a number, the other image is met.
     other = (other_gap * speed < gap * other_speed) | (speed != speed)
     return other_gap if other else gap, other_speed if other else speed
 
 
 @inlined
 def contact_of(dx, dy, du, dv, sigma):
-    """Return (gap, speed) of two discs; the gap is infinite where they part."""
+    """Return (gap, speed) of two discs; the gap is infinite if they separate."""
     gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
     return gap if approach else NEVER, speed
 
@@ -379,7 +379,7 @@ def hops_in_flight(before, after, l, time, when):
         for j in range(i):
             start, end = before[i, l] - before[j, l], after[i, l] - after[j, l]
             if crosses(start, end):
-                # In the order of time, a short list.
+                # The list is short, and stays in the order of time.
                 at, k = time * (start / (start - end)), n
                 while k > 0 and when[k - 1] > at:
                     when[k] = when[k - 1]
@@ -482,7 +482,7 @@ def of_events(sums, products):
 
 @lru_cache(maxsize=256)
 def expected_rates(scene):
-    """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
+    """Return {event: rate} of the events of a ``Scene`` of more than two discs.
 
     Rates are exact if that is known, and otherwise from some insertions (``measures.expected``),
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are

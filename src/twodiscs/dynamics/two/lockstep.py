@@ -69,7 +69,7 @@ def facing(position, side, gravity):
     return position * side > 0.0
 
 
-# All hits count as a wall event that ``Scene.multiplicity`` counts.
+# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.multiplicity``.
 
 
 def _wall_seen(event):
@@ -88,7 +88,7 @@ SEEN = by_kind(
         "hop": _hop_seen,
         "collision": lambda event: lambda code, a, b, identical, gravity: code == DISC,
         "wall": _wall_seen,
-        # Collisions of the discs too; see ``all_walls``.
+        # Collisions of the discs count, too; see ``all_walls``.
         "walls": lambda event: lambda code, a, b, identical, gravity: code > END_OF_TIME,
     },
 )
@@ -262,7 +262,7 @@ def run_blocks(
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
-    # Four pairs of a disc and a wall along each of two axes are all there are.
+    # If each of two axes has four pairs of a disc and a wall, these are all pairs.
     complete = scene.identical and not scene.field and scene.walled == ("x", "y")
     rest = None if walls and complete else True
     return count_blocks(

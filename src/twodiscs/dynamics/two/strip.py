@@ -51,8 +51,8 @@ RARE = 40
 #: Passes between two searches for lanes that have ended: paths are short.
 PASSES = 2
 
-#: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
-#: If that holds for the widest strip, too, there is no neck.
+#: A strip is as wide as the neck if the density on its surface is at least ``FILL`` times the mean
+#: density in it. If it is at least ``NO_NECK`` times in the widest strip, there is no neck.
 FILL = 0.75
 NO_NECK = 0.97
 

@@ -12,8 +12,8 @@ from twodiscs.model import checks
 from twodiscs.model.checks import InputError
 from twodiscs_paper.pipeline.configuration.schema import schema
 
-#: Far beyond any configuration: bytes of a file, letters of one value, blocks within blocks, and
-#: values once every alias is written out.
+#: Limits far above any configuration: bytes of a file, letters of one value, blocks within blocks,
+#: and values with every alias written out.
 BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
 
 #: The tags of numbers in YAML, and the form of a decimal number. YAML 1.1 also has octal, binary

@@ -27,7 +27,7 @@ def _has_value(row):
 
 
 def box_of(scene):
-    """Return the ``Box`` of a scene with its "width", "height" and "effects", ``discs`` in them."""
+    """Return the ``Box`` of a scene with "width", "height" and "effects", among these "discs"."""
     effects = dict(scene.get("effects", ()))
     discs = effects.pop("discs", 2)
     return Box(scene["width"], scene["height"], effects, discs)

@@ -98,7 +98,7 @@ def plain(text):
     return re.sub(r"([\\#$*_@<>`~\[\]])", r"\\\1", text)
 
 
-def box_sides(width, height):
+def box_markup(width, height):
     """Return the box of these sides."""
     texts = [formula(rounded(side, 6)) for side in (width, height)]
     texts = [f"({text})" if "times" in text else text for text in texts]
@@ -157,7 +157,7 @@ def words(write):
     return Format(lambda *values: Printed(None, write(*values)))
 
 
-INTEGER, WITH_ERROR, SIDES = map(Format, (integer, with_error, box_sides))
+INTEGER, WITH_ERROR, SIDES = map(Format, (integer, with_error, box_markup))
 AS_TYPED = Format(lambda x: Printed(x, repr(x)))
 NAME = words(lambda name: name.replace("_", " "))
 COUNTED = several(lambda values: integer(len(values)))

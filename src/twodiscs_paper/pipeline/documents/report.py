@@ -127,7 +127,7 @@ def movie(folder, path, scenes):
     with Image.open(Path(folder, path)) as image:
         longest = 0
         for k in range(image.n_frames):
-            image.seek(k)  # forwards only: a frame that is gone back to may be black
+            image.seek(k)  # forwards only, because earlier frames may be black
             if image.info["duration"] > longest:
                 longest, picture = image.info["duration"], image.convert("RGB")
         still = BytesIO()
