@@ -10,14 +10,13 @@ from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.family import FAMILIES, module_of
 from twodiscs.model.sources import fingerprint
-from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
+from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES
 from twodiscs_paper.pipeline.configuration.request import (
     GATHERED,
     STAGES,
     assigned,
     braced,
 )
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
 

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
-from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 
 
 def _rows(entry, results, scene):
@@ -14,7 +13,7 @@ def _rows(entry, results, scene):
     for name in entry.tables:
         path = Path(results, "" if name in STUDY_TABLES else scene["name"], f"{name}.csv")
         if path.exists():
-            for row in (SCENE_TABLES | STUDY_TABLES)[name].read(path):
+            for row in TABLES[name].read(path):
                 quantity = row.get("quantity") or f"{row.get('event')}_time"
                 if not entry.needs or {quantity, name} & entry.needs:
                     by_quantity.setdefault(quantity, []).append(row)

@@ -20,8 +20,8 @@ from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.theory import Grid
-from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
-from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
+from twodiscs_paper.catalogue import ENTRIES
 from twodiscs_paper.pipeline.documents.captions import box_of, caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
@@ -36,8 +36,6 @@ FEW = 60
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
-
-ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: Pixels of a figure per pixel on the screen.
 DENSITY = 2
