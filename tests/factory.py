@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.points.dynamics import DynamicsPoint

@@ -28,7 +28,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.pipeline import cost
 from twodiscs_paper.pipeline.configuration import load
 from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.pipeline.documents.numbers.rounding import rounded_up
+from twodiscs_paper.pipeline.documents.formats import rounded_up
 from twodiscs_paper.pipeline.results import verdict
 
 PAGES = [

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.studies.effects.table import Benchmark
 from twodiscs_paper.study import Study
 
@@ -26,8 +27,9 @@ def _declared():
 #: {name: ``Study``}
 STUDIES = {s.name: s for s in sorted(_declared(), key=lambda study: (study.order, study.name))}
 
-#: The figures of studies, {name: ``Entry``}.
+#: The figures of studies, and all figures with the animation, {name: ``Entry``}.
 STUDY_FIGURES = {name: e for study in STUDIES.values() for name, e in study.figures.items()}
+ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: The tables of studies, {name: table}, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}

@@ -11,9 +11,10 @@ class Study:
     """An analysis: its ``name``, what its target ``builds``, its ``tables`` and ``figures``.
 
     The function ``rows`` makes the first table. It takes the ``parameters`` of a ``Configuration``
-    and, as ``tables``, the rows of the tables that the study ``reads``: {name: (name of a scene or
-    None, table)}. Other tables have their own rules. If a table takes long, it has ``parts``,
-    {name: parameters}: jobs of its function ``part``, whose rows are read as tables of these names.
+    and, as ``tables``, the rows of the tables that the study ``reads``. These are {name: (name of a
+    scene or None, table)}. Other tables have their own rules. If a table takes long, it has
+    ``parts``, {name: parameters}: jobs of its function ``part``, whose rows are read as tables of
+    these names.
 
     ``families`` are the families of the scenes that the study computes.
 

@@ -11,10 +11,10 @@ from factory import BOX, RADII, Laws, rows_of, scenes, theory_rows
 from twodiscs.comparison import check, scores
 from twodiscs.comparison.tables import monte_carlo
 from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.exact import ExactValues, Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
+from twodiscs.comparison.tables.theory import ExactValues, Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, HOPS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
@@ -311,7 +311,7 @@ def test_the_check_takes_all_rows_of_a_scene_with_effects(tmp_path):
     scene = SCENES["balls"]
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
-        "monte_carlo": [montecarlo.better_point(scene, quantities, 1, 0.1, 7)],
+        "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 1, 0.1, 7).run()],
         "dynamics": [Laws(scene).dynamics(np.random.default_rng(3), events=scene.events)],
     }
     found = table_of(points, theory_of(scene), scene=scene)

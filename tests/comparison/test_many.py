@@ -13,7 +13,7 @@ from twodiscs.comparison.measured.measurements import Measurements
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.scores import FALSE_ALARM, bonferroni_bound
 from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting, intervals
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.many import lockstep as many
@@ -78,7 +78,7 @@ def measured(request):
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
         "dynamics": [counting.count_events(scene, target, 2 * 10**7, 3)],
-        "monte_carlo": [montecarlo.better_point(scene, quantities, 400_000, 0.02, 4)],
+        "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 400_000, 0.02, 4).run()],
     }
     box = Box.of(scene)
     for stage, some in points.items():

@@ -16,7 +16,7 @@ LAST = '        Event("any_wall", "walls"),\n'
 MEASURED = """
 import sys
 from twodiscs.comparison.tables.check import Check
-from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import DECLARED
@@ -37,7 +37,7 @@ for scene in (
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     points = {
         "dynamics": [counting.count_events(scene, dict.fromkeys(scene.events, 5e-3), 10**7, 3)],
-        "monte_carlo": [montecarlo.better_point(scene, quantities, 400_000, 0.1, 4)],
+        "monte_carlo": [montecarlo.SamplingRun(scene, quantities, 400_000, 0.1, 4).run()],
     }
     rows = Check.rows(Box.of(scene), Theory.rows(Box.of(scene), [scene.radius]), points)
     assert [row for row in rows if row["passed"] is False] == []

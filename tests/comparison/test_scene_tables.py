@@ -21,10 +21,10 @@ from factory import (
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.exact import Grid, Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes, rows_without_strips
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume, _row
+from twodiscs.comparison.tables.theory import Grid, Theory
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
@@ -361,7 +361,7 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
     scene = SCENES[name]
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]
     scenes = [scene.with_radius(radius) for radius in (0.1, scene.radius)]
-    points = [montecarlo.better_point(s, quantities, 1, 0.1, 7) for s in scenes]
+    points = [montecarlo.SamplingRun(s, quantities, 1, 0.1, 7).run() for s in scenes]
     theory = exact_of(*scenes)
     volume = Volume.rows(theory, {"monte_carlo": points[::-1]})
     areas = Areas.rows(Box.of(scene), theory, {"monte_carlo": points[::-1]})
@@ -382,7 +382,7 @@ def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
 
 def test_all_walls_have_counts_of_their_own():
     scene = SCENES["unequal"]
-    point = montecarlo.better_point(scene, ["any_wall_area"], 1, 0.1, 7)
+    point = montecarlo.SamplingRun(scene, ["any_wall_area"], 1, 0.1, 7).run()
     (row,) = Areas.rows(Box.of(scene), exact_of(scene), {"monte_carlo": [point]}, ("any_wall",))
     part = point.quantities["any_wall_area"]
     assert (row["hits"], row["epsilon"]) == (part.hits, part.epsilon)
@@ -423,7 +423,7 @@ def test_an_event_out_of_reach_must_not_be_seen():
 def test_plain_points_keep_to_right_and_top():
     """All walls of a plain scene join two shells, which its point holds."""
     plain = BOX.scene(0.2)
-    point = montecarlo.better_point(plain, ["any_wall_area"], 1, 0.1, 7)
+    point = montecarlo.SamplingRun(plain, ["any_wall_area"], 1, 0.1, 7).run()
     assert "any_wall_area" not in point.quantities
     (row,) = Areas.rows(Box.of(plain), exact_of(plain), {"monte_carlo": [point]}, ("any_wall",))
     assert row["epsilon"] is None

@@ -17,7 +17,7 @@ from twodiscs.comparison.tables import base
 from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, Table
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.model.plugins import plugin
 
 EVERY_TABLE = plugin("tables")

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting
 from twodiscs.model.box import Box
 from twodiscs.model.events import SHELLS

@@ -16,7 +16,7 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
 
@@ -56,7 +56,7 @@ EXACT = {
 def test_rates_are_exact(name):
     scene = EXACT[name]
     found, errors, covariance = counted(scene, 6)
-    check(scene, found, errors, rates(scene, exact.measures(scene)))
+    check(scene, found, errors, rates(scene, methods.measures(scene)))
     weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
     error = math.sqrt(weights @ covariance @ weights)
     assert abs(virial_sum(scene, found) - 1) < 5 * error

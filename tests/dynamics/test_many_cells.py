@@ -15,7 +15,7 @@ from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
 from twodiscs.sampling.many.cells import grid_of
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_weights
 
 
@@ -49,7 +49,7 @@ THREE = [
 def test_rates_are_exact(scene):
     """Five sigma on every class, with as few cells as there may be."""
     found, errors = means(*counts_of(scene, 1, 4096, 256), 4096)
-    for event, rate in rates(scene, exact.measures(scene)).items():
+    for event, rate in rates(scene, methods.measures(scene)).items():
         k = [*SHELLS].index(event)
         assert abs(found[k] - rate) <= 5 * errors[k], (event, found[k], rate, errors[k])
 

@@ -16,7 +16,7 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates
 
 FEW = Scene(1.5, 1.0, 0.15, discs=3, friction=4.0)
@@ -31,7 +31,7 @@ def test_no_mean_time_changes(scene):
     assert duration * scene.friction > 3
     sums, products = kernels.run_blocks(scene, 1, 0, 1, duration, replicas=replicas)
     found, relative = sums / replicas / duration, relative_errors(sums, products, replicas)
-    for event, rate in rates(scene, exact.measures(scene)).items():
+    for event, rate in rates(scene, methods.measures(scene)).items():
         k = [*SHELLS].index(event)
         error = 5 * found[k] * relative[k] if rate else 0.0
         assert abs(found[k] - rate) <= error, (event, found[k], rate, error)

@@ -237,7 +237,7 @@ def test_only_rare_hops_of_a_neck_have_strips():
 def test_the_target_is_reached_at_any_distance_from_a_threshold(hop, distance):
     scene = PAPER.with_radius((0.375 if hop == "vertical_hop" else 0.25) * (1 - distance))
     point = counting.count_events(scene, {hop: 0.01}, 10**8, 1)
-    found = point.strip(hop)
+    found = point.in_strip(hop)
     assert point.status == {hop: found.status} == {hop: "reached"}
     assert found.events < 100 * found.replicas
     time = point.estimate(hop)
@@ -252,7 +252,7 @@ def test_a_budget_is_shared_and_spent():
     assert point.status == {hop: "budget", "any_wall": "budget"}
     parts = counting.CountingRun(scene, point.target, 10**7, 1).parts
     planned = {name: part.planned * part.block_events for name, part in parts.items()}
-    of_strip = point.strip(hop).events / point.events
+    of_strip = point.in_strip(hop).events / point.events
     assert of_strip == pytest.approx(planned[hop] / sum(planned.values()), rel=0.2)
     assert 8e6 < point.events < 1.02e7
 

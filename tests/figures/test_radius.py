@@ -38,7 +38,7 @@ QUANTITIES = {
 @pytest.mark.parametrize("name", OVER_RADIUS)
 def test_each_quantity_has_its_own_curve_and_estimates(figures, name):
     """Estimates with their standard errors, and residuals, as in the rows of the table."""
-    radii, exact = curves.exact(PAPER)
+    radii, exact = curves.exact_curves(PAPER)
     names, (main, lower) = QUANTITIES[name], figures[name].axes[:2]
     drawn = [line for line in main.lines if len(line.get_xdata()) == len(radii)]
     assert len(drawn) == len(names)

@@ -406,7 +406,7 @@ def test_curves_of_thresholds_are_exact_and_crosses_are_first_passages():
 
 
 def test_curves_of_pressures_are_exact():
-    radii, columns = curves.exact(PAPER)
+    radii, columns = curves.exact_curves(PAPER)
     for event, look in zip(("right_wall", "top_wall"), style.SERIES, strict=False):
         known = np.isfinite(radii)
         scenes = [PAPER.scene(radius) for radius in radii[known]]

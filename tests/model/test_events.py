@@ -36,7 +36,7 @@ def test_groups_of_events_follow_from_their_kinds():
             AXIS.get(name) == event.axis == {"hop": event.axis, "wall": event.axis}.get(event.kind)
         )
         assert event.side in {"wall": (-1, 1)}.get(event.kind, (0,))
-        assert event.sides == (2 if name in HOPS else 1)
+        assert event.ways == (2 if name in HOPS else 1)
     for group in (HOPS, WALLS, SHELLS, tuple(AXIS)):
         assert group == tuple(name for name in EVENTS if name in group)
     places = [(event.kind, event.axis, event.side) for event in DECLARED.values()]

@@ -43,7 +43,7 @@ def results(tmp_path, monkeypatch):
 def make(monkeypatch):
     words = [f"results/{name}" for name in FILES]
     workflow = REPOSITORY / "workflow"
-    words += ["--texts", workflow / "Snakefile", workflow / "rules" / "points.smk"]
+    words += ["--texts", workflow / "Snakefile", workflow / "rules" / "scenes.smk"]
     words += ["--provenance", "results/provenance.json"]
     words += ["--citation", REPOSITORY / "CITATION.cff"]
     words += ["--output", "results/ro-crate-metadata.json"]
@@ -67,7 +67,7 @@ def read(folder):
 def test_the_library_reads_what_made_what(results, monkeypatch):
     assert make(monkeypatch) == 0
     found = read(results)
-    texts = {"_workflow/Snakefile", "_workflow/points.smk"}
+    texts = {"_workflow/Snakefile", "_workflow/scenes.smk"}
     assert {one.id for one in found.data_entities} == {*FILES, *texts}
     assert found.mainEntity.id == "_workflow/Snakefile"
     assert found.mainEntity["version"].endswith("commit 0123456789ab with changes")

@@ -11,7 +11,7 @@ from twodiscs.figures.kit import style
 from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents import manuscript
-from twodiscs_paper.pipeline.documents.numbers.rounding import Printed
+from twodiscs_paper.pipeline.documents.formats import Printed
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS
@@ -20,9 +20,9 @@ from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.catalogue import TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.pipeline.documents import formats, numbers
+from twodiscs_paper.pipeline.documents.formats import FIRST_HOP, MAIN, Cells, Number, Other
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS
-from twodiscs_paper.pipeline.documents.numbers import declared, number, rounding, table, texts
-from twodiscs_paper.pipeline.documents.numbers.number import FIRST_HOP, MAIN, Cells, Number, Other
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -48,35 +48,35 @@ NOT_KEPT = ("cost", "accuracy_cost")
 @pytest.mark.parametrize(
     ("number", "shown"),
     [
-        (rounding.significant(0, 2), "$0$"),
-        (rounding.significant(3.14159, 3), "$3.14$"),
-        (rounding.significant(0.0999, 2), "$0.1$"),
-        (rounding.significant(-1234.0, 3), "$-1230$"),
-        (rounding.significant(9996.0, 3), "$10^(4)$"),
-        (rounding.significant(44312345678, 2), "$4.4 times 10^(10)$"),
-        (rounding.significant(1e-15, 2), "$10^(-15)$"),
-        (rounding.significant(0.03125, 3), "$0.0313$"),
-        (rounding.with_error(0.8134, 0.0021), "$0.813 (2)$"),
-        (rounding.with_error(-0.6098, 0.1141), "$-0.61 (11)$"),
-        (rounding.with_error(1.0, 0.03), "$1.00 (3)$"),
-        (rounding.with_error(0.9996, 0.00096), "$0.9996 (10)$"),
-        (rounding.with_error(0.03, 0.0098), "$0.030 (10)$"),
-        (rounding.with_error(120.0, 30.0), "$120 (30)$"),
-        (rounding.at_most([0.3, 3.013]), "$3.1$"),
-        (rounding.at_most([3.1, 0.0]), "$3.1$"),
-        (rounding.at_most([1.525e-15]), "$1.6 times 10^(-15)$"),
-        (rounding.at_most([9.96]), "$10$"),
-        (rounding.at_most([0.0926], 1), "$0.1$"),
-        (rounding.at_least([3.19, 9.98]), "$3.1$"),
-        (rounding.smallest(3, 100).write([0.39689, -0.5]), "$39.6$"),
-        (rounding.largest(3, 100).write([-0.28, 0.07]), "$28$"),
-        (rounding.decimals(1).write(1.96), "$2.0$"),
-        (rounding.span([0.5, 12345, 2.0]), "$0.5$ to $1.2 times 10^(4)$"),
-        (rounding.span([2.0, 2.0]), "$2$"),
-        (rounding.in_words(2), "two"),
-        (rounding.in_words(12), "12"),
-        (rounding.sides(1.5, 1.0), "$1.5 times 1$"),
-        (rounding.sides(3e-6, 1e-5), "$(3 times 10^(-6)) times 10^(-5)$"),
+        (formats.significant(0, 2), "$0$"),
+        (formats.significant(3.14159, 3), "$3.14$"),
+        (formats.significant(0.0999, 2), "$0.1$"),
+        (formats.significant(-1234.0, 3), "$-1230$"),
+        (formats.significant(9996.0, 3), "$10^(4)$"),
+        (formats.significant(44312345678, 2), "$4.4 times 10^(10)$"),
+        (formats.significant(1e-15, 2), "$10^(-15)$"),
+        (formats.significant(0.03125, 3), "$0.0313$"),
+        (formats.with_error(0.8134, 0.0021), "$0.813 (2)$"),
+        (formats.with_error(-0.6098, 0.1141), "$-0.61 (11)$"),
+        (formats.with_error(1.0, 0.03), "$1.00 (3)$"),
+        (formats.with_error(0.9996, 0.00096), "$0.9996 (10)$"),
+        (formats.with_error(0.03, 0.0098), "$0.030 (10)$"),
+        (formats.with_error(120.0, 30.0), "$120 (30)$"),
+        (formats.at_most([0.3, 3.013]), "$3.1$"),
+        (formats.at_most([3.1, 0.0]), "$3.1$"),
+        (formats.at_most([1.525e-15]), "$1.6 times 10^(-15)$"),
+        (formats.at_most([9.96]), "$10$"),
+        (formats.at_most([0.0926], 1), "$0.1$"),
+        (formats.at_least([3.19, 9.98]), "$3.1$"),
+        (formats.smallest(3, 100).write([0.39689, -0.5]), "$39.6$"),
+        (formats.largest(3, 100).write([-0.28, 0.07]), "$28$"),
+        (formats.decimals(1).write(1.96), "$2.0$"),
+        (formats.span([0.5, 12345, 2.0]), "$0.5$ to $1.2 times 10^(4)$"),
+        (formats.span([2.0, 2.0]), "$2$"),
+        (formats.in_words(2), "two"),
+        (formats.in_words(12), "12"),
+        (formats.box_markup(1.5, 1.0), "$1.5 times 1$"),
+        (formats.box_markup(3e-6, 1e-5), "$(3 times 10^(-6)) times 10^(-5)$"),
     ],
 )
 def test_numbers_are_written_as_physicists_do(number, shown):
@@ -85,7 +85,7 @@ def test_numbers_are_written_as_physicists_do(number, shown):
 
 def test_bounds_hold_and_are_tight():
     for x in np.random.default_rng(1).lognormal(0, 20, 1000):
-        up, down = (float(f(x)) for f in (rounding.rounded_up, rounding.rounded_down))
+        up, down = (float(f(x)) for f in (formats.rounded_up, formats.rounded_down))
         assert down * (1 - 1e-11) <= x <= up * (1 + 1e-11)
         assert up - down <= 0.1001 * down
 
@@ -103,36 +103,36 @@ ROWS = {
 }
 HOP, WALL = {"event": "hop"}, {"event": "wall"}
 make = partial(Number, "n", "tails")
-FIRST = make({"law": 3.0}, "time", rounding.INTEGER)
+FIRST = make({"law": 3.0}, "time", formats.INTEGER)
 
 
 @pytest.mark.parametrize(
     ("one", "text"),
     [
-        (make(WALL, "estimate", rounding.digits(2)), "$8$"),  # an empty cell is no row
-        (make(HOP | {"law": ...}, "estimate", rounding.digits(2)), "$-6$"),
-        (make({"law": None}, "estimate", rounding.digits(2)), "$5$"),
-        (make({"event": Other("hop")}, "estimate", rounding.digits(2)), "$8$"),
-        (make({"event": Other(MAIN)}, "estimate", rounding.largest()), "$8$"),
-        (make({"event": MAIN, "law": ...}, "time", rounding.INTEGER), "2"),  # MAIN is the hop here
-        (make({"time": (2.0, 4.0)}, "estimate", rounding.COUNTED), "3"),
-        (make({}, "event", rounding.DISTINCT_IN_WORDS), "two"),
-        (make({}, "estimate", rounding.total(2)), "$7$"),
-        (make({}, "estimate", rounding.smallest()), "$5$"),
-        (make({}, "estimate", rounding.RANGE), "$-6$ to $8$"),
-        (make(WALL, "estimate/law", rounding.digits(2)), "$4$"),
-        (make(WALL, "estimate*law", rounding.digits(2)), "$16$"),
-        (make(HOP, ("estimate/law", "stderr"), rounding.WITH_ERROR), "$-2.0 (2)$"),
-        (make(HOP, ("estimate", "stderr"), rounding.WITH_ERROR, ("first",)), "$-6.0 (2)$"),
-        (make(HOP, "time", rounding.AS_TYPED, ("last",)), "4.0"),
-        (make(HOP, "estimate", rounding.digits(1), ("largest", "estimate")), "$-6$"),
-        (make({}, "estimate", rounding.digits(1), ("smallest", "time", "estimate")), "$-6$"),
+        (make(WALL, "estimate", formats.digits(2)), "$8$"),  # an empty cell is no row
+        (make(HOP | {"law": ...}, "estimate", formats.digits(2)), "$-6$"),
+        (make({"law": None}, "estimate", formats.digits(2)), "$5$"),
+        (make({"event": Other("hop")}, "estimate", formats.digits(2)), "$8$"),
+        (make({"event": Other(MAIN)}, "estimate", formats.largest()), "$8$"),
+        (make({"event": MAIN, "law": ...}, "time", formats.INTEGER), "2"),  # MAIN is the hop here
+        (make({"time": (2.0, 4.0)}, "estimate", formats.COUNTED), "3"),
+        (make({}, "event", formats.DISTINCT_IN_WORDS), "two"),
+        (make({}, "estimate", formats.total(2)), "$7$"),
+        (make({}, "estimate", formats.smallest()), "$5$"),
+        (make({}, "estimate", formats.RANGE), "$-6$ to $8$"),
+        (make(WALL, "estimate/law", formats.digits(2)), "$4$"),
+        (make(WALL, "estimate*law", formats.digits(2)), "$16$"),
+        (make(HOP, ("estimate/law", "stderr"), formats.WITH_ERROR), "$-2.0 (2)$"),
+        (make(HOP, ("estimate", "stderr"), formats.WITH_ERROR, ("first",)), "$-6.0 (2)$"),
+        (make(HOP, "time", formats.AS_TYPED, ("last",)), "4.0"),
+        (make(HOP, "estimate", formats.digits(1), ("largest", "estimate")), "$-6$"),
+        (make({}, "estimate", formats.digits(1), ("smallest", "time", "estimate")), "$-6$"),
         (
-            make(WALL, "estimate", rounding.digits(1), same=(FIRST, "time")),
+            make(WALL, "estimate", formats.digits(1), same=(FIRST, "time")),
             "$8$",
         ),
-        (make({}, ("estimate", "event"), rounding.COUNTED), "3"),
-        (make(HOP, ("estimate", "law"), rounding.WITH_ERROR), "$-6 (3)$"),
+        (make({}, ("estimate", "event"), formats.COUNTED), "3"),
+        (make(HOP, ("estimate", "law"), formats.WITH_ERROR), "$-6 (3)$"),
     ],
 )  # fmt: skip
 def test_a_number_takes_its_rows(one, text):
@@ -144,7 +144,7 @@ def test_a_number_takes_its_rows(one, text):
     [
         (
             {"event": "door", "law": ..., "time": (1.0, 2.0)},
-            number.NoRow,
+            formats.NoRow,
             "the number n must have one row of tails.csv with event = 'door' and any law and time "
             "among (1.0, 2.0), but there are 0",
         ),
@@ -159,36 +159,36 @@ def test_a_number_takes_its_rows(one, text):
 )
 def test_a_filter_of_no_row_or_of_two_is_one_sentence(where, error, sentence):
     with pytest.raises(error, match=re.escape(sentence)) as raised:
-        make(where, "estimate", rounding.digits(2)).printed(ROWS, GIVEN)
+        make(where, "estimate", formats.digits(2)).printed(ROWS, GIVEN)
     assert type(raised.value) is error
 
 
 def test_a_number_without_a_row_is_left_out_and_named(monkeypatch, capsys):
     monkeypatch.setattr(
-        table,
+        numbers,
         "NUMBERS",
-        (make(HOP, "law", rounding.INTEGER), make({"law": 9.0}, "law", rounding.INTEGER)),
+        (make(HOP, "law", formats.INTEGER), make({"law": 9.0}, "law", formats.INTEGER)),
     )
-    monkeypatch.setattr(table, "CELLS", ())
-    assert table.printed(ROWS, SCENES) == {"n": rounding.Printed(3.0, "3")}
+    monkeypatch.setattr(numbers, "CELLS", ())
+    assert numbers.printed(ROWS, SCENES) == {"n": formats.Printed(3.0, "3")}
     assert capsys.readouterr().err.startswith(
         "the number n must have one row of tails.csv with law"
     )
-    monkeypatch.setattr(table, "NUMBERS", (make({}, "estimate", rounding.INTEGER),))
+    monkeypatch.setattr(numbers, "NUMBERS", (make({}, "estimate", formats.INTEGER),))
     with pytest.raises(InputError, match="but there are 3"):
-        table.printed(ROWS, SCENES)
+        numbers.printed(ROWS, SCENES)
 
 
 def test_cells_are_those_of_lines():
     cells = (
-        make(HOP, "estimate", rounding.digits(1), ("first",)),
-        Number("seconds", "cost", {}, "seconds", rounding.INTEGER),
+        make(HOP, "estimate", formats.digits(1), ("first",)),
+        Number("seconds", "cost", {}, "seconds", formats.INTEGER),
     )
     lines = Cells("t", "tails", {}, ("event",), cells)
     assert {name: one.text for name, one in lines.printed(ROWS, GIVEN).items()} == {
         "t/hop/n": "$-6$", "t/hop/seconds": "--", "t/wall/n": "--", "t/wall/seconds": "7",
     }  # fmt: skip
-    (one,) = [make({}, "time", rounding.INTEGER)]
+    (one,) = [make({}, "time", formats.INTEGER)]
     lines = Cells("t", "tails", {"law": ...}, ("time", "event"), (one,), True, True)
     assert {name: one.text for name, one in lines.printed(ROWS, GIVEN).items()} == {
         "t/01/n": "2", "t/02/n": "2",
@@ -199,35 +199,37 @@ def test_cells_are_those_of_lines():
 @pytest.mark.parametrize(
     ("form", "values", "text"),
     [
-        (texts.CASES, [[("vertical_hop", 0.25), ("horizontal_hop", 0.1), ("vertical_hop", 0.375)]],
+        (formats.CASES,
+         [[("vertical_hop", 0.25), ("horizontal_hop", 0.1), ("vertical_hop", 0.375)]],
          "vertical hops at $r =$ $0.25$, $0.375$; horizontal hops at $r =$ $0.1$"),
-        (texts.STEP_FLOORS, [[(0.0625, 0.1), (0.25, 0.4)]],
+        (formats.STEP_FLOORS, [[(0.0625, 0.1), (0.25, 0.4)]],
          "$0.4$ at $Delta t =$ $0.25$, $0.1$ at $Delta t =$ $0.063$"),
-        (texts.PLURALS, [["vertical_hop", "horizontal_hop"]], "vertical hops and horizontal hops"),
-        (texts.NUMBER_WORDS, [[8, 4, 4]], "four and eight"),
-        (texts.QUOTIENT, [[0.1, 0.0125]], "$8$"),
-        (texts.SPREAD, [[(0.1, 2.0), (0.2, 5.0), (0.1, 2.1), (0.2, 5.0)]], "$5$"),
-        (texts.OTHERS, [[-3.3, 1.0, 2.01]], "$2.1$"),
-        (texts.OVERLAP, [[-3e-16, 1e-3]], "$3 times 10^(-16)$"),
-        (texts.FAILED, [[True, False, True]], "1"),
-        (texts.POWER_OF_TWO, [2.0**-14], "$2^(-14)$"),
-        (texts.SHARE, [1, 10**6], "a share of $10^(-6)$"),
-        (texts.SHARE, [0, 10**6], "none"),
-        (texts.CHANCE, [0.034], "$0.03$"),
-        (texts.CHANCE, [1e-3], "$0$"),
-        (texts.EXACT_OR_MEASURED, [0.5195, 0.0005, 0.519907], "$0.51991$"),
-        (texts.EXACT_OR_MEASURED, [0.25271, 0.00025271, None], "$0.2527 (3)$"),
-        (texts.FIRST_LETTER, ["vertical_hop"], "v"),
-        (texts.SHORT_EVENT, ["disc_collision"], "disc coll."),
-        (texts.THEORY, ["none"], "--"),
-        (texts.PLAIN, ["hop_tau"], r"hop\_tau"),
-        (texts.SEVERITY, ["slip", "in range"], "slip, in range"),
-        (texts.SEVERITY, ["major", "wrong"], "major"),
-        (texts.RATIO, [0.5, 0.2], "$0.5$ at $0.2$"),
-        (texts.RATIO, [0.5, None], "$0.5$"),
-        (texts.METHODS, ["theory; Monte Carlo 2.0(1); dynamics 2.00(1)"], "C D"),
-        (texts.METHODS, ["theory"], "--"),
-        (texts.CORRECTION, ["`8√2 b√(a² − r²)`, with `√2` once"],
+        (formats.PLURALS, [["vertical_hop", "horizontal_hop"]],
+         "vertical hops and horizontal hops"),
+        (formats.NUMBER_WORDS, [[8, 4, 4]], "four and eight"),
+        (formats.QUOTIENT, [[0.1, 0.0125]], "$8$"),
+        (formats.SPREAD, [[(0.1, 2.0), (0.2, 5.0), (0.1, 2.1), (0.2, 5.0)]], "$5$"),
+        (formats.OTHERS, [[-3.3, 1.0, 2.01]], "$2.1$"),
+        (formats.OVERLAP, [[-3e-16, 1e-3]], "$3 times 10^(-16)$"),
+        (formats.FAILED, [[True, False, True]], "1"),
+        (formats.POWER_OF_TWO, [2.0**-14], "$2^(-14)$"),
+        (formats.SHARE, [1, 10**6], "a share of $10^(-6)$"),
+        (formats.SHARE, [0, 10**6], "none"),
+        (formats.CHANCE, [0.034], "$0.03$"),
+        (formats.CHANCE, [1e-3], "$0$"),
+        (formats.EXACT_OR_MEASURED, [0.5195, 0.0005, 0.519907], "$0.51991$"),
+        (formats.EXACT_OR_MEASURED, [0.25271, 0.00025271, None], "$0.2527 (3)$"),
+        (formats.FIRST_LETTER, ["vertical_hop"], "v"),
+        (formats.SHORT_EVENT, ["disc_collision"], "disc coll."),
+        (formats.THEORY, ["none"], "--"),
+        (formats.PLAIN, ["hop_tau"], r"hop\_tau"),
+        (formats.SEVERITY, ["slip", "in range"], "slip, in range"),
+        (formats.SEVERITY, ["major", "wrong"], "major"),
+        (formats.RATIO, [0.5, 0.2], "$0.5$ at $0.2$"),
+        (formats.RATIO, [0.5, None], "$0.5$"),
+        (formats.METHODS, ["theory; Monte Carlo 2.0(1); dynamics 2.00(1)"], "C D"),
+        (formats.METHODS, ["theory"], "--"),
+        (formats.CORRECTION, ["`8√2 b√(a² − r²)`, with `√2` once"],
          "$8 sqrt(2)  b  sqrt( a ^2 -  r ^2)$, with $sqrt(2)$ once"),
     ],
 )  # fmt: skip
@@ -241,19 +243,19 @@ def test_formats_of_one_number(form, values, text):
 def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used():
     used = {*re.findall(r'(?:number|has)\("(\w+)"\)', SOURCE)}
     used |= {*re.findall(r"\bours: (\w+)", (PAPER / "published.yaml").read_text())}
-    names = Counter(one.name for one in declared.NUMBERS)
+    names = Counter(one.name for one in numbers.NUMBERS)
     assert {*names} | {*CONSTANTS, "seed"} == used
     assert max(names.values()) == 1
-    assert {*re.findall(r'cells\("(\w+)"\)', SOURCE)} == {cells.name for cells in declared.CELLS}
+    assert {*re.findall(r'cells\("(\w+)"\)', SOURCE)} == {cells.name for cells in numbers.CELLS}
 
 
 @pytest.mark.parametrize(
     "one",
-    [*declared.NUMBERS, *(c for t in declared.CELLS for c in t.cells)],
+    [*numbers.NUMBERS, *(c for t in numbers.CELLS for c in t.cells)],
     ids=lambda one: one.name,
 )
 def test_a_number_is_of_a_table_and_of_columns_that_there_are(one):
-    kept = (TABLES | table.LONG_RUNS)[one.table].columns().keys()
+    kept = (TABLES | numbers.LONG_RUNS)[one.table].columns().keys()
     if one.table in SCENE_TABLES:
         kept |= {"scene", "width", "height"}
     columns = {one.columns} if isinstance(one.columns, str) else {*one.columns}
@@ -264,7 +266,7 @@ def test_a_number_is_of_a_table_and_of_columns_that_there_are(one):
 @pytest.fixture(scope="module")
 def expected():
     """Return the tables of the default configuration, as far as they are kept."""
-    tables = {name: [] for name in (*table.OF_SCENES, *table.OF_STUDIES)}
+    tables = {name: [] for name in (*numbers.OF_SCENES, *numbers.OF_STUDIES)}
     for name in tables.keys() - {*NOT_KEPT}:
         if name in SCENE_TABLES:
             for scene in SCENES:
@@ -274,16 +276,16 @@ def expected():
         else:
             tables[name] = TABLES[name].read(PAPER / "expected" / f"{name}.csv")
     paths = LONG_RUNS.items()
-    return tables | {name: table.LONG_RUNS[name].read(path) for name, path in paths}
+    return tables | {name: numbers.LONG_RUNS[name].read(path) for name, path in paths}
 
 
-@pytest.mark.parametrize("one", declared.NUMBERS, ids=lambda one: one.name)
+@pytest.mark.parametrize("one", numbers.NUMBERS, ids=lambda one: one.name)
 def test_every_number_has_rows_in_the_expected_tables(expected, one):
     if one.table not in NOT_KEPT:
         assert one.printed(expected, GIVEN).text
 
 
-@pytest.mark.parametrize("cells", declared.CELLS, ids=lambda cells: cells.name)
+@pytest.mark.parametrize("cells", numbers.CELLS, ids=lambda cells: cells.name)
 def test_every_column_of_cells_has_rows_in_the_expected_tables(expected, cells):
     found = cells.printed(expected, GIVEN)
     filled = {name.split("/")[2] for name, one in found.items() if one.text != "--"}
@@ -368,7 +370,7 @@ BY_HAND = {
 
 @pytest.mark.parametrize("name", BY_HAND)
 def test_numbers_are_those_of_a_second_method(expected, name):
-    (one,) = [one for one in declared.NUMBERS if one.name == name]
+    (one,) = [one for one in numbers.NUMBERS if one.name == name]
     value = one.printed(expected, GIVEN).value
     assert value == pytest.approx(BY_HAND[name](expected), rel=1e-9)
 
@@ -378,26 +380,26 @@ def test_numbers_are_those_of_a_second_method(expected, name):
 
 def test_tables_are_read_from_the_folders_of_scenes_and_from_that_of_all(tmp_path):
     (tmp_path / "paper").mkdir()
-    for name in (*table.OF_SCENES, *table.OF_STUDIES):
+    for name in (*numbers.OF_SCENES, *numbers.OF_STUDIES):
         own = tmp_path / "paper" if name in SCENE_TABLES else tmp_path
         rows = [TABLES[name].empty(radius=0.1)] if name == "grid" else []
         TABLES[name].write(own / f"{name}.csv", rows)
-    found = table.read(tmp_path, SCENES[:1])
-    assert found.keys() == {*table.OF_SCENES, *table.OF_STUDIES, *table.LONG_RUNS}
-    assert not any(found[name] for name in table.LONG_RUNS)
-    assert all(table.read(tmp_path, SCENES[:1], LONG_RUNS)[name] for name in table.LONG_RUNS)
+    found = numbers.read(tmp_path, SCENES[:1])
+    assert found.keys() == {*numbers.OF_SCENES, *numbers.OF_STUDIES, *numbers.LONG_RUNS}
+    assert not any(found[name] for name in numbers.LONG_RUNS)
+    assert all(numbers.read(tmp_path, SCENES[:1], LONG_RUNS)[name] for name in numbers.LONG_RUNS)
     (row,) = found["grid"]
     assert (row["scene"], row["width"], row["radius"]) == ("paper", 1.5, 0.1)
     (tmp_path / "errata.csv").write_text("nothing\n")
     with pytest.raises(InputError, match=r"errata\.csv must be a table errata"):
-        table.read(tmp_path, SCENES[:1])
+        numbers.read(tmp_path, SCENES[:1])
 
 
 def test_numbers_become_rows_of_a_table(expected, tmp_path):
-    found = table.printed(expected, SCENES)
+    found = numbers.printed(expected, SCENES)
     path = tmp_path / "paper_numbers.csv"
-    table.PaperNumbers.write(path, table.table_rows(found))
-    rows = table.PaperNumbers.read(path)
+    numbers.PaperNumbers.write(path, numbers.table_rows(found))
+    rows = numbers.PaperNumbers.read(path)
     assert [row["name"] for row in rows] == list(found)
     by_name = {row["name"]: row for row in rows}
     assert by_name["statements"]["value"] == len(expected["errata"])

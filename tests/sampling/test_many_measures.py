@@ -8,7 +8,7 @@ import pytest
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import measures
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 
 GASES = [
     Scene(1.5, 1.0, 0.2, discs=2),
@@ -25,7 +25,7 @@ GASES = [
 def test_volume_and_areas_are_exact(scene):
     """Five sigma of each."""
     found, errors = measures.sample(scene, 200_000, 2)
-    for value, error, true in zip(found, errors, exact.measures(scene), strict=True):
+    for value, error, true in zip(found, errors, methods.measures(scene), strict=True):
         assert abs(value - true) <= 5 * error
         assert error > 0 or true == 0
 
@@ -76,11 +76,11 @@ def test_errors_are_those_of_repetitions(scene):
 def test_where_a_draw_fits_once_in_a_million():
     """And the error is still a few per cent."""
     scene = Scene(1.5, 1.0, 0.28, discs=3)
-    free = np.exp(exact.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    free = np.exp(methods.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
     assert free < 1e-4
     found, errors = measures.sample(scene, 2_000_000, 1)
     assert errors.log_volume < 0.05
-    assert abs(found.log_volume - exact.measures(scene).log_volume) < 5 * errors.log_volume
+    assert abs(found.log_volume - methods.measures(scene).log_volume) < 5 * errors.log_volume
 
 
 def test_shards_add_up():

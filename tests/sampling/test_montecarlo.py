@@ -230,7 +230,7 @@ def test_the_sampler_suits_the_scene():
     samples = 2 * montecarlo.BLOCK
     assert montecarlo.plan(scene, samples - 1) == (montecarlo.weighted, samples)
     arguments = scene, ["volume", "any_wall_area"], samples, 0.1, 5
-    assert montecarlo.better_point(*arguments) == montecarlo.sample_point(*arguments)
+    assert montecarlo.SamplingRun(*arguments).run() == montecarlo.sample_point(*arguments)
     with pytest.raises(ValueError, match="scene must be plain for conditioned draws"):
         montecarlo.conditioned_point(*arguments)
 

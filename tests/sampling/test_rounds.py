@@ -207,7 +207,7 @@ def test_samples_in_pieces_are_those_of_one_process(box, radius):
     run = montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5)
     found = [run.point({"all": done_in_pieces(run.parts["all"], n)}) for n in (1, 2)]
     assert found[0] == found[1] == run.run()
-    assert found[0] == montecarlo.better_point(scene, quantities, 3 * 2**20, 0.02, 5)
+    assert found[0] == montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5).run()
 
 
 @pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), (UNEQUAL, 0.15)])

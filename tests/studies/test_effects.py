@@ -10,8 +10,8 @@ from factory import Laws, written
 from figure_cases import shown_texts, unclear
 from matplotlib.colors import to_rgba
 
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.mean_times import MeanTimes
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.trajectory import follow

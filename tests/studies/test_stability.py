@@ -9,8 +9,8 @@ from matplotlib.text import Text
 from mpmath import mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.monte_carlo import Volume
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS, SHELLS
@@ -174,11 +174,11 @@ def test_conditioned_agrees_with_rejection(radius):
 def test_the_better_sampler_is_chosen():
     """Rejection while one in 64 of the prism is free, the other one up to the largest radius."""
     for radius, method, samples in ((0.3, "monte_carlo", 2**22), (0.38, "conditioned", 2**16)):
-        point = montecarlo.better_point(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1)
+        point = montecarlo.SamplingRun(PAPER.scene(radius), ["volume"], 2**22, 0.02, 1).run()
         assert (point.method, point.samples) == (method, samples)
     for distance in (1e-3, 1e-6, 1e-9):
         scene = PAPER.scene(PAPER.largest_radius * (1 - distance))
-        point = montecarlo.better_point(scene, QUANTITIES, 2**24, 0.02, 1)
+        point = montecarlo.SamplingRun(scene, QUANTITIES, 2**24, 0.02, 1).run()
         rows = Volume.rows(Theory.rows(PAPER, [scene.radius]), {"monte_carlo": [point]})
         assert abs(rows[0]["estimate"] / exact.volume(scene) - 1) < 1e-3
         assert point.quantities["disc_collision_area"].hits > 1000

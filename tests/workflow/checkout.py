@@ -44,8 +44,8 @@ rule mine:
 #: lattice, of repetitions. They do not follow from the budget of a scene and take long.
 QUICKER = (
     ("passages", "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), [3]"),
-    ("passages", "(1.0, 0.3, 0.1, 0.03, 0.01), 16, 256", "(1.0, 0.3, 0.1), 8, 32"),
-    ("passages", "= 128, 64, range(3, 6)", "= 128, 16, range(3, 6)"),
+    ("passages", "(1.0, 0.3, 0.1, 0.03, 0.01), 8, 128", "(1.0, 0.3, 0.1), 8, 32"),
+    ("passages", "= 128, 32, range(3, 6)", "= 128, 16, range(3, 6)"),
     ("stability", "REPETITIONS = 1600", "REPETITIONS = 400"),
 )
 

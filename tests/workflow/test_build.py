@@ -78,7 +78,7 @@ def test_on_one_core_and_by_snakemakes_other_memory_the_bytes_are_the_same(
 
 def test_a_formula_off_by_one_percent_fails_the_check_and_is_named(built):
     wrong = '"exact": 1.01 * x if q == "disc_collision_time" else x}'
-    built.replace("src/twodiscs/comparison/tables/exact.py", '"exact": x}', wrong)
+    built.replace("src/twodiscs/comparison/tables/theory.py", '"exact": x}', wrong)
     # Points do not change: exact values are made again, and all comparisons with them.
     again = "--rerun-triggers", "mtime", "--forcerun", "exact"
     run = built.snakemake("--cores", "2", *again, "--", "check", passes=False)
@@ -159,7 +159,7 @@ def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     assert set(files) == called
     for name, one in files.items():
         assert one["sha256"] == sha256((built.path / "results" / name).read_bytes()).hexdigest()
-        assert one["description"] != crate.get("_workflow/points.smk")["description"]
+        assert one["description"] != crate.get("_workflow/scenes.smk")["description"]
     assert built.jobs("crate") == []
 
 

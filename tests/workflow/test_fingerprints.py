@@ -45,7 +45,7 @@ def jobs():
             others = {*STAGES.values(), "twodiscs.points.estimates"} - {own}
             kinds[f"{stage} of {family}"] = modules, others
     table, study = f"{pipeline}.jobs.table", f"{pipeline}.jobs.study"
-    for name in ("exact", "trajectory", "mean_times", "check"):
+    for name in ("theory", "trajectory", "mean_times", "check"):
         kinds[f"table {name}"] = ([table, f"twodiscs.comparison.tables.{name}"], ())
     for name, one in STUDIES.items():
         modules = [study, one.tables[0].__module__, *of_families("dynamics", *one.families)]

@@ -34,7 +34,7 @@ def test_edits_of_comments_and_docstrings_rerun_nothing(built):
     meaning = '"""expectation − exact, the effect of the thickness of the shell"""'
     built.replace(f"{source}/comparison/tables/monte_carlo.py", meaning, '"""how far off"""')
     table = '"""One row per radius and quantity: the exact values."""'
-    built.replace(f"{source}/comparison/tables/exact.py", table, '"""The exact values."""')
+    built.replace(f"{source}/comparison/tables/theory.py", table, '"""The exact values."""')
     assert built.jobs() == []
 
 

@@ -10,15 +10,13 @@ from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.family import FAMILIES, module_of
 from twodiscs.model.sources import fingerprint
-from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
-from twodiscs_paper.pipeline.configuration.files import (
+from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES
+from twodiscs_paper.pipeline.configuration.request import (
     GATHERED,
-    Files,
+    STAGES,
     assigned,
     braced,
 )
-from twodiscs_paper.pipeline.configuration.request import STAGES
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
 
@@ -56,11 +54,8 @@ CONFIGURATION = replace(
         for file in EFFECT_FILES
     ],
 )
-SCENES = {scene.name: scene for scene in CONFIGURATION.scenes}
-SCENES |= {f"effects/{scene.name}": scene for scene in CONFIGURATION.effect_scenes}
-
-FILES = Files(CONFIGURATION, SCENES)
-RESULTS = FILES.folder
+SCENES = CONFIGURATION.folders
+RESULTS = CONFIGURATION.results
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
 if (days := cost.days(CONFIGURATION.scenes)) > 1:
@@ -193,7 +188,7 @@ def figure_code(w):
 
 def figure_tables(w, input):
     """Return the tables that a figure reads as arguments."""
-    reads = FILES.figure_reads(ENTRIES[w.figure], w.get("scene"))
+    reads = CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene"))
     return assigned(reads, input.tables)
 
 
@@ -235,4 +230,4 @@ def study_code(w):
 
 def figure_files(figure):
     """Return the files of a figure in all scenes."""
-    return [FILES.figures(scene).get(figure, []) for scene in CONFIGURED]
+    return [CONFIGURATION.figures(scene).get(figure, []) for scene in CONFIGURED]

@@ -34,15 +34,15 @@ if MAIN:
             figures=[
                 files[0]
                 for scene in CONFIGURATION.plain
-                for files in FILES.figures(scene.name).values()
+                for files in CONFIGURATION.figures(scene.name).values()
             ],
-            drawn=FILES.studied("figures"),
+            drawn=CONFIGURATION.studied("figures"),
             tables=[
                 path
                 for scene in CONFIGURATION.plain
-                for path in FILES.tables(scene.name).values()
+                for path in CONFIGURATION.tables(scene.name).values()
             ],
-            studied=FILES.studied("tables"),
+            studied=CONFIGURATION.studied("tables"),
         output:
             pdf=report(
                 f"{RESULTS}/paper.pdf",
@@ -50,7 +50,7 @@ if MAIN:
                 category="Manuscript",
                 labels={"document": "manuscript"},
             ),
-            numbers=FILES.table("paper_numbers"),
+            numbers=CONFIGURATION.table("paper_numbers"),
         log:
             f"{RESULTS}/logs/paper.log",
         benchmark:
@@ -62,7 +62,7 @@ if MAIN:
                 for scene in CONFIGURATION.plain
             ],
             seed=CONFIGURATION.seed,
-            configuration=FILES.configuration_hash(),
+            configuration=CONFIGURATION.configuration_hash(),
             code=code("twodiscs_paper.pipeline.documents.manuscript"),
         shell:
             "python -P -m twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
@@ -84,13 +84,13 @@ rule report:
         results=[
             rules.check.output,
             [
-                FILES.study(name) if name in STUDIES else rules.paper.output
+                CONFIGURATION.study(name) if name in STUDIES else rules.paper.output
                 for name in CONFIGURATION.shared
                 if name != "report"
             ],
-            [list(FILES.tables(scene).values()) for scene in CONFIGURED],
-            [FILES.shown(scene) for scene in CONFIGURED],
-            [list(FILES.animation(scene)) for scene in CONFIGURED],
+            [list(CONFIGURATION.tables(scene).values()) for scene in CONFIGURED],
+            [CONFIGURATION.shown(scene) for scene in CONFIGURED],
+            [list(CONFIGURATION.animation(scene)) for scene in CONFIGURED],
         ],
         configuration=rules.configuration.output.json,
         front=source("workflow/report/front.html"),
@@ -103,7 +103,7 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        scenes=json.dumps(FILES.report()),
+        scenes=json.dumps(CONFIGURATION.report()),
         code=code("twodiscs_paper.pipeline.documents.report"),
     shell:
         "python -P -m twodiscs_paper.pipeline.documents.report {input.results:q} --template {input.front:q}"
@@ -153,7 +153,7 @@ rule explorer:
         tables=[
             path
             for scene in CONFIGURATION.plain
-            for name, path in FILES.tables(scene.name).items()
+            for name, path in CONFIGURATION.tables(scene.name).items()
             if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],
         parts=[
@@ -174,7 +174,7 @@ rule explorer:
         f"{RESULTS}/benchmarks/explorer.tsv"
     localrule: True
     params:
-        scenes=json.dumps(FILES.report()),
+        scenes=json.dumps(CONFIGURATION.report()),
         seed=CONFIGURATION.seed,
         code=code("twodiscs_paper.pipeline.documents.explorer"),
     shell:
@@ -196,8 +196,7 @@ rule crate:
         texts=[
             source("workflow/Snakefile"),
             source("workflow/rules/common.smk"),
-            source("workflow/rules/points.smk"),
-            source("workflow/rules/tables.smk"),
+            source("workflow/rules/scenes.smk"),
             source("workflow/rules/figures.smk"),
             source("workflow/rules/studies.smk"),
             source("workflow/rules/documents.smk"),

@@ -6,7 +6,9 @@
 rule figure:
     """A figure of a scene, from its tables."""
     input:
-        tables=lambda w: FILES.figure_reads(ENTRIES[w.figure], w.scene).values(),
+        tables=lambda w: CONFIGURATION.figure_reads(
+            ENTRIES[w.figure], w.get("scene")
+        ).values(),
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
@@ -35,10 +37,7 @@ rule figure:
         " --tables {params.tables:q} --origin {params.origin:q} --output {output:q} > {log:q} 2>&1"
 
 
-rule shared_figure:
-    """A figure of a study, from its tables."""
-    input:
-        tables=lambda w: FILES.figure_reads(ENTRIES[w.figure]).values(),
+use rule figure as shared_figure with:
     output:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
@@ -55,21 +54,9 @@ rule shared_figure:
     wildcard_constraints:
         figure="|".join(STUDY_FIGURES),
     localrule: True
-    params:
-        box=box,
-        tables=figure_tables,
-        origin=origin,
-        caption=Caption,
-        options=lambda w: str(ENTRIES[w.figure].options),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q}"
-        " --tables {params.tables:q} --origin {params.origin:q} --output {output:q} > {log:q} 2>&1"
 
 
-rule animate:
-    """The moving discs of a scene, and a hop."""
-    input:
-        tables=[f"{RESULTS}/{{scene}}/trajectory.csv"],
+use rule figure as animate with:
     output:
         gif=f"{RESULTS}/{{scene}}/figures/{{figure}}.gif",
         png=report(
@@ -79,19 +66,6 @@ rule animate:
             subcategory="{scene}",
             labels=ANIMATION.labels,
         ),
-    log:
-        f"{RESULTS}/logs/{{scene}}/figure-{{figure}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/figure-{{figure}}.tsv"
     wildcard_constraints:
         figure="animation",
     localrule: True
-    params:
-        box=box,
-        radius=radius_of,
-        tables=figure_tables,
-        caption=Caption,
-        code=figure_code,
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
-        " --tables {params.tables:q} --output {output:q} > {log:q} 2>&1"

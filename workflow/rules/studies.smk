@@ -5,7 +5,7 @@
 rule study_table:
     """The table of a study."""
     input:
-        tables=lambda w: FILES.study_reads(of_study(w)).values(),
+        tables=lambda w: CONFIGURATION.study_reads(of_study(w)).values(),
     output:
         table=report(
             f"{RESULTS}/{{study}}.csv",
@@ -25,7 +25,9 @@ rule study_table:
         runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
     params:
         parameters=lambda w: json.dumps(of_study(w).parameters(CONFIGURATION)),
-        tables=lambda w, input: assigned(FILES.study_reads(of_study(w)), input.tables),
+        tables=lambda w, input: assigned(
+            CONFIGURATION.study_reads(of_study(w)), input.tables
+        ),
         code=study_code,
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --parameters {params.parameters:q}"
@@ -84,7 +86,7 @@ rule effects_cost:
     input:
         scenes=EFFECT_FILES,
         # Then all kernels are compiled.
-        tables=FILES.study_reads(STUDIES["effects"]).values(),
+        tables=CONFIGURATION.study_reads(STUDIES["effects"]).values(),
     output:
         table=report(
             f"{RESULTS}/effects_cost.csv",

@@ -5,7 +5,7 @@
 rule animation:
     """The animations of all scenes that have a trajectory."""
     input:
-        [FILES.animation(scene) for scene in CONFIGURED],
+        [CONFIGURATION.animation(scene) for scene in CONFIGURED],
 
 
 rule model:
@@ -107,13 +107,13 @@ rule surface_shell:
 rule accuracy_cost:
     """The cost of a digit by each method."""
     input:
-        FILES.study("accuracy_cost"),
+        CONFIGURATION.study("accuracy_cost"),
 
 
 rule effects:
     """How each effect changes the mean times, and its cost."""
     input:
-        FILES.study("effects"),
+        CONFIGURATION.study("effects"),
 
 
 # The others are about a scene without effects.
@@ -122,39 +122,39 @@ if MAIN:
     rule errata:
         """Which formulas of the source are right, with the evidence."""
         input:
-            FILES.study("errata"),
+            CONFIGURATION.study("errata"),
 
     rule stability:
         """How accurate each method is in numerically hard cases."""
         input:
-            FILES.study("stability"),
+            CONFIGURATION.study("stability"),
 
     rule tails:
         """How probable long intervals are."""
         input:
-            FILES.study("tails"),
+            CONFIGURATION.study("tails"),
 
     rule distributions:
         """How intervals between hops are distributed."""
         input:
-            FILES.study("distributions"),
+            CONFIGURATION.study("distributions"),
 
     rule passages:
         """Which hops are passages, and diffusion by them."""
         input:
-            FILES.study("passages"),
+            CONFIGURATION.study("passages"),
 
     rule thresholds:
         """The laws where a hop becomes blocked."""
         input:
-            FILES.study("thresholds"),
+            CONFIGURATION.study("thresholds"),
 
     rule long_runs:
         """`stability` of the dynamics over ten times the events."""
         input:
-            FILES.study("long_runs"),
+            CONFIGURATION.study("long_runs"),
 
     rule more_discs:
         """Mean times of three to 64 discs."""
         input:
-            FILES.study("more_discs"),
+            CONFIGURATION.study("more_discs"),

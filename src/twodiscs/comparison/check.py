@@ -114,7 +114,7 @@ def flux_time(scene, event, point):
     ratio = point.ratio(weights)
     if ratio is None:
         return None
-    rate = DECLARED[event].sides / 2 * constant(scene.velocity_components) * ratio.value
+    rate = DECLARED[event].ways / 2 * constant(scene.velocity_components) * ratio.value
     return Estimate(1 / rate, ratio.relative_stderr / rate, ratio.n)
 
 

@@ -29,7 +29,7 @@ def simulated_events(sums):
 
 
 def expected_rate(scene, event):
-    """Return the rate of all that counts as ``event``, exactly if that is known.
+    """Return the rate of an ``event``, exactly if the exact rate is known.
 
     For more than two discs it may be an estimate; it is 0 if nothing is known.
     """

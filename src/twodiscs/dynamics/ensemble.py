@@ -1,7 +1,7 @@
 """An ensemble of trajectories in lock step: what every experiment with it shares.
 
-Some tens of independent trajectories are kept as arrays, one entry a lane, and each pass of the
-inner loop advances every lane by one event. The loop has no branch, so it is compiled to vector
+Some tens of independent trajectories are kept as arrays, with one entry for each lane. Each pass of
+the inner loop advances every lane by one event. The loop has no branch, so it is compiled to vector
 instructions. A lane whose trajectory has ended idles for a few passes and is then given the next
 start.
 
@@ -35,7 +35,7 @@ def nearest_power_of_two(value):
     """Return the power of two next to ``value`` > 0 on a logarithmic scale.
 
     Durations and bin widths come from the exact theory, whose last digit may depend on the math
-    library; rounded like this they are the same on every machine.
+    library. The power of two is the same on every machine.
     """
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa > math.sqrt(0.5) else exponent - 1)

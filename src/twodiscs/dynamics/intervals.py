@@ -1,7 +1,7 @@
 """Intervals between hops, each of them an exact draw.
 
-Chains start on the surface of a hop, weighted by the flux through it, and record the next returns:
-no interval is cut off by a window. Chains of more than two discs start in the invariant measure,
+Chains start on the surface of a hop, weighted by the flux through it, and record the next returns.
+No interval is cut off by a window. Chains of more than two discs start in the invariant measure,
 and record to their end all intervals that begin within a window of time. This has no bias: by
 Palm's formula, the mean sum of these intervals over their mean number is the mean interval.
 """
@@ -139,8 +139,9 @@ class IntervalRun:
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}.
 
-        Sums are those of ``record_returns``, and Σ t, Σ t² over the times of chains, in grains; for
-        more than two discs, with n intervals in a chain, also Σ t n, Σ n and Σ n².
+        Sums are the sums of ``record_returns``, and Σ t and Σ t² over the times of chains, in
+        grains. Chains of more than two discs differ in their number n of intervals. They also have
+        Σ t n, Σ n and Σ n².
         """
 
         def work(first, stop):

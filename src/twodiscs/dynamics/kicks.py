@@ -2,12 +2,13 @@
 
 Kicks come at the times of a Poisson process, so that the time to the next one does not depend on
 the past. A kick leaves the invariant measure as it is, and it satisfies detailed balance with
-reversed velocities: the past of a state is the future of the reversed state, with kicks that are
-independent of those in its own future.
+reversed velocities. The past of a state is therefore the future of the reversed state. The kicks in
+its past and in its future are independent.
 
 A kick ends a flight, as the end of time does. Each replica has its own stream of random numbers,
 keyed by its number, so bits do not depend on lanes, processors or shards. The seeds of jobs are
-below 2⁶³, those of kicks above. Without friction the kicks are None, and nothing is compiled.
+below 2⁶³, and the seeds of kicks above. Without friction the kicks are None, and nothing is
+compiled.
 """
 
 from typing import NamedTuple

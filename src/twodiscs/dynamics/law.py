@@ -20,9 +20,9 @@ from typing import NamedTuple
 from twodiscs.sampling.jit import inlined, optional
 from twodiscs.sampling.prism import PrismSampler, draw_velocities, prism_of
 
-#: The event that ended a free flight. Codes are floats because they travel in the same registers
-#: as the state. To leave a periodic cell and come back on its other side is no event: those codes
-#: are negative, and so is the code of a kick, which ends a flight as the end of time does.
+#: The event that ended a free flight. Codes are floats because they travel in the same registers as
+#: the state. Negative codes are no events: a disc leaves its periodic cell and comes back on the
+#: other side, or a kick ends the flight.
 END_OF_TIME, WALL_X1, WALL_Y1, WALL_X2, WALL_Y2, DISC = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 WALL_Z1, WALL_Z2 = 6.0, 7.0
 WRAP_X, WRAP_Y, WRAP_Z, KICK = -1.0, -2.0, -3.0, -4.0
@@ -51,8 +51,8 @@ class Friction(NamedTuple):
 class Law(NamedTuple):
     """The constants of the motion in a scene, lengths; None for absent effects.
 
-    The centre of disc i keeps within ±half_xi; the half-ranges of disc 2 are None where they are
-    those of disc 1, and both are where the axis is periodic. ``wrap_x`` is (half the period, the
+    The centre of disc i keeps within ±half_xi. The half-ranges of disc 2 are None if they are the
+    same as for disc 1. On a periodic axis both discs have None. ``wrap_x`` is (half the period, the
     shares of the period by which disc 1 and disc 2 move when the separation leaves ±half of it).
     """
 
@@ -76,8 +76,8 @@ class Law(NamedTuple):
 def divided(whole, first, second):
     """Return ``whole`` divided as ``first`` to ``second``, in two parts with exactly this sum.
 
-    If two bodies share a change of velocity, the sum of their parts determines the energy: a
-    rounding in it would be the same in every event, and add up.
+    If two bodies share a change of velocity, the sum of their parts determines the energy. A
+    rounding of this sum would be the same in every event, and add up.
     """
     larger = whole * (max(first, second) / (first + second))
     return (larger, whole - larger) if first > second else (whole - larger, larger)
@@ -127,19 +127,19 @@ def _friction_of(scene):
 
 @optional(lambda other, own: other)
 def value_or(other, own):
-    """Return ``own``, or ``other`` where that is None."""
+    """Return ``own``, or ``other`` if ``own`` is None."""
     return own
 
 
 @optional(lambda a, b: None)
 def difference(a, b):
-    """Return a − b, or None where there is no such coordinate."""
+    """Return a − b, or None without this coordinate."""
     return a - b
 
 
 @optional(lambda a, b: None)
 def product(a, b):
-    """Return a b, or None where there is no b."""
+    """Return a b, or None without b."""
     return a * b
 
 
@@ -182,7 +182,7 @@ def free_flight(position, velocity, time, gravity):
 
 @optional(lambda position, time, velocity: None)
 def moved(position, time, velocity):
-    """Return the position after a straight flight, or None where there is no such coordinate."""
+    """Return the position after a straight flight, or None without this coordinate."""
     return position + velocity * time
 
 
@@ -304,9 +304,9 @@ def redrawn_spins(velocity, inertia):
 def redrawn(state, stream, direction, velocity, friction):
     """Return a ``state`` after a kick: its velocities and spins are drawn anew from a ``stream``.
 
-    They are uniform on the sphere of the kinetic energy of this moment at the conserved momenta, in
-    velocities scaled by the roots of masses and moments of inertia. ``direction`` (6) and
-    ``velocity`` (8) are overwritten.
+    In velocities scaled by the roots of masses and moments of inertia, they are uniform on a
+    sphere. Its points have the kinetic energy of this moment and the conserved momenta.
+    ``direction`` (6) and ``velocity`` (8) are overwritten.
     """
     prism, (m1, m2) = friction.prism, friction.masses
     velocity[:] = 0.0
@@ -365,7 +365,7 @@ def fall_quotient(position, velocity, limit, gravity):
     at_top, at_bottom = math.sqrt(left), math.sqrt(square + 2.0 * gravity * below)
     rises = velocity > 0.0
     hits = rises & (left > 0.0)
-    # Downwards (v + root)/g, which is 2 below/(root − v).
+    # Downwards the time is (v + root)/g, which is 2 below/(root − v).
     gap = velocity + at_bottom if rises else 2.0 * below
     speed = gravity if rises else at_bottom - velocity
     return 2.0 * above if hits else gap, velocity + at_top if hits else speed
@@ -374,8 +374,8 @@ def fall_quotient(position, velocity, limit, gravity):
 def _walls_quotient(q1, q2, p1, p2, half1, half2, gravity, code1, code2, code_wrap, wrap):
     gap1, speed1 = fall_quotient(q1, p1, half1, gravity)
     gap2, speed2 = fall_quotient(q2, p2, value_or(half1, half2), gravity)
-    # A speed of 0 never wins, because 0 · gap < gap · speed is false; nor does NaN. Disc 1 at rest
-    # on its wall is 0/0, against which disc 2 would not win either, and is set aside.
+    # A speed of 0 or NaN never comes first, because 0 · gap < gap · speed is false. If disc 1 rests
+    # on its wall, its time is 0/0. Disc 2 would not come before that, so disc 1 is left out.
     second = (gap2 * speed1 < gap1 * speed2) | (speed1 == 0.0)
     return gap2 if second else gap1, speed2 if second else speed1, code2 if second else code1
 
@@ -397,12 +397,13 @@ def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
 
     In the plane dz and dw are None. They touch after gap / speed, if the approach counts and
     ``speed`` is a number. The equation is a t² + 2 b t + c = 0 with c = |Δx|² − σ², b = Δx·Δv, a =
-    |Δv|². Its discriminant b² − a c is taken as a σ² − (Δx ∧ Δv)², which does not cancel where
-    discs graze; it is negative, and ``speed`` NaN, where they miss. The root is taken as c / (√disc
+    |Δv|². Its discriminant b² − a c is computed as a σ² − (Δx ∧ Δv)², which does not cancel if
+    discs graze. If they miss, it is negative and ``speed`` is NaN. The root is taken as c / (√disc
     − b), which does not cancel near contact. In a uniform field the relative motion is as straight.
 
-    Whether there is a contact at all is a matter of direction, b < 0, not of a tolerance on the
-    distance: discs that touch and part are left alone, discs that touch and approach collide now.
+    Only the direction, b < 0, decides whether there is a contact; there is no tolerance on the
+    distance. Discs that touch and separate do not collide, and discs that touch and approach
+    collide now.
     """
     b = dot(dx, dy, dz, du, dv, dw)
     c = dot(dx, dy, dz, dx, dy, dz) - sigma * sigma
@@ -415,7 +416,7 @@ def contact_quotient(dx, dy, dz, du, dv, dw, sigma):
 def meeting(state, law):
     """Return (gap, speed) of the discs; they touch after gap / speed, if that is a number.
 
-    ``gap`` is infinite where they part or rest, and ``speed`` NaN where they miss.
+    ``gap`` is infinite if they separate or rest, and ``speed`` is NaN if they miss.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
     z1, z2, w1, w2 = depth_part(state, law.depth)
@@ -436,10 +437,11 @@ def next_event(state, remaining, law):
 def first_event(state, remaining, gap_d, speed_d, law):
     """Return (time, code) of the first event within the ``remaining`` time.
 
-    ``gap_d`` and ``speed_d`` are those of the ``meeting`` of the discs in this state.
+    ``gap_d`` and ``speed_d`` are the result of ``meeting`` for this state.
 
-    A wall wins over a disc that is tied with it, and of several tied walls one comes now and the
-    others after a time of zero: the outcome is the same, and none is lost.
+    If a disc reaches a wall and the other disc at the same time, the wall comes first. If discs
+    reach several walls at the same time, one wall comes now and the others after a time of zero.
+    The outcome is the same, and no event is lost.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
     gap_x, speed_x, code_x = axis_quotient(
@@ -449,7 +451,7 @@ def first_event(state, remaining, gap_d, speed_d, law):
         y1, y2, v1, v2, law.half_y1, law.half_y2, law.gravity, WALL_Y1, WALL_Y2, WRAP_Y, law.wrap_y
     )
 
-    # A tree of comparisons rather than a chain: shorter for the processor to wait for.
+    # A tree of comparisons has a shorter latency than a chain.
     sooner = gap_x < remaining * speed_x
     gap = gap_x if sooner else remaining
     speed = speed_x if sooner else 1.0
@@ -477,8 +479,9 @@ def after_event(state, time, code, law):
     """Return the state after a free flight of ``time`` and the event ``code`` that ends it.
 
     A disc that hits a wall is put on the wall exactly. Discs that collide exchange the components
-    of their velocities along the line of centres, weighted by 2 m/M of the other one; dividing by
-    the |Δx|² of this very moment, not by σ², keeps the energy to a rounding whose sign is random.
+    of their velocities along the line of centres, weighted by 2 m/M of the other disc. The exchange
+    is divided by the |Δx|² of this moment, not by σ². The energy then has an error of one rounding,
+    with a random sign.
     """
     x1, y1, x2, y2, u1, v1, u2, v2 = state[:8]
     z1, z2, w1, w2 = depth_part(state, law.depth)

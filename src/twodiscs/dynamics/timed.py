@@ -14,9 +14,9 @@ from twodiscs.model.checks import InputError, format_number
 class TimedRun(CountingRun):
     """Blocks of replicas, at least one, until all replicas together have a ``duration``.
 
-    All events are counted in the same replicas. Rare hops have no strips, because the time in a
-    strip is not that of ordinary trajectories. Raises ``InputError`` for a duration with more than
-    ``budget`` expected events.
+    All events are counted in the same replicas. Rare hops have no strips, because trajectories in a
+    strip have another duration. Raises ``InputError`` for a duration with more than ``budget``
+    expected events.
     """
 
     duration: float

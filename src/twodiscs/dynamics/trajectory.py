@@ -21,16 +21,16 @@ from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import components, states
 
-#: Events that one may ask for: all of its rows are kept.
+#: The most events of a trajectory, because all its rows are kept.
 MOST_EVENTS = 1e7
 
 #: Rows that are made at a time: some hundredths of a second.
 ROWS = 1000
 
-#: The columns that say which discs an event is of: first < second, None where there is none.
+#: The columns of the discs of an event: first < second, None without a disc.
 DISCS = ("first", "second")
 
-#: How far rounding may have moved a state that is handed in, over the sides and the energy.
+#: The largest error of a given state by rounding, over the sides and the energy.
 ROUNDING = 1e-9
 
 
@@ -125,10 +125,10 @@ def followed(scene, seed, start=None, duration=None, progress=None):
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
     given (see ``state_of``). Without a ``duration`` each family has its usual one. Raises
-    ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, for
-    a start that is no state, and for a duration that is no length or takes ``MOST_EVENTS``.
-    ``progress``, if given, is called now and then with the time that it has reached, and the
-    ``duration``.
+    ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, and
+    for a start that is no state. The same holds for a duration that is no length or takes
+    ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
+    reached, and the ``duration``.
     """
     seed = check_integer("seed", seed, 0)
     rate = of_family(check_scene(scene), "dynamics", "trajectory_rate")(scene)

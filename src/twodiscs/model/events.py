@@ -24,8 +24,8 @@ class Event:
     side: int = 0
 
     @property
-    def sides(self):
-        """The number of sides from which the surface is crossed: 2 for a hop, else 1."""
+    def ways(self):
+        """The number of ways in which the surface is crossed: 2 for a hop, both ways, else 1."""
         return 2 if self.kind == "hop" else 1
 
 

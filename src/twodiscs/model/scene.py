@@ -167,7 +167,7 @@ class Scene:
         more = {name: value for name, value in self.effects.items() if name != "depth"}
         words = [f"{name.replace('_', ' ')} {value}" for name, value in more.items()]
         number = {2: "Two"}.get(self.discs, self.discs)
-        discs = f"{number} {self.noun} of radius {self.radius!r} in a box of {self.sides}"
+        discs = f"{number} {self.noun} of radius {self.radius!r} in a box of {self.box_text}"
         return ", ".join([discs, *words])
 
     @property
@@ -176,7 +176,7 @@ class Scene:
         return "discs" if self.depth is None else "balls"
 
     @property
-    def sides(self):
+    def box_text(self):
         """The sides of the box as text, "1.5 × 1.0" say."""
         return " × ".join(repr(self.side(axis)) for axis in self.axes)
 

@@ -146,13 +146,13 @@ class DynamicsPoint(Point):
             status="counted" if event in self.strips else self.status[event],
         )
 
-    def strip(self, event):
+    def in_strip(self, event):
         """Return the ``StripCount`` of a rare hop, None of any other event."""
         return self.strips.get(event)
 
     def count(self, event):
         """Return the best ``Count`` of an event, from its strip if there is one."""
-        return self.strip(event) or self.everywhere(event)
+        return self.in_strip(event) or self.everywhere(event)
 
     def estimate(self, event, copies=1):
         """Return the mean time of ``event`` as an ``Estimate`` (see ``Count.estimate``)."""

@@ -10,7 +10,7 @@ normal in configuration space; the surface is g = 0 with |∇g| = 1:
 
 A shell of finite thickness is biased; ``exact.shell_expectation`` is its exact expectation. If the
 discs overlap in almost all of the prism, ``conditioned_point`` takes the place of ``sample_point``.
-``better_point`` chooses between them.
+``SamplingRun`` chooses between them.
 
 A coordinate is one of 2³² equidistant values, the grains. Two coordinates come from one draw of 64
 bits, and their difference is an integer. The grains change a probability by some 2⁻³² of the prism,
@@ -529,17 +529,6 @@ def weighted(scene, quantities, shell, seed):
 # The choice -------------------------------------------------------------------------------------
 
 
-def better_point(scene, quantities, samples, shell, seed):
-    """Estimate the volume and areas of a ``Scene`` by the best sampler for it.
-
-    The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
-    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned_point``, with the number
-    of samples that takes the same time. Both have the same arguments, results and exceptions. For
-    more than two discs it is ``many.measures.inserted``, which has no shells.
-    """
-    return SamplingRun(scene, quantities, samples, shell, seed).run()
-
-
 def plan(scene, samples):
     """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples.
 
@@ -555,7 +544,12 @@ def in_blocks(samples):
 
 @dataclass(frozen=True)
 class SamplingRun:
-    """``better_point`` in blocks, with checked arguments.
+    """An estimate of the volume and areas of a ``Scene`` by the best sampler for it, in blocks.
+
+    The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
+    probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned_point``, with the number
+    of samples that takes the same time. For more than two discs it is ``many.measures.inserted``,
+    which has no shells.
 
     ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are the arguments of
     ``sample_point``, and raise the same ``InputError``.

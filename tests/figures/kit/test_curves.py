@@ -23,7 +23,7 @@ def test_curves_approach_every_limit_from_both_sides(box):
 
 
 def test_curves_break_where_times_jump():
-    radii, exact = curves.exact(PAPER)
+    radii, exact = curves.exact_curves(PAPER)
     gaps = np.flatnonzero(np.isnan(radii))
     assert len(gaps) == 3
     for event, factors in (("right_wall", [2, 1]), ("top_wall", [1, 2]), ("any_wall", [1, 1])):
@@ -48,7 +48,7 @@ def test_limits_of_another_box_break_the_curves_too():
 @pytest.mark.parametrize("effects", [{}, {"field": 1.5}, {"periodic": "x"}])
 def test_curves_have_no_corners(effects):
     """As drawn on a column, in points: no line turns by more than 20 degrees."""
-    radii, exact = curves.exact(Box(1.5, 1.0, effects))
+    radii, exact = curves.exact_curves(Box(1.5, 1.0, effects))
     across = radii / np.nanmax(radii) * 200
     for name, values in exact.items():
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -99,7 +99,7 @@ def test_effects_are_written_in_symbols(effects, symbols):
     ],
 )
 def test_small_and_large_numbers_are_written_with_powers_of_ten(number, text):
-    assert panels.number(number) == text
+    assert panels.math_of(number) == text
 
 
 def test_sides_are_told_from_powers_of_ten():

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 from twodiscs.model.checks import InputError
 from twodiscs.model.families.many import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
-from twodiscs.theory.many import exact, three
+from twodiscs.theory.many import methods, three
 from twodiscs.theory.many.rates import rates, virial_sum
 
 BOUND = 1e-12
@@ -142,4 +142,4 @@ def test_only_three_between_walls():
         three.measures(Scene(1.5, 1.0, 0.1, discs=4))
     with pytest.raises(InputError, match="three discs"):
         three.measures(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
-    assert exact.measures(Scene(1.5, 1.0, 0.1, discs=4)) is None
+    assert methods.measures(Scene(1.5, 1.0, 0.1, discs=4)) is None

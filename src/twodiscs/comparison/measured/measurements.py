@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 from twodiscs.comparison.measured.by_quantity import Quantities
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.hop_histogram import HopHistogram
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.model.box import Box
 from twodiscs.model.checks import (
     LARGEST_INTEGER,

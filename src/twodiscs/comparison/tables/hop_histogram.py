@@ -1,7 +1,7 @@
 """Intervals between hops, bin by bin: hop_histogram.csv."""
 
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, RATE, TEXT, TIME, Table
-from twodiscs.comparison.tables.exact import ExactValues
+from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.points.base import by_radius
 
 

@@ -1,7 +1,7 @@
 """Mean times by molecular dynamics, beside the exact values: mean_times.csv."""
 
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Table
-from twodiscs.comparison.tables.exact import ExactValues
+from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.points.base import by_radius
 
 
@@ -87,7 +87,7 @@ def rows_without_strips(box, theory, points):
     return [
         _row(scene, event, point, exact, point.everywhere(event))
         for scene, event, point, exact in _counted(box, theory, points)
-        if point.strip(event)
+        if point.in_strip(event)
     ]
 
 

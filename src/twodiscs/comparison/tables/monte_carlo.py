@@ -1,7 +1,7 @@
 """What Monte Carlo samples, beside the exact values: volume.csv and areas.csv."""
 
 from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
-from twodiscs.comparison.tables.exact import ExactValues
+from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import by_radius
 from twodiscs.theory.exact import shell_expectation

@@ -31,8 +31,8 @@ __all__ = [
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3
 
-#: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble:
-#: 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
+#: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
+#: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
 PAIR = 0.8
 
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
@@ -42,7 +42,7 @@ TOUCHED, COMPARED = 50.0, 0.25
 #: draw the velocity of a disc, over the time of an event of the plain ensemble.
 KICK, DRAW = 0.45, 8.0
 
-#: The most by which the window of a chain of ``LARGE`` numbers of discs is longer.
+#: The largest factor by which the window of ``LARGE`` numbers of discs is longer.
 LONGER = 64
 
 
@@ -76,7 +76,7 @@ def rare_hops(scene):
 def work_per_event(scene):
     """Return the cost of an event over the usual cost, with kicks.
 
-    For few discs a kick costs an event and the draw of all velocities; for ``LARGE`` numbers of
+    For few discs a kick costs an event and the draw of all velocities. For ``LARGE`` numbers of
     discs it costs ``KICK`` events for each disc.
     """
     few = scene.discs < LARGE
@@ -85,7 +85,7 @@ def work_per_event(scene):
 
 
 def cost_ratio(scene):
-    """Return the time of an event over that of one of the plain ensemble."""
+    """Return the time of an event over the time of an event of the plain ensemble."""
     if scene.discs >= LARGE:
         return TOUCHED + COMPARED * scene.discs
     return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
@@ -107,8 +107,8 @@ def mean_interval(scene, hop):
 def _window(scene, hop):
     """Return a time in which ``RETURNS`` intervals begin, or up to twice as many.
 
-    For ``LARGE`` numbers of discs it is that of a replica, if this is longer by ``LONGER`` at most:
-    the initial state takes as much time.
+    ``LARGE`` numbers of discs have a longer window, the duration of a replica, but at most
+    ``LONGER`` times the usual one. Their initial states take as much time to draw.
     """
     window = 2.0 ** math.ceil(math.log2(RETURNS * mean_interval(scene, hop)))
     if scene.discs < LARGE:

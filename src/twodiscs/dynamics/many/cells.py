@@ -1,18 +1,18 @@
 """Counts of events of many equal discs: one trajectory at a time, with local updates at events.
 
-The law of one event is that of ``lockstep``. Each disc has its own time: it moves straight from its
-last event on, and is not updated before its next one. The box is divided into
-cells whose sides are longer than σ. Only discs in the same cell or in neighbouring ones can meet,
-so a disc keeps the soonest contact with those, and the time at which it comes to a border of its
-cell. The outermost borders are the walls. A tree of minima has the first of all these times.
+The law of one event is the law of ``lockstep``. Each disc has its own time: it moves straight from
+its last event on, and is not updated before its next one. The box is divided into cells whose sides
+are longer than σ. Only discs in the same cell or in neighbouring cells can meet. A disc keeps its
+soonest contact with them, and the time at which it comes to a border of its cell. The outermost
+borders are the walls. A tree of minima has the first of all these times.
 
 A contact is kept by the disc that looked for it last. If the other disc has an event before, the
 contact is out of date. The first disc then looks again at the time of the old contact, because it
 cannot meet another disc before.
 
-A hop of two discs is a change of sign of their separation. Both move straight from the later of
-their last events on, so all hops of a disc are found at its events: one comparison for each of the
-other discs. If no hop is counted, there are no comparisons.
+A hop of two discs is a change of sign of their separation. Both move straight after the later of
+their last events. All hops of a disc are therefore found at its events, by one comparison with each
+of the other discs. If no hop is counted, there are no comparisons.
 
 A ``Log`` has the times of all this, but hops are not in order in it. At the end of a stretch all
 discs are advanced to the same time, so no earlier hop is missing.
@@ -57,9 +57,9 @@ class Motion(NamedTuple):
 
     A disc was at (x, y) at its ``time``. At ``contact`` it meets its ``partner``, unless the
     partner's number of ``events`` differs from ``seen``, the number at the search. At ``border`` a
-    disc leaves its cell, along y if ``upwards``. ``tree`` has the first of all times in its node 1,
-    the time of disc i in the i-th node of its last half, and the earlier of the two nodes below in
-    any other.
+    disc leaves its cell, along y if ``upwards``. ``tree`` has the time of disc i in the i-th node
+    of its last half. Any other node has the earlier time of the two nodes below, and node 1 the
+    first of all times.
     """
 
     x: np.ndarray
@@ -162,7 +162,7 @@ def new_motion(discs, grid):
 
 @inlined
 def find_contact(i, now, columns, rows, motion, grid, law):
-    """Return (time, partner) of the soonest contact of disc ``i`` with one in those cells.
+    """Return (time, partner) of the soonest contact of disc ``i`` with a disc in those cells.
 
     ``columns`` and ``rows`` are the first and the last ones. The time is infinite without any.
     """
@@ -183,7 +183,7 @@ def find_contact(i, now, columns, rows, motion, grid, law):
                 other_gap, other_speed, approach = contact_quotient(
                     dx, dy, None, motion.u[k] - u, motion.v[k] - v, None, law.sigma
                 )
-                # A disc does not approach itself; a speed that is not a number loses.
+                # A disc does not approach itself, and a speed that is not a number is never sooner.
                 if approach & (other_gap * speed < gap * other_speed):
                     gap, speed, partner = other_gap, other_speed, k
                 k = motion.places.after[k]
@@ -231,7 +231,7 @@ def enlist(i, motion):
 
 @inlined
 def first_disc(tree):
-    """Return the disc whose time is the first one, that of least number if there are more."""
+    """Return the disc with the first time, and the least number if several discs have it."""
     node, leaves, time = 1, tree.size // 2, tree[1]
     while node < leaves:
         node *= 2
@@ -244,9 +244,9 @@ def first_disc(tree):
 
 @optional(lambda i, at, now, positions, velocities, times, kind, log, hops: 0)
 def hops_of(i, at, now, positions, velocities, times, kind, log, hops):
-    """Return with how many discs disc ``i`` has changed order, which is ``at`` that place now."""
+    """Return the number of discs with which disc ``i``, now ``at`` a place, has changed order."""
     start, speed, since, count = positions[i], velocities[i], times[i], 0
-    # It has not changed order with itself.
+    # A disc has not changed order with itself.
     positions[i] = -NEVER
     for k in range(positions.size):
         last = max(since, times[k])

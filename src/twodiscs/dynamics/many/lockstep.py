@@ -1,10 +1,10 @@
 """Counts of events of N equal discs in a fixed time: the law of one event in lock step.
 
-An event is what ``law`` has for two discs: quotients ``gap / speed`` of walls and of contacts,
-compared by cross-multiplication, contact a matter of direction, a disc put on the wall exactly,
-velocities exchanged along the line of centres. The states of all lanes are arrays (N, lanes); discs
-and pairs of discs are the outer loops, lanes the inner ones, which become vector instructions. An
-event costs N(N − 1)/2 contacts.
+The law of an event is the law of two discs, in ``law``. Quotients ``gap / speed`` of walls and
+contacts are compared by cross-multiplication. Only the direction decides whether discs in contact
+collide. A disc is put on its wall exactly, and velocities are exchanged along the line of centres.
+The states of all lanes are arrays (N, lanes). The outer loops are over discs and pairs of discs.
+The inner loops are over lanes, and become vector instructions. An event costs N(N − 1)/2 contacts.
 
 On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
 ends after half the circumference over the largest relative speed, √2, and the search begins again.
@@ -38,10 +38,10 @@ from twodiscs.sampling.many.initial import (
     method,
 )
 from twodiscs.sampling.streams import open_stream
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import bulk_measures, rates
 
-#: Events of a replica, and of one whose initial state takes as long as some ten thousand events.
+#: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
 
 #: Events of each disc in a replica of ``LARGE`` numbers of discs.
@@ -94,7 +94,7 @@ def law_of(scene):
 def new_kicks(lanes, discs, friction):
     """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
 
-    The working memory of a draw is that of ``draw_velocities``.
+    The working memory of a draw has the form that ``draw_velocities`` takes.
     """
     streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
     waits, cuts, velocities = np.full(lanes, NEVER), np.zeros(discs - 1), np.zeros((2, discs))
@@ -132,7 +132,7 @@ def kick_lanes(u, v, times, law, kicks):
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
 def first_of(gap, speed, code, other_gap, other_speed, number, half):
-    """Return (gap, speed, code) of what comes first; the other one is absent where ``half`` is."""
+    """Return (gap, speed, code) of what comes first; without ``half`` (None) there is one only."""
     sooner = other_gap * speed < gap * other_speed
     return (
         other_gap if sooner else gap,
@@ -143,7 +143,8 @@ def first_of(gap, speed, code, other_gap, other_speed, number, half):
 
 @optional(lambda position, velocity, half: (NEVER, 1.0))
 def walled_quotient(position, velocity, half):
-    """Return (gap, speed) to the wall ahead, of which there is none where ``half`` is None."""
+    """Return (gap, speed) to the wall ahead; without walls (``half`` is None) the gap is
+    infinite."""
     return wall_quotient(position, velocity, half)
 
 
@@ -158,17 +159,17 @@ def nearest(separation, ring):
 
 @optional(lambda dx, dy, du, dv, sigma, ring: contact_of(dx, dy, du, dv, sigma))
 def meeting_of(dx, dy, du, dv, sigma, ring):
-    """Return (gap, speed) of two discs, of the first image that is met on a ring."""
+    """Return (gap, speed) of two discs; on a ring, of the image that is met first."""
     gap, speed = contact_of(dx, dy, du, dv, sigma)
     other_gap, other_speed = contact_of(dx - math.copysign(ring[0], dx), dy, du, dv, sigma)
-    # A speed that is not a number loses; where the first one is none, the other one stands.
+    # If one speed is not a number, the other image is met.
     other = (other_gap * speed < gap * other_speed) | (speed != speed)
     return other_gap if other else gap, other_speed if other else speed
 
 
 @inlined
 def contact_of(dx, dy, du, dv, sigma):
-    """Return (gap, speed) of two discs; the gap is infinite where they part."""
+    """Return (gap, speed) of two discs; the gap is infinite if they separate."""
     gap, speed, approach = contact_quotient(dx, dy, None, du, dv, None, sigma)
     return gap if approach else NEVER, speed
 
@@ -378,7 +379,7 @@ def hops_in_flight(before, after, l, time, when):
         for j in range(i):
             start, end = before[i, l] - before[j, l], after[i, l] - after[j, l]
             if crosses(start, end):
-                # In the order of time, a short list.
+                # The list is short, and stays in the order of time.
                 at, k = time * (start / (start - end)), n
                 while k > 0 and when[k - 1] > at:
                     when[k] = when[k - 1]
@@ -394,9 +395,9 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. Each
     replica starts in the invariant measure; all intervals that begin within a ``window`` of time
-    are followed to their end. ``bins`` are (width, wide) of ``intervals.record_returns``; with c of
-    the n intervals of a replica in a bin, Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins;
-    int64). Returns their total time and number, (2, replicas of all blocks) doubles.
+    are followed to their end. ``bins`` are (width, wide) of ``returns.record_returns``. A replica
+    has n intervals, c of them in a bin. Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins; int64).
+    Returns their total time and number, (2, replicas of all blocks) doubles.
     """
     discs, width, wide = initial.discs, bins[0], bins[1]
     states, totals = np.zeros((4 * discs, replicas)), np.zeros((2, (stop - first) * replicas))
@@ -470,9 +471,9 @@ def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums,
 
 
 def of_events(sums, products):
-    """Return (sums, products) of ``EVENTS`` from those of ``SHELLS``.
+    """Return (sums, products) of ``EVENTS``, given the sums and products of ``SHELLS``.
 
-    Hits of all walls are those of the two classes of them, in every replica.
+    In every replica, the hits of all walls are the hits of the two classes of walls together.
     """
     matrix = np.array([[name in parts for name in SHELLS] for parts in PARTS.values()], np.int64)
     whole = products + np.triu(products, 1).T
@@ -481,14 +482,14 @@ def of_events(sums, products):
 
 @lru_cache(maxsize=256)
 def expected_rates(scene):
-    """Return {event: rate} of all that counts as an event of a ``Scene`` of more than two discs.
+    """Return {event: rate} of the events of a ``Scene`` of more than two discs.
 
     Rates are exact if that is known, and otherwise from some insertions (``measures.expected``),
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are
     guessed (``replica_duration``), and so is one of them for which insertions give 0. For
     ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent.
     """
-    known = exact.measures(scene)
+    known = methods.measures(scene)
     if known is None:
         known = measures.expected(scene) if scene.discs < LARGE else bulk_measures(scene)
     guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)

@@ -28,7 +28,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many.initial import large_grid
 from twodiscs.sampling.starts import components
 
-#: Wall and disc events that a trajectory lasts, and the most rows, with hops: rows are long.
+#: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
 LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
 
 
@@ -75,7 +75,7 @@ def events_of(scene, state, duration, seed=0):
     n, law, time, kicks = scene.discs, law_of(scene), 0.0, kicks_of(scene, 1, seed)
     x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
     ring = law.ring[0] if law.ring else None
-    # By so much places are beyond the cell that the kernel keeps to.
+    # The distance of centres beyond the cell in which the kernel keeps them.
     beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
     x -= beyond
     old_x, old_y, counts = np.zeros_like(x), np.zeros_like(y), np.zeros((N, 1))
@@ -131,7 +131,7 @@ def _logged(scene, state, duration, seed):
     inside[: scene.discs] -= rounds * scene.width
     path.start(inside[:, None], seed)
     path.laps[:] = rounds
-    # Each disc was here at its time.
+    # The last known place of each disc, and its time.
     at, since = np.reshape(state, (4, scene.discs)).copy(), np.zeros(scene.discs)
     names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop"}
     names |= {COLLISIONS: "disc_collision", KICK: "kick"}

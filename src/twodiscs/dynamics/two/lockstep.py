@@ -48,8 +48,8 @@ EVENTS_BETWEEN_RARE_HOPS = 64
 
 # How events are counted --------------------------------------------------------------------------
 
-# Whether a flight has an event: functions of the code of its end, of the states before and after,
-# of whether the discs are identical, and of gravity (None for both: they are not, there is none).
+# Functions that say whether a flight has an event. They take the code of its end, the states before
+# and after, ``identical`` (None for discs that differ) and ``gravity`` (None without a field).
 
 
 def _hop_seen(event):
@@ -69,7 +69,7 @@ def facing(position, side, gravity):
     return position * side > 0.0
 
 
-# All hits count as a wall event that ``Scene.multiplicity`` counts.
+# A wall event counts the hits of all pairs of a disc and a wall in ``Scene.multiplicity``.
 
 
 def _wall_seen(event):
@@ -88,7 +88,7 @@ SEEN = by_kind(
         "hop": _hop_seen,
         "collision": lambda event: lambda code, a, b, identical, gravity: code == DISC,
         "wall": _wall_seen,
-        # Collisions of the discs too; see ``all_walls``.
+        # Collisions of the discs count, too; see ``all_walls``.
         "walls": lambda event: lambda code, a, b, identical, gravity: code > END_OF_TIME,
     },
 )
@@ -137,7 +137,7 @@ first_word, second_word = _word(EVENTS[:FIELDS]), _word(EVENTS[FIELDS:])
 
 @optional(lambda counts, rest: counts[BESIDE] + counts[ABOVE])
 def all_walls(counts, rest):
-    """Return the hits of all walls, which are those of either axis where both count them all."""
+    """Return the hits of all walls. If both axes count all their hits, it is the sum of these."""
     return counts[ANY_WALLS] - counts[COLLISIONS]
 
 
@@ -159,9 +159,8 @@ def count_blocks(
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
     the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
-    from ``prism`` unless it is None. ``identical`` (whether the discs are), ``hops``, ``walls`` and
-    ``rest`` (whether the hits of all walls need a counter) are True or None; nothing is compiled
-    for None.
+    from ``prism`` unless it is None. ``identical`` discs, ``hops``, ``walls`` and ``rest`` (the
+    hits of all walls need a counter) are True or None. Nothing is compiled for None.
     """
     rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -263,7 +262,7 @@ def run_blocks(
     """
     hops = any(event in HOPS for event in events) or None
     walls = any(event in WALLS for event in events) or None
-    # Four pairs of a disc and a wall along each of two axes are all there are.
+    # If each of two axes has four pairs of a disc and a wall, these are all pairs.
     complete = scene.identical and not scene.field and scene.walled == ("x", "y")
     rest = None if walls and complete else True
     return count_blocks(
@@ -273,7 +272,7 @@ def run_blocks(
 
 
 def cost_ratio(scene):
-    """Return the time of an event over that of one of the plain ensemble, starts included."""
+    """Return the time of an event, with the draws of starts, over its time in the plain scene."""
     return 1 + strip.PROPOSAL * proposals_per_event(scene)
 
 

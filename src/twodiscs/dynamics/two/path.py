@@ -175,10 +175,10 @@ class Jumps:
 def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of all that happens within ``duration``.
 
-    ``state`` of the ``Scene`` is as in ``law``. Hops are events here, reported where they occur in
-    a flight, and so are kicks, from the streams of ``seed``; walls are named by axis and disc;
-    ``first`` and ``second`` are the discs that the event is of, None where there is none. The first
-    row is the start, the last one the end. Along periodic axes centres go on beyond the cell.
+    ``state`` of the ``Scene`` is as in ``law``. Hops are events here, at their times within a
+    flight. Kicks are events, too, and come from the streams of ``seed``. Walls are named by axis
+    and disc. ``first`` and ``second`` are the discs of the event, or None. The first row is the
+    start, the last one the end. Along periodic axes centres go on beyond the cell.
     """
     law, time, kicks = law_of(scene), 0.0, kicks_of(scene, 1, seed)
     jumps = Jumps(scene, law)

@@ -43,12 +43,12 @@ def record_returns(
 ):
     """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
 
-    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None; they
-    start from ``draw`` (vertical ones only), or from ``prism`` unless it is None. With c intervals
-    of a chain in a bin, Σ c and Σ c² over the chains are added to ``sums`` (2, bins; int64). There
-    are bins of ``width`` from 0 on, one for longer intervals, and wide bins; ``wide`` has the wide
-    bin of each of the others. Returns the total time of each chain, (stop − first) × ``chains``
-    doubles in order.
+    The hops are vertical ones, or horizontal ones if ``horizontal`` is True instead of None. The
+    initial states come from ``prism`` or, if that is None, from ``draw``, which is for vertical
+    hops only. With c intervals of a chain in a bin, Σ c and Σ c² over the chains are added to
+    ``sums`` (2, bins; int64). There are bins of ``width`` from 0 on, one for longer intervals, and
+    wide bins; ``wide`` has the wide bin of each of the others. Returns the total time of each
+    chain, (stop − first) × ``chains`` doubles in order.
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -138,7 +138,7 @@ def intervals_of_chain(scene, hop):
 
 
 def interval_cost(scene):
-    """Return the time of an event over that of one of the plain ensemble."""
+    """Return the time of an event over the time of an event of the plain ensemble."""
     return 1.0
 
 

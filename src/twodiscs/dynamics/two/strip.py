@@ -6,14 +6,14 @@ energy is in the height of the upper disc. Only starts in the strip |Δ| < βT a
 
     P ⟨N⟩ / 2T
 
-with the exact share P of configuration space that is in the strip, and the mean number ⟨N⟩ of
-crossings in [−T, T] over starts of the invariant measure there. This holds for every T, because
-only starts without a crossing are left out. The past of a start is the future of the start with
-reversed velocities. For the same reason a path ends as soon as |Δ| exceeds β times the time that is
-left.
+with the exact share P of configuration space that is in the strip. ⟨N⟩ is the mean number of
+crossings in [−T, T], over initial states of the invariant measure in the strip. This holds for
+every T, because only starts without a crossing are left out. The past of a start is the future of
+the start with reversed velocities. For the same reason a path ends as soon as |Δ| exceeds β times
+the time that is left.
 
-Whether a start crosses depends mostly on its distance from the surface and its velocity towards it.
-Their laws are exact, and ⟨N⟩ is a mean over strata of both (``points.strata``).
+The number of crossings of a start depends mostly on its distance from the surface and its velocity
+towards it. Their laws are exact, and ⟨N⟩ is a mean over strata of both (``points.strata``).
 """
 
 import math
@@ -51,8 +51,8 @@ RARE = 40
 #: Passes between two searches for lanes that have ended: paths are short.
 PASSES = 2
 
-#: A strip is as wide as the neck: the mean density in it is at most that on its surface over this.
-#: If that holds for the widest strip, too, there is no neck.
+#: A strip is as wide as the neck if the density on its surface is at least ``FILL`` times the mean
+#: density in it. If it is at least ``NO_NECK`` times in the widest strip, there is no neck.
 FILL = 0.75
 NO_NECK = 0.97
 
@@ -63,10 +63,11 @@ MOST_EVENTS = 32
 LASTING = 0.75
 
 #: An upper bound of the squared relative error times the count, from which the number of starts
-#: follows: it is 0.07 to 0.18 at all radii of the repository's configuration, 0.51 for rough discs.
+#: follows. The product is 0.07 to 0.18 at all radii of the repository's configuration, and 0.51 for
+#: rough discs.
 MARGIN_OF_COUNTS, MARGIN_OF_ROUGH = 0.2, 0.6
 
-#: The time of an event of these paths over the time of an event of the ensemble, roughly: paths are
+#: The time of an event of these paths over the time of an event of the ensemble, roughly. Paths are
 #: short, and every start is drawn.
 COST_RATIO = 6
 
@@ -101,7 +102,7 @@ def strip_around(scene, hop, time):
 
 
 def _fill(scene, hop, strip):
-    """Return the density of configurations at Δ = 0, all but, over the mean one in the strip."""
+    """Return the density of configurations close to Δ = 0 over the mean density in the strip."""
     narrow = strip_around(scene, hop, strip.time / 1024)
     return narrow.fraction / narrow.within * strip.within / strip.fraction
 
@@ -151,8 +152,8 @@ def fractions_of(scene, hop, strip):
 def acceptance(scene, hop, strip):
     """Return a lower bound of the acceptance of proposals in a ``Strip``, about 1/4 to 1.
 
-    With effects it may be small: in a field hardly any energy may be left at the heights at which
-    the discs can pass, or hardly any of the neck may be free.
+    With effects it may be small. In a field hardly any energy may be left at the heights at which
+    the discs can pass. In other scenes hardly any of the neck may be free.
     """
     if scene.is_plain:
         return 0.25

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twodiscs.comparison.tables.exact import Theory
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.figures.kit.limits import limits
 from twodiscs.model.events import EVENTS
 
@@ -38,7 +38,7 @@ def branches(box, others=()):
     return regimes
 
 
-def exact(box, others=()):
+def exact_curves(box, others=()):
     """Return (radii, {quantity: values}) along the exact curves of a ``Box``.
 
     Quantities are named as in theory.csv. A NaN between two regimes breaks a line through the

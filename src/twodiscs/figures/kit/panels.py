@@ -119,7 +119,7 @@ def add_panel(figure, bottom, height, left=LEFT, width=COLUMN - LEFT - RIGHT, na
     return axes
 
 
-def number(value):
+def math_of(value):
     """Return a ``value`` in mathtext: 0.25, or 3 × 10⁻⁶ if it is very small or large."""
     return powers(f"{value:g}")
 
@@ -145,13 +145,13 @@ def powers(text):
 
 def sides(box):
     """Return the sides of a ``Box`` in mathtext."""
-    numbers = map(number, (box.width, box.height))
+    numbers = map(math_of, (box.width, box.height))
     return r"\times".join(f"({side})" if "times" in side else side for side in numbers)
 
 
 def of_radius(radius):
     """Return the text of a ``radius`` that follows the sides of a box, empty if it is None."""
-    return f",  $r={number(radius)}$" if radius else ""
+    return f",  $r={math_of(radius)}$" if radius else ""
 
 
 def letter(axes, name):
@@ -178,7 +178,7 @@ def name_box(axes, box, more="", up=0):
 
 def is_short(box, radius=0):
     """Return whether the ``heading``, maybe with a ``radius``, leaves space beside it."""
-    digits = sum(len(number(value)) for value in (box.width, box.height, radius or 0))
+    digits = sum(len(math_of(value)) for value in (box.width, box.height, radius or 0))
     return box.is_plain and digits <= BESIDE
 
 

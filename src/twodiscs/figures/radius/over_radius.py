@@ -86,7 +86,7 @@ def over_radius(
 
 def series_of(box, rows, names, looks):
     """Return (radii of the curves, {quantity: ``Series``}) of the quantities in ``rows``."""
-    radii, exact = curves.exact(box)
+    radii, exact = curves.exact_curves(box)
     found = {}
     for quantity, name in names.items():
         shown = [row for row in rows if quantity_of(row) == quantity]

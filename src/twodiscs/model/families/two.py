@@ -14,7 +14,7 @@ def check(scene):
     if not _fits(scene):
         raise InputError(
             f"radius {scene.radius!r} does not fit: two {scene.noun} in a box of "
-            f"{scene.sides} need a radius below {scene.largest_radius!r}"
+            f"{scene.box_text} need a radius below {scene.largest_radius!r}"
         )
     if scene.field:
         _check_energy(scene)

@@ -329,7 +329,7 @@ def inserted(scene, quantities, shell, seed):
 def _sampled_measures(scene):
     """Return volume and areas for a mean weight of 1, in the order of ``QUANTITIES``.
 
-    Areas are defined as in ``theory.many.exact.surfaces``: of any pair, or of one disc at one wall.
+    Areas are those of ``theory.many.methods.surfaces``: of any pair, or of one disc at one wall.
     """
     a, b, n = scene.range_x, scene.range_y, scene.discs
     volume, pairs = (a * b) ** n * box_of(scene).typical, n * (n - 1) / 2

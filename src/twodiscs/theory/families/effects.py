@@ -31,7 +31,7 @@ def volume_and_areas(scene):
 
 def rate(scene, event, volume, areas):
     """Return the rate of ``event``, given the ``volume`` and {event: area}."""
-    return DECLARED[event].sides / 2 * constant(scene.velocity_components) * areas[event] / volume
+    return DECLARED[event].ways / 2 * constant(scene.velocity_components) * areas[event] / volume
 
 
 def passing_rate(scene, hop, volume):

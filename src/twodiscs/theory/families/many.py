@@ -1,6 +1,6 @@
 """The exact theory of more than two discs, as far as it is known."""
 
-from twodiscs.theory.many.exact import event_rates, volume_and_areas
+from twodiscs.theory.many.methods import event_rates, volume_and_areas
 
 __all__ = ["least_free_fraction", "rate", "replicas_needed", "volume_and_areas", "work_per_event"]
 

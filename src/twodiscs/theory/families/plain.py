@@ -17,7 +17,7 @@ least_free_fraction = 0.0
 
 def rate(scene, event, volume, areas):
     """Return the rate of ``event``, given the ``volume`` and {event: area}."""
-    return DECLARED[event].sides * areas[event] / (1.5 * math.pi * volume)
+    return DECLARED[event].ways * areas[event] / (1.5 * math.pi * volume)
 
 
 def work_per_event(scene, event_rate):

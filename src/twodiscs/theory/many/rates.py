@@ -103,24 +103,6 @@ def overlap_of_two(scene):
     return 1 - plain.volume_and_areas(two)[0] / (scene.range_x * scene.range_y) ** 2
 
 
-def small_disc_rates(scene):
-    """Return {class of events: rate} without hops, for small σ at fixed ranges A and B.
-
-    They follow from V ≈ (AB)^N [1 − n (πσ²/(AB) − (4/3) σ³ (A + B)/(AB)²)], n = N(N − 1)/2. Wall
-    hits are those of an ideal gas with the second virial coefficient, and collisions have the first
-    two orders.
-    """
-    c, n = constant(scene.velocity_components), scene.discs * (scene.discs - 1) / 2
-    a, b, sigma = scene.range_x, scene.range_y, scene.contact_distance
-    closed = math.pi * sigma**2 / (a * b)
-    return {
-        "disc_collision": c / math.sqrt(2) * n * (2 * closed / sigma)
-        * (1 - 2 * sigma * (a + b) / (math.pi * a * b)),
-        "right_wall": c * (scene.discs + n * closed) / a,
-        "top_wall": c * (scene.discs + n * closed) / b,
-    }  # fmt: skip
-
-
 # Many discs ---------------------------------------------------------------------------------------
 
 

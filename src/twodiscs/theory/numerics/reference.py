@@ -258,7 +258,7 @@ def mean_time(event, q):
     declared = DECLARED[event]
     blocked = horizontal_hop_area if declared.axis == "x" else vertical_hop_area
     parts = 2 if declared.kind == "wall" and blocked(q) == 0 else 1
-    return volume(q) / (parts * declared.sides * AREAS[event](q) * normal_speed())
+    return volume(q) / (parts * declared.ways * AREAS[event](q) * normal_speed())
 
 
 #: The quantities of tables, as functions of a ``MpScene``.

@@ -12,8 +12,8 @@ from twodiscs.model import checks
 from twodiscs.model.checks import InputError
 from twodiscs_paper.pipeline.configuration.schema import schema
 
-#: Far beyond any configuration: bytes of a file, letters of one value, blocks within blocks, and
-#: values once every alias is written out.
+#: Limits far above any configuration: bytes of a file, letters of one value, blocks within blocks,
+#: and values with every alias written out.
 BYTES, LETTERS, DEPTH, VALUES = 1_000_000, 1000, 32, 50_000
 
 #: The tags of numbers in YAML, and the form of a decimal number. YAML 1.1 also has octal, binary
@@ -31,9 +31,9 @@ class ConfigError(InputError):
 def read(path):
     """Return the mapping in the YAML file ``path``.
 
-    Raises ``ConfigError`` with file and line if the text is no YAML, or if a key is given twice:
-    YAML would silently take the last value. The same error names a file that cannot be read,
-    exceeds the limits of this module, or holds no mapping.
+    Raises ``ConfigError`` with file and line if the text is no YAML, or if a key is given twice,
+    because YAML would silently take the last value. The same error names a file that cannot be
+    read, exceeds the limits of this module, or holds no mapping.
     """
     try:
         with open(path, "rb") as file:

@@ -1,17 +1,34 @@
-"""A configuration as classes, checked and with every default filled in."""
+"""A configuration as classes, with every default filled in, and the files that it calls for.
 
+The Snakefile imports this, so it must be quick.
+"""
+
+import shlex
 from dataclasses import dataclass, field
 from functools import cached_property
+from hashlib import blake2b
 
+from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
+from twodiscs_paper.catalogue import STUDIES
 
 #: The stages whose jobs run once for each radius, and the module that does the work of a stage.
 STAGES = {
     "monte_carlo": "twodiscs.sampling.montecarlo",
     "dynamics": "twodiscs.dynamics.counting",
     "intervals": "twodiscs.dynamics.intervals",
+}
+
+#: The tables of a scene that are made of points, and the stages of these points.
+GATHERED = {
+    "volume": ["monte_carlo"],
+    "areas": ["monte_carlo"],
+    "mean_times": ["dynamics"],
+    "hop_histogram": ["intervals"],
+    "check": [*STAGES],
+    "cost": [*STAGES],
 }
 
 #: The thickness of shells in jobs that sample no area. It has no effect; as a constant it keeps an
@@ -165,6 +182,9 @@ class Configuration:
     ``accuracy_cost`` is the block of this name. ``shared`` names the documents and studies that are
     built once, in the order of the schema, with all that the manuscript reads. ``effect_scenes``
     are the scenes of the study of effects; they do not depend on ``scenes``.
+
+    Methods return the paths of files below ``results``, and take the folder of a scene. If a method
+    returns {name: path}, the reader of the tables uses these names.
     """
 
     results: str
@@ -191,3 +211,110 @@ class Configuration:
                 return scene
         names = ", ".join(scene.name for scene in self.scenes)
         raise InputError(f"name must be one of {names}, not {name!r}")
+
+    @cached_property
+    def folders(self):
+        """The scenes by the folders of their files, {folder: ``SceneRequest``}."""
+        folders = {scene.name: scene for scene in self.scenes}
+        return folders | {f"effects/{scene.name}": scene for scene in self.effect_scenes}
+
+    def table(self, name, scene=None):
+        """Return the path of a table of a ``scene``, or without a scene of a shared table."""
+        return "/".join(filter(None, (self.results, scene, f"{name}.csv")))
+
+    def tables(self, scene):
+        """Return {name: path} of the tables of a scene."""
+        return {name: self.table(name, scene) for name in self.folders[scene].tables}
+
+    def points(self, scene, table, stage):
+        """Return the paths of the points of a ``stage`` from which a table of a scene is made."""
+        keys = self.folders[scene].keys[stage] if stage in GATHERED[table] else ()
+        return [f"{self.results}/{scene}/points/{stage}/{key}.json" for key in keys]
+
+    def figures(self, scene):
+        """Return {name: (PDF, PNG)} of the figures of a scene."""
+        request = self.folders[scene]
+        return {
+            name: _pictures(f"{self.results}/{scene}/figures/{name}")
+            for name, entry in FIGURES.items()
+            if entry.is_called(request.quantities.names, request.effects)
+        }
+
+    def shown(self, scene):
+        """Return the files of the figures of a scene that a report on it shows.
+
+        Drawings show the sides of a box only. They are built for the manuscript, or by name.
+        """
+        drawings = "paper" in self.shared
+        return [
+            files for name, files in self.figures(scene).items() if drawings or FIGURES[name].needs
+        ]
+
+    def animation(self, scene):
+        """Return the files of the animation of a scene, () if the scene has no trajectory."""
+        request = self.folders[scene]
+        called = ANIMATION.is_called(request.quantities.names, request.effects)
+        return _pictures(f"{self.results}/{scene}/figures/animation", "gif") if called else ()
+
+    def study(self, name):
+        """Return the tables of a study and its figures, as PDF and as PNG."""
+        study = STUDIES[name]
+        figures = (_pictures(f"{self.results}/figures/{figure}") for figure in study.figures)
+        return [*(self.table(table.name()) for table in study.tables), *figures]
+
+    def study_reads(self, study):
+        """Return {name: path} of the tables that a study reads, including its own parts."""
+        parts = {name: (f"parts/{study.name}", name) for name in study.parts(self)}
+        return {
+            name: self.table(table, scene)
+            for name, (scene, table) in (parts | study.reads(self)).items()
+        }
+
+    def figure_reads(self, entry, scene=None):
+        """Return {name: path} of the tables that a figure reads; ``scene`` may be None."""
+        of_main = self.tables(self.main.name) if self.main else {}
+        own = {name: self.table(name, scene) for name in entry.tables}
+        return own | {name: of_main[name] for name in entry.main_tables if name in of_main}
+
+    def studied(self, kind):
+        """Return all "tables", or "figures" as PDF, of the studies that the manuscript reads."""
+        read = [study for study in STUDIES.values() if study.shared]
+        if kind == "tables":
+            return [self.table(table.name()) for study in read for table in study.tables]
+        return [f"{self.results}/figures/{name}.pdf" for one in read for name in one.figures]
+
+    def configuration_hash(self):
+        """Return 16 hexadecimal digits of the configuration with every default filled in."""
+        return blake2b(repr(self).encode(), digest_size=8).hexdigest()
+
+    def report(self):
+        """Return the properties of the scenes that the report shows."""
+        return [
+            {
+                "box": " × ".join(f"{side:g}" for side in scene.box.sides),
+                "effects": scene.effects,
+                "height": scene.box.height,
+                "name": scene.name,
+                "width": scene.box.width,
+            }
+            for scene in self.scenes
+        ]
+
+
+def _pictures(path, first="pdf"):
+    return f"{path}.{first}", f"{path}.png"
+
+
+def assigned(names, paths):
+    """Return arguments NAME=PATH. Paths are the inputs of a job: a module may prefix them."""
+    return [f"{name}={path}" for name, path in zip(names, paths, strict=True)]
+
+
+def braced(paths):
+    """Return paths in one folder as a person types them: folder/{a,b}.json; "" without paths."""
+    if not paths:
+        return ""
+    folders, names = zip(*(str(path).rsplit("/", 1) for path in paths), strict=True)
+    stems = [name.removesuffix(".json") for name in names]
+    listed = f"{{{','.join(stems)}}}" if len(stems) > 1 else stems[0]
+    return f"{shlex.quote(folders[0])}/{listed}.json"

@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
-from twodiscs_paper.catalogue import STUDY_TABLES
+from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
 
 
 def _rows(entry, results, scene):
@@ -14,7 +13,7 @@ def _rows(entry, results, scene):
     for name in entry.tables:
         path = Path(results, "" if name in STUDY_TABLES else scene["name"], f"{name}.csv")
         if path.exists():
-            for row in (SCENE_TABLES | STUDY_TABLES)[name].read(path):
+            for row in TABLES[name].read(path):
                 quantity = row.get("quantity") or f"{row.get('event')}_time"
                 if not entry.needs or {quantity, name} & entry.needs:
                     by_quantity.setdefault(quantity, []).append(row)
@@ -27,7 +26,7 @@ def _has_value(row):
 
 
 def box_of(scene):
-    """Return the ``Box`` of a scene with its "width", "height" and "effects", ``discs`` in them."""
+    """Return the ``Box`` of a scene with "width", "height" and "effects", among these "discs"."""
     effects = dict(scene.get("effects", ()))
     discs = effects.pop("discs", 2)
     return Box(scene["width"], scene["height"], effects, discs)
@@ -37,8 +36,8 @@ def caption_parts(entry, results, scene):
     """Return the caption of a figure, and apart from it the sentences that other captions share.
 
     ``results`` is the folder of all results. ``scene`` has the "name" of the figure's scene, its
-    "width" and "height", and its "effects" if there are any, with "discs" if these are more than
-    two. A figure without a scene takes the first scene.
+    "width" and "height", and its "effects" if there are any. A number of "discs" above two is among
+    the effects. A figure without a scene takes the first scene.
     """
     box = box_of(scene)
     rows = _rows(entry, results, scene)

@@ -17,9 +17,8 @@ import yaml
 
 from twodiscs.arguments import Parser, run
 from twodiscs.points.digests import digest
-from twodiscs_paper.catalogue import TABLES
-from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers
-from twodiscs_paper.pipeline.documents.report import ENTRIES
+from twodiscs_paper.catalogue import ENTRIES, TABLES
+from twodiscs_paper.pipeline.documents.numbers import PaperNumbers
 
 #: The profiles that the crate follows, below w3id.org, and where sha256 is defined.
 PROFILES = {

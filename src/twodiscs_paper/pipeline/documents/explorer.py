@@ -49,7 +49,7 @@ def by_monte_carlo(volumes, areas):
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
             free, area = volume[radius], row["estimate"] - row["bias"]
-            time = 1.5 * math.pi / DECLARED[event].sides * free["estimate"] / area
+            time = 1.5 * math.pi / DECLARED[event].ways * free["estimate"] / area
             error = math.hypot(free["stderr"] / free["estimate"], row["stderr"] / area)
             times[event].append([radius, time, time * error])
     return times

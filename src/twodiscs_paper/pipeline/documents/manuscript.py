@@ -12,8 +12,8 @@ from twodiscs.model.checks import InputError
 from twodiscs.sampling.montecarlo import COST_RATIO
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import caption_parts
-from twodiscs_paper.pipeline.documents.numbers.rounding import integer
-from twodiscs_paper.pipeline.documents.numbers.table import PaperNumbers, printed, read, table_rows
+from twodiscs_paper.pipeline.documents.formats import integer
+from twodiscs_paper.pipeline.documents.numbers import PaperNumbers, printed, read, table_rows
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
 #: Numbers of the methods; they are in no table.

@@ -18,15 +18,16 @@ from twodiscs.arguments import Parser, run
 from twodiscs.comparison.measured.measurements import measurement
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
-from twodiscs.comparison.tables.exact import Grid
 from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.figures.catalogue import ANIMATION, FIGURES, GEOMETRY
-from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs.comparison.tables.theory import Grid
+from twodiscs.figures.catalogue import ANIMATION, GEOMETRY
+from twodiscs_paper.catalogue import ENTRIES
 from twodiscs_paper.pipeline.documents.captions import box_of, caption
 from twodiscs_paper.pipeline.results.provenance import commit, versions
 
-#: The large figures of a section, of a scene and of all scenes, and how many a scene has; if one is
-#: missing, another figure of the scene replaces it. All other figures are thumbnails.
+#: The large figures of the section of a scene, of which it has ``SOME``, and of the section of all
+#: scenes. If a figure of a scene is missing, another one replaces it. All other figures are
+#: thumbnails.
 KEY, SOME = ("mean_hop_time", "mean_collision_time"), 2
 KEY_OF_ALL = ("tails", "distributions", "passages", "effects", "accuracy_cost_by_radius")
 
@@ -35,8 +36,6 @@ FEW = 60
 
 #: Pixels: the width of a thumbnail.
 THUMBNAIL = 320
-
-ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: Pixels of a figure per pixel on the screen.
 DENSITY = 2
@@ -126,7 +125,7 @@ def movie(folder, path, scenes):
     with Image.open(Path(folder, path)) as image:
         longest = 0
         for k in range(image.n_frames):
-            image.seek(k)  # forwards only: a frame that is gone back to may be black
+            image.seek(k)  # forwards only, because earlier frames may be black
             if image.info["duration"] > longest:
                 longest, picture = image.info["duration"], image.convert("RGB")
         still = BytesIO()

@@ -18,7 +18,6 @@ import twodiscs
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError, check_integer
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.files import Files
 from twodiscs_paper.pipeline.configuration.load import check_results, load
 from twodiscs_paper.pipeline.configuration.reading import ConfigError, read
 
@@ -102,7 +101,7 @@ def report_of(words):
 
 def check_targets(path, targets, configuration):
     """Raise ``InputError`` for a target without anything to build in a ``Configuration``."""
-    files = Files(configuration, {scene.name: scene for scene in configuration.scenes})
+    figures = [name for scene in configuration.scenes for name in configuration.figures(scene.name)]
     for target in targets:
         about_plain = (
             target == "paper"
@@ -111,7 +110,7 @@ def check_targets(path, targets, configuration):
         )
         if about_plain and configuration.main is None:
             raise InputError(f"{target} is about a scene without effects, and {path} has none")
-        if target in FIGURES and not any(target in files.figures(name) for name in files.scenes):
+        if target in FIGURES and target not in figures:
             raise InputError(
                 f"{target} cannot be drawn: no scene of {path} has its quantities in `watch`"
             )

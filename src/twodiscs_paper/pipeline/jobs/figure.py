@@ -7,22 +7,14 @@
 from importlib import import_module
 
 from twodiscs.arguments import Parser, add_box, box_of, number, run
-from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.points.digests import digest
-from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import ENTRIES
 from twodiscs_paper.pipeline.jobs.study import read_tables
-
-ENTRIES = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
-
-
-def module_of(name):
-    """Return the module that draws the figure called ``name``."""
-    return import_module(ENTRIES[name].module)
 
 
 def draw_figure(name, tables, box=None, **more):
     """Return the figure called ``name`` from ``tables``, {name: rows}."""
-    draw = module_of(name).draw
+    draw = import_module(ENTRIES[name].module).draw
     return draw(box=box, tables=tables, **ENTRIES[name].options, **more)
 
 
@@ -43,7 +35,7 @@ def main():
     made_of = f", tables {digest(*paths)[:16]}" if paths else ""
     with style.context():
         if options.figure == "animation":
-            animate = module_of(options.figure).animate
+            animate = import_module(ENTRIES["animation"].module).animate
             animate(rows=tables["trajectory"], paths=options.output, box=box, **more)
             return
         figure = draw_figure(options.figure, tables, box, **more)

@@ -8,7 +8,7 @@ from snakemake.logging import DefaultFormatter, format_wildcards
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-#: Set when the user ends the build: then jobs fail, which is no news.
+#: Set when the user ends the build. Failed jobs are not reported then.
 INTERRUPTED = Event()
 
 

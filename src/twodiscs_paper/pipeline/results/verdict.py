@@ -1,4 +1,4 @@
-"""Whether the check tables of all scenes, and the scores z of studies, show a disagreement.
+"""The verdict: do the check tables of all scenes, and the scores z of studies, show a disagreement?
 
     python -m twodiscs_paper.pipeline.results.verdict results/paper/check.csv … \\
         --studies results/passages.csv … --configuration @results/configuration.json \\
@@ -6,7 +6,7 @@
 
 The verdict checks each table again. It counts the comparisons, computes the bound from their
 number, and compares z with it. It also compares z with the deviation of the estimate in standard
-errors, computes the rows on all radii again, and requires every comparison of the configuration,
+errors. It computes the rows on all radii again, and requires every comparison of the configuration,
 and every row that a study declares as due.
 Without an error bar (few events, or none) z is taken from the table; so are the rows of a study.
 """

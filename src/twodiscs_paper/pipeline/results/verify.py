@@ -4,7 +4,7 @@ Counts by Monte Carlo and dynamics depend only on + − × / and √: their inte
 every processor. Exact values, scores and all that follows from them use math libraries, whose last
 digits differ between processors: these floats must agree to ``RELATIVE``.
 
-The folder of expected results mirrors the folder of results: ``S/points/<method>.json`` holds the
+The folder of expected results mirrors the folder of results. ``S/points/<method>.json`` holds the
 points of a scene S, one line per radius, and ``S/<table>.csv`` a table. Nothing is built here.
 """
 

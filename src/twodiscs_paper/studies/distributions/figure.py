@@ -86,7 +86,7 @@ def _rates(axes, rows):
         first, last, value, error = np.array(points).T
         middle = (first + last) / 2
         style = panels.open_symbol(colour, marker, 0.8) | {"lw": 0.4, "elinewidth": 0.6}
-        name = f"$r={panels.number(radius)}$"
+        name = f"$r={panels.math_of(radius)}$"
         axes.errorbar(middle, value, error, ls="-", label=name, **style)
         tests = [row for row in own if row["quantity"] in ("rate", "trend")]
         constant = all(row["p"] > SMALLEST_P for row in tests)

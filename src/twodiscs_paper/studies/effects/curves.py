@@ -21,7 +21,7 @@ def rows(scenes):
     plain = Box(first.width, first.height)
     others = [radius for radius, _ in limits(plain)]
     for name, box in boxes.items():
-        radii, times = curves.exact(box, others)
+        radii, times = curves.exact_curves(box, others)
         for i, radius in enumerate(map(float, radii)):
             unit = mean_times(plain.scene(radius)) if radius > 0 and plain.fits(radius) else {}
             for event in SHOWN_EVENTS:

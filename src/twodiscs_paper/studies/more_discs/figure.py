@@ -32,7 +32,7 @@ def draw(box, tables):
     lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS)
     for name, axes, radius in zip("abcdefgh", upper, radii, strict=False):
         _times(axes, [row for row in rows if row["radius"] == radius])
-        axes.set(yscale="log", ylabel=f"mean time, $r={panels.number(radius)}$")
+        axes.set(yscale="log", ylabel=f"mean time, $r={panels.math_of(radius)}$")
         axes.tick_params(labelbottom=False)
         panels.letter(axes, name)
     _legend(upper[0])

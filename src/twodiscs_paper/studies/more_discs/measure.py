@@ -16,7 +16,7 @@ from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.families.many import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
@@ -85,7 +85,7 @@ def due(discs=DISCS, radii=RADII):
 
 
 def _of_scene(scene, events, samples, seed):
-    known = exact.measures(scene)
+    known = methods.measures(scene)
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in FEWER
     sampled, spread = (
@@ -96,7 +96,7 @@ def _of_scene(scene, events, samples, seed):
     found, errors, virial_error = dynamics_rates(scene, events, seed)
     start = {
         "discs": scene.discs, "width": scene.width, "height": scene.height, "radius": scene.radius,
-        "theory": exact.method(scene) or "none", "states": initial.method(scene),
+        "theory": methods.method(scene) or "none", "states": initial.method(scene),
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))

@@ -172,7 +172,7 @@ def radii_of(rows):
         else:
             tiny = f"$r={rounded(row['radius'])}$"
             texts[key] = (
-                f"$r={panels.number(row['radius'])}$" if row["case"] == "ordinary" else tiny
+                f"$r={panels.math_of(row['radius'])}$" if row["case"] == "ordinary" else tiny
             )
     return texts
 

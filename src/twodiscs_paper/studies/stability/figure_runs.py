@@ -128,7 +128,7 @@ def _reversal(axes, rows):
         returns = select(here, quantity="return_error")
         x = [rate * row["count"] / math.log(2) for row in returns]
         y = [row["value"] for row in returns]
-        name = f"$r={panels.number(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
+        name = f"$r={panels.math_of(radius)}$: {number['value']:.0f} events ({number['exact']:.0f})"
         axes.plot(x, y, ls="", label=name, zorder=2, **panels.open_symbol(*look, 0.9))
     axes.axhline(2.0**-26, **BOUND)
     axes.set(yscale="log", xlim=(0, 36), ylim=(1e-16, 1e-4))
@@ -160,6 +160,6 @@ def _coverage(axes, rows):
         xlim=(-0.5, max(len(radii), 1) - 0.5), ylim=(0.9, 1.0), ylabel="coverage of 95 % intervals"
     )
     axes.xaxis.set_major_locator(FixedLocator(range(len(radii))))
-    axes.set_xticklabels([f"$r={panels.number(radius)}$" for radius in radii])
+    axes.set_xticklabels([f"$r={panels.math_of(radius)}$" for radius in radii])
     axes.tick_params(axis="x", length=0)
     axes.legend(loc="upper center", ncols=3, columnspacing=1.0)

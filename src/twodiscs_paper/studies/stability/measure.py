@@ -14,8 +14,8 @@ import numpy as np
 from mpmath import mp, mpf
 
 from twodiscs.comparison import scores
-from twodiscs.comparison.tables.exact import Theory
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
+from twodiscs.comparison.tables.theory import Theory
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient

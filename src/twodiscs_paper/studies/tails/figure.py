@@ -64,7 +64,7 @@ def caption(shown):
 
 
 def _name(row):
-    return f"{name_of(row['event'])}, $r={panels.number(row['radius'])}$"
+    return f"{name_of(row['event'])}, $r={panels.math_of(row['radius'])}$"
 
 
 def _values(rows):

@@ -10,12 +10,12 @@ from functools import lru_cache
 
 from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
-from twodiscs.model.families.many import is_ordered, multiplicity
+from twodiscs.model.families.many import is_ordered
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
 from twodiscs.theory.flux import constant
 from twodiscs.theory.many import channel, three
-from twodiscs.theory.many.rates import Measures, rates
+from twodiscs.theory.many.rates import Measures
 
 
 def method(scene):
@@ -87,7 +87,7 @@ def surfaces(scene, known):
         "wall": lambda event: (known.per_width if event.axis == "x" else known.per_height) / discs,
         "walls": lambda event: 2 * (known.per_width + known.per_height),
     }
-    return by_kind("theory/many/exact.py", over)
+    return by_kind("theory/many/methods.py", over)
 
 
 @lru_cache(maxsize=1024)
@@ -102,22 +102,6 @@ def event_rates(scene):
         return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
     constant_of = constant(scene.velocity_components)
     return {
-        event: DECLARED[event].sides / 2 * constant_of * part if scene.is_possible(event) else 0.0
+        event: DECLARED[event].ways / 2 * constant_of * part if scene.is_possible(event) else 0.0
         for event, part in surfaces(scene, known).items()
-    }
-
-
-def mean_times(scene):
-    """Return {event: mean time}.
-
-    For walls the time is of one disc at one wall, averaged over all initial conditions; for
-    collisions and hops it is of any pair. It is None if the event is impossible. The dict is empty
-    if no exact value is known.
-    """
-    known = measures(scene)
-    if known is None:
-        return {}
-    return {
-        event: multiplicity(scene, DECLARED[event]) / rate if rate else None
-        for event, rate in rates(scene, known).items()
     }

@@ -1,1 +1,0 @@
-"""The numbers that the manuscript prints: a module for each group, all in one table."""
