@@ -107,7 +107,7 @@ MUTANTS = [
     ("twodiscs_paper/studies/accuracy_cost/figure.py", "bars of one run for the mean", 'row["spread"] / math.sqrt(row["repetitions"])', 'row["spread"]'),
     ("twodiscs_paper/studies/passages/measure.py", "one stream for two estimates", 'self._seed("states"), on_surface', 'self._seed("times"), on_surface'),
     ("twodiscs_paper/studies/passages/measure.py", "sign of an exponent", "math.log2(values[0] / values[1])", "math.log2(values[1] / values[0])"),
-    ("twodiscs_paper/studies/passages/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs\n    moved", "per_disc = scene.width / 2\n    moved"),
+    ("twodiscs_paper/studies/passages/models/file.py", "length of a ring for a disc", "per_disc = scene.width / scene.discs\n    moved", "per_disc = scene.width / 2\n    moved"),
     ("twodiscs_paper/studies/passages/measure.py", "error of the slope of κ", "math.hypot(4 * early.stderr", "math.hypot(early.stderr"),
     ("twodiscs_paper/studies/passages/fits.py", "fit to all distances", '-row["distance"])[-LAST:]', '-row["distance"])'),
     ("twodiscs_paper/studies/passages/fits.py", "error of a logarithm", '[row["stderr"] / value for row', '[row["stderr"] for row'),

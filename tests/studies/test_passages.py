@@ -26,11 +26,10 @@ from twodiscs_paper.studies.passages import (
     figure,
     figure_diffusion,
     figure_transmission,
-    file,
     fits,
     measure,
 )
-from twodiscs_paper.studies.passages.models import exclusion
+from twodiscs_paper.studies.passages.models import exclusion, file
 from twodiscs_paper.studies.passages.table import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"

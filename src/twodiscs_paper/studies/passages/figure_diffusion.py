@@ -18,7 +18,6 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.scene import Scene
-from twodiscs_paper.studies.passages import file
 from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,
@@ -28,6 +27,7 @@ from twodiscs_paper.studies.passages.figure import (
     select,
 )
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
+from twodiscs_paper.studies.passages.models import file
 
 #: Inches: the width of the figure, heights of the panels of the ring, its residuals and the
 #: lattice, the gap, the margin above.

@@ -37,8 +37,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points import strata
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
-from twodiscs_paper.studies.passages import file
-from twodiscs_paper.studies.passages.models import exclusion, limit
+from twodiscs_paper.studies.passages.models import exclusion, file, limit
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
