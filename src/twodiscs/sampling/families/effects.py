@@ -8,16 +8,8 @@ from twodiscs.sampling.starts import states_of_two
 from twodiscs.theory import exact
 
 __all__ = [
-    "components",
-    "near_hop",
-    "origins",
-    "plan",
-    "proposals_per_event",
-    "rejection",
-    "require_free_fraction",
-    "shelled",
-    "states",
-    "thickness",
+    "components", "near_hop", "origins", "plan", "proposals_per_event", "rejection",
+    "require_free_fraction", "shelled", "states", "thickness",
 ]  # fmt: skip
 
 #: The events that Monte Carlo samples by a shell, in the order of its counts.
