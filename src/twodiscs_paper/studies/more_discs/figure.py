@@ -1,11 +1,11 @@
 """Mean times against the number of discs: theory, Monte Carlo and dynamics."""
 
-from twodiscs.figures.kit import panels
+from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.looks import LOOKS, name_of
 from twodiscs.figures.kit.style import BLACK, GREY, new_figure
 
 #: Inches: heights of a panel of one radius and of the residuals, the gap, the margin above.
-PANEL, RESIDUALS, GAP, TOP = 1.4, 0.8, 0.1, 0.12
+PANEL, RESIDUALS, GAP, TOP = 1.4, 0.8, 0.1, 0.22
 
 #: Times longer than this are not drawn: hops that almost never happen.
 LONGEST = 1e3
@@ -38,7 +38,9 @@ def draw(box, tables):
     _legend(upper[0])
     _residuals(lower, rows, radii)
     panels.letter(lower, "abcdefgh"[len(radii)])
-    lower.set_xlabel(r"number of discs $N$, in a box of $0.75\,N\times 1$")
+    lower.set_xlabel("number of discs $N$")
+    corner = {"xycoords": "axes fraction", "ha": "left", "va": "bottom", "fontsize": 7.5}
+    drawing.label(upper[0], r"$w\times h=0.75\,N\times 1$", (0, 1), (0, 5), **corner)
     numbers = sorted({row["discs"] for row in rows})
     for axes in (*upper, lower):
         axes.set(xscale="log", xlim=(numbers[0] / 1.15, numbers[-1] * 1.15))
@@ -85,8 +87,8 @@ def _legend(axes):
     axes.plot([], [], color=GREY, label="exact")
     axes.plot([], [], color=GREY, lw=0.7, ls=DOTTED, label="Monte Carlo")
     # The legend stands above all symbols.
-    axes.set_ylim(top=100 * axes.get_ylim()[1])
-    axes.legend(loc="upper right", ncols=2)
+    axes.set_ylim(top=50 * axes.get_ylim()[1])
+    axes.legend(loc="upper right", ncols=3, columnspacing=0.8)
 
 
 def _residuals(axes, rows, radii):

@@ -3,15 +3,16 @@
 import numpy as np
 
 from twodiscs.figures.kit import drawing, panels
-from twodiscs.figures.kit.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILLION, new_figure
+from twodiscs.figures.kit.style import BLACK, GREY, SERIES, new_figure
 from twodiscs.model.box import Box
 from twodiscs_paper.studies.passages.figure import columns, first_scene, points, select
+from twodiscs_paper.studies.passages.measure import KICKED
 
 #: Inches: heights of the panels of κ and of the exponent, the gap, the margin above.
 KAPPA, EXPONENT, TOP = 1.9, 1.3, 0.22
 
 #: {rate of kicks: colour, marker}.
-LOOKS = {10.0: (BLUE, "o"), 40.0: (ORANGE, "s"), 160.0: (GREEN, "^"), 640.0: (VERMILLION, "D")}
+LOOKS = dict(zip(KICKED, SERIES, strict=True))
 
 #: The scaled friction that is shown.
 SHOWN = (0.015, 45)
