@@ -10,11 +10,13 @@ import numpy as np
 
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
-from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
+from twodiscs.dynamics.passages import REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
+from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.scene import check_scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
@@ -38,9 +40,13 @@ TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
 
 
 def box_time(scene, hop):
-    """Return the time that a disc of speed 1 takes across the box along the axis of a ``hop``."""
+    """Return the time that a disc of speed 1 takes across the box along the axis of a ``hop``.
+
+    With N discs it is that across two of N equal parts of the box, at the mean speed of N discs.
+    """
     axis = AXIS[hop]
-    return scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+    length = scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+    return length * math.sqrt(2 / scene.discs)
 
 
 def quiet_time(scene, hop):
@@ -77,9 +83,12 @@ def by_total(sums, replicas):
     ]
 
 
-def are_rare(scene, hop):
-    """Return whether the time that ends a cluster has at most ``MOST_IN_GAP`` hops on average."""
-    return quiet_time(scene, hop) * exact.passing_rate(scene, hop) <= MOST_IN_GAP
+def are_rare(scene, hop, mean):
+    """Return whether the time that ends a cluster has at most ``MOST_IN_GAP`` hops on average.
+
+    The ``mean`` time is that between hops of two neighbours.
+    """
+    return quiet_time(scene, hop) <= MOST_IN_GAP * mean
 
 
 def of_order(x):
@@ -136,8 +145,11 @@ class Transmission(Result):
         The time without a hop that ends a cluster.
     clusters : dict
         {n: number of hops in clusters of n}, empty if hops are too frequent for clusters.
-    exact_mean : float
-        The mean time τ between hops.
+    exact_mean : float or None
+        The mean time τ between hops, of any pair; None if no exact value is known.
+    neighbour_mean : float
+        The mean time between hops of two neighbours: τ for two discs. For more discs in a box it is
+        (N − 1) τ, and it has an error of about one per cent if τ is not known.
     times : tuple of float
         The times of the curve.
     curve : list of Estimate
@@ -161,7 +173,8 @@ class Transmission(Result):
     coefficient: Estimate | None
     gap: float
     clusters: dict[int, int]
-    exact_mean: float
+    exact_mean: float | None
+    neighbour_mean: float
     times: tuple[float, ...]
     curve: list[Estimate]
     settings: dict[str, object] = field(default_factory=dict)
@@ -203,8 +216,8 @@ class Transmission(Result):
 
     @property
     def passage_time(self) -> Estimate | None:
-        """The mean time between passages τ/κ, an ``Estimate``; None without a coefficient."""
-        if self.coefficient is None:
+        """The mean time between passages τ/κ, an ``Estimate``; None without κ or an exact τ."""
+        if self.coefficient is None or self.exact_mean is None:
             return None
         value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
         return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
@@ -235,12 +248,15 @@ class Transmission(Result):
         name = self.hop.replace("_", " ")
         if self.coefficient is None:
             return (
-                f"{name}s are too frequent, with a mean time of {self.exact_mean:.4g}, for a "
+                f"{name}s are too frequent, with a mean time of {self.neighbour_mean:.4g}, for a "
                 "transmission coefficient; .frame() has κ(t)"
             )
         kappa, passage = self.coefficient, self.passage_time
+        fraction = f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}"
+        if passage is None:
+            return fraction
         return (
-            f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}\n"
+            f"{fraction}\n"
             f"mean time between hops, exact  {self.exact_mean:.6g}\n"
             f"mean time between passages  {passage.value:.6g} ± {passage.stderr:.2g}"
         )
@@ -248,9 +264,11 @@ class Transmission(Result):
     __repr__ = __str__
 
 
-def parts_of(scene, hop, gap, times, blocks, name, seed):
+def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
+    names = "cluster_sizes", "hop_sums", "expected_event_rate", "work_per_event", "interval_cost"
+    cluster_sizes, hop_sums, *rates = (of_family(scene, "dynamics", name) for name in names)
 
     def clusters(first, stop):
         sizes, _ = cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
@@ -260,30 +278,26 @@ def parts_of(scene, hop, gap, times, blocks, name, seed):
         sums, _ = hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
-    events = REPLICAS * exact.event_rate(scene)
-    work = exact.work_per_event(scene)
+    event_rate, *costs = (of(scene) for of in rates)
+    events, work = REPLICAS * event_rate, math.prod(costs)
     parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
-    if are_rare(scene, hop):
+    if are_rare(scene, hop, mean):
         parts["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
     return parts
 
 
 def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
-    require_passing(scene, hop)
-    if AXIS[hop] in scene.periodic:
-        raise InputError(
-            f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
-            "periodic"
-        )
+    of_family(check_scene(scene), "dynamics", "require_coefficient")(scene, hop)
     blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
-    mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
+    mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
+    neighbour_mean = of_family(scene, "dynamics", "neighbour_time")(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     parts, kept = (
-        parts_of(scene, hop, gap, times, blocks, named, seed),
+        parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed),
         {} if kept is None else kept,
     )
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
@@ -293,7 +307,9 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     if "clusters" in reached:
         (sizes,) = reached["clusters"].sums
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-        kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
+        kappa = plateau(by_clusters(sizes), gap, neighbour_mean, of_clusters)
     curve = by_total(sums, blocks * REPLICAS)
     note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
-    return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept, note)
+    return Transmission(
+        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, kept, note
+    )
