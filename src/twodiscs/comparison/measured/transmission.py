@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -97,22 +98,24 @@ def of_order(x):
     return left, -2 * left
 
 
-def of_clusters(x):
+def of_clusters(x, others=0):
     """Return (odd clusters per passage, its derivative) for x passages in a gap on average.
 
-    A cluster has n passages with probability (1 − e^(−x))^(n−1) e^(−x), and there are e^(−x)
-    clusters for each passage: the sum over odd n is 1/(2e^x − 1).
+    A cluster goes on after a passage with a probability q, and there are 1 − q clusters for each
+    passage: those of odd n are (1 − q) Σ q^(n−1) = (1 − q)/(1 + q). Passages of ``others``, each at
+    the same rate, make the pair neighbours no more. So q = (1 − e^(−(1 + others) x))/(1 + others).
     """
-    left = 1 / (2 * math.exp(x) - 1)
-    return left, -2 * math.exp(x) * left**2
+    grown = math.exp((1 + others) * x)
+    left = (others * grown + 1) / ((others + 2) * grown - 1)
+    return left, -2 * (1 + others) ** 2 * grown * (left / (others * grown + 1)) ** 2
 
 
 def plateau(estimate, time, mean, law):
     """Return κ, corrected for the passages in a ``time``, from an ``Estimate`` of κ(``time``).
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops. The ``law``
-    gives the factor by which they reduce the estimate: ``of_order`` or ``of_clusters``. The result
-    is None if the time has more than ``MOST_MERGED`` passages.
+    gives the factor by which they reduce the estimate, such as ``of_order``. The result is None if
+    the time has more than ``MOST_MERGED`` passages.
     """
     value, x = estimate.value, estimate.value * time / mean
     if value <= 0 or x > MOST_MERGED:
@@ -294,7 +297,7 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
         raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
-    neighbour_mean = of_family(scene, "dynamics", "neighbour_time")(scene, hop)
+    neighbour_mean, others = of_family(scene, "dynamics", "neighbours")(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     parts, kept = (
         parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed),
@@ -307,7 +310,8 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     if "clusters" in reached:
         (sizes,) = reached["clusters"].sums
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-        kappa = plateau(by_clusters(sizes), gap, neighbour_mean, of_clusters)
+        law = partial(of_clusters, others=others)
+        kappa = plateau(by_clusters(sizes), gap, neighbour_mean, law)
     curve = by_total(sums, blocks * REPLICAS)
     note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
     return Transmission(

@@ -9,7 +9,7 @@ from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duratio
 from twodiscs.dynamics.many.passages import (
     cluster_sizes,
     hop_sums,
-    neighbour_time,
+    neighbours,
     require_coefficient,
 )
 from twodiscs.dynamics.many.path import (
@@ -28,7 +28,7 @@ from twodiscs.sampling.many.initial import LARGE
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cluster_sizes", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "hop_sums", "interval_cost",
-    "intervals_of_chain", "kicks_of", "mean_interval", "neighbour_time", "new_wraps", "planned",
+    "intervals_of_chain", "kicks_of", "mean_interval", "neighbours", "new_wraps", "planned",
     "rare_hops", "record_intervals", "replica_duration", "require_coefficient", "run_blocks",
     "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
 ]  # fmt: skip

@@ -12,7 +12,7 @@ from twodiscs.dynamics.two.lockstep import (
 from twodiscs.dynamics.two.passages import (
     cluster_sizes,
     hop_sums,
-    neighbour_time,
+    neighbours,
     require_coefficient,
 )
 from twodiscs.dynamics.two.path import (
@@ -41,7 +41,7 @@ from twodiscs.theory.exact import event_rate as expected_event_rate
 __all__ = [
     "INTERVAL_SUMS", "advance_all", "block_replicas", "cluster_sizes", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "hop_sums", "interval_cost",
-    "intervals_of_chain", "kicks_of", "mean_interval", "neighbour_time", "new_wraps", "planned",
+    "intervals_of_chain", "kicks_of", "mean_interval", "neighbours", "new_wraps", "planned",
     "rare_hops", "rare_run", "rare_summary", "record_intervals", "replica_duration",
     "require_coefficient", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
     "work_per_event",

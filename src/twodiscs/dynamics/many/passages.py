@@ -259,23 +259,24 @@ def surface_fraction(scene, hop):
     return draw_on_surface(open_stream(np.uint64(0), 0), pair_of(scene, hop), states, PROPOSALS)
 
 
-@lru_cache(maxsize=64)
-def neighbour_time(scene, hop):
-    """Return the mean time between hops of two neighbours, which is N − 1 times that of any pair.
+def neighbours(scene, hop):
+    """Return the mean time between hops of two neighbours, and with how many pairs they share one.
 
-    On a ring N pairs are neighbours. The time is exact if the rate of hops is known, and has an
-    error of about one per cent if not.
+    N − 1 pairs are neighbours, on a ring N; the number of pairs is a mean over these. The time is
+    exact if the rate of hops is known, and has an error of about one per cent if not.
     """
-    neighbours = scene.discs - (not scene.periodic)
+    pairs = scene.discs - (not scene.periodic)
+    return pairs / hop_rate(scene, hop), 2 - (not scene.periodic) * 2 / pairs
+
+
+@lru_cache(maxsize=64)
+def hop_rate(scene, hop):
+    """Return the rate of hops of any pair, from samples if it is not known exactly."""
     if rate := exact.event_rates(scene)[hop]:
-        return neighbours / rate
-    turned, along = hopping_along(scene, hop, "x")
-    (known, _), (accepted, proposals) = (
-        measures.sample(scene, SAMPLES, 0),
-        surface_fraction(scene, hop),
-    )
-    a, b, n = turned.range_x, turned.range_y, turned.discs
-    pairs = n * (n - 1) / 2
-    log_level = math.log(pairs * (turned.room(along) / b) ** 2 / a * accepted / proposals)
-    log_level += n * math.log(a * b) - known.log_volume
-    return neighbours / (math.sqrt(2) * constant(scene.velocity_components) * math.exp(log_level))
+        return rate
+    scene, hop = hopping_along(scene, hop, "x")
+    volume, (accepted, proposals) = measures.sample(scene, SAMPLES, 0), surface_fraction(scene, hop)
+    a, b, n = scene.range_x, scene.range_y, scene.discs
+    level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
+    empty = math.exp(n * math.log(a * b) - volume[0].log_volume)
+    return math.sqrt(2) * constant(scene.velocity_components) * level * empty

@@ -205,9 +205,9 @@ def require_coefficient(scene, hop):
         )
 
 
-def neighbour_time(scene, hop):
-    """Return the mean time between hops of two neighbours: there are no other discs."""
-    return exact.mean_times(scene)[hop]
+def neighbours(scene, hop):
+    """Return the mean time between hops of two neighbours, and no pairs that change this."""
+    return exact.mean_times(scene)[hop], 0
 
 
 def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):
