@@ -108,7 +108,6 @@ def test_the_order_of_three_discs_decays_by_passages():
         start = np.linalg.solve(vectors, [2 / 3, 1 / 3])
         due = (vectors @ (np.exp(values) * start)).sum()
         error = math.hypot(means.std(ddof=1) / 4, kappa.relative_stderr * (1 - due))
-        print(time, means.mean(), due, error)
         assert abs(student_deviate((means.mean() - due) / error, 15)) <= 5
         assert error < 0.02 * (1 - due)
 

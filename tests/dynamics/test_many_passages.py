@@ -11,7 +11,6 @@ import pytest
 from scalar_bonds import clusters, orders
 
 from twodiscs.comparison.measured.transmission import by_clusters, by_time, of_clusters, plateau
-from twodiscs.dynamics.families import many
 from twodiscs.dynamics.many import passages
 from twodiscs.dynamics.two import passages as of_two
 from twodiscs.model.scene import Scene
@@ -121,7 +120,7 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
     The slow one sees both.
     """
     scene = Scene(0.75 * discs, 1.0, 0.246, discs=discs)
-    mean, others = many.neighbours(scene, HOP)
+    mean, others = passages.neighbours(scene, HOP)
     assert others == pytest.approx(2 * (discs - 2) / (discs - 1), rel=1e-14)
     found = []
     for gap in (8.0, 80.0):
@@ -145,4 +144,4 @@ def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
 def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):
     monkeypatch.setattr(passages, "PROPOSALS", 2**16)
     with pytest.raises(passages.InputError, match=said):
-        many.require_coefficient(scene, hop)
+        passages.require_coefficient(scene, hop)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
-from twodiscs.dynamics.passages import REPLICAS
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
@@ -267,22 +268,26 @@ class Transmission(Result):
     __repr__ = __str__
 
 
+def passages_of(scene):
+    """Return the module that follows the hops of a ``Scene``."""
+    return import_module(of_family(scene, "dynamics", "PASSAGES"))
+
+
 def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
-    names = "cluster_sizes", "hop_sums", "expected_event_rate", "work_per_event", "interval_cost"
-    cluster_sizes, hop_sums, *rates = (of_family(scene, "dynamics", name) for name in names)
+    passages, names = passages_of(scene), ("expected_event_rate", "work_per_event", "interval_cost")
+    event_rate, *costs = (of_family(scene, "dynamics", name)(scene) for name in names)
+    events, work = REPLICAS * event_rate, math.prod(costs)
 
     def clusters(first, stop):
-        sizes, _ = cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
+        sizes, _ = passages.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
         return (sizes,)
 
     def curve(first, stop):
-        sums, _ = hop_sums(scene, hop, times, stop - first, seeds["times"], first)
+        sums, _ = passages.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
-    event_rate, *costs = (of(scene) for of in rates)
-    events, work = REPLICAS * event_rate, math.prod(costs)
     parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
     if are_rare(scene, hop, mean):
         parts["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
@@ -291,13 +296,13 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
 
 def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
-    of_family(check_scene(scene), "dynamics", "require_coefficient")(scene, hop)
+    passages_of(check_scene(scene)).require_coefficient(scene, hop)
     blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
     mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
-    neighbour_mean, others = of_family(scene, "dynamics", "neighbours")(scene, hop)
+    neighbour_mean, others = passages_of(scene).neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     parts, kept = (
         parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed),

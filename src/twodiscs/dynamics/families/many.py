@@ -6,12 +6,6 @@ from twodiscs.dynamics.ensemble import RETURNS
 from twodiscs.dynamics.many import kernels, lockstep
 from twodiscs.dynamics.many.kernels import kicks_of
 from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duration
-from twodiscs.dynamics.many.passages import (
-    cluster_sizes,
-    hop_sums,
-    neighbours,
-    require_coefficient,
-)
 from twodiscs.dynamics.many.path import (
     advance_all,
     events_of,
@@ -26,12 +20,15 @@ from twodiscs.model.events import HOPS
 from twodiscs.sampling.many.initial import LARGE
 
 __all__ = [
-    "INTERVAL_SUMS", "advance_all", "block_replicas", "cluster_sizes", "cost_ratio", "events_of",
-    "events_per_interval", "expected_event_rate", "expected_rate", "hop_sums", "interval_cost",
-    "intervals_of_chain", "kicks_of", "mean_interval", "neighbours", "new_wraps", "planned",
-    "rare_hops", "record_intervals", "replica_duration", "require_coefficient", "run_blocks",
-    "state_of", "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
+    "INTERVAL_SUMS", "PASSAGES", "advance_all", "block_replicas", "cost_ratio", "events_of",
+    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
+    "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
+    "record_intervals", "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap",
+    "usual_duration", "work_per_event",
 ]  # fmt: skip
+
+#: The module that follows hops, imported by this name: an edit of it renews no counts of events.
+PASSAGES = "twodiscs.dynamics.many.passages"
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3

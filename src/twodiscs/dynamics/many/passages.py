@@ -16,6 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
+from twodiscs.dynamics.ensemble import LARGEST, SUMS
 from twodiscs.dynamics.kicks import open_kicks, renew_kicks
 from twodiscs.dynamics.law import crosses, crossing_time
 from twodiscs.dynamics.many.lockstep import (
@@ -29,7 +31,6 @@ from twodiscs.dynamics.many.lockstep import (
     nearest,
     new_kicks,
 )
-from twodiscs.dynamics.passages import LARGEST, REPLICAS, SUMS
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along

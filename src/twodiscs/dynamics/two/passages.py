@@ -33,8 +33,11 @@ import math
 
 import numpy as np
 
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
 from twodiscs.dynamics.ensemble import (
     LANES,
+    LARGEST,
+    SUMS,
     across,
     find_events,
     kick_lanes,
@@ -52,7 +55,6 @@ from twodiscs.dynamics.law import (
     crossing_time,
     law_of,
 )
-from twodiscs.dynamics.passages import LARGEST, REPLICAS, SUMS
 from twodiscs.dynamics.two.strip import law_reverses
 from twodiscs.model.checks import (
     InputError,
