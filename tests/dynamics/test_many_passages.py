@@ -14,7 +14,7 @@ from twodiscs.comparison.measured.transmission import by_clusters, by_time, of_c
 from twodiscs.dynamics.many import passages
 from twodiscs.dynamics.two import passages as of_two
 from twodiscs.model.scene import Scene
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 
 HOP = "horizontal_hop"
 
@@ -102,8 +102,8 @@ def test_states_are_on_the_surface_without_overlap():
 def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     """Its error is that of 2¹⁴ accepted proposals, and the smaller one of the volume."""
     scene = Scene(2.25, 1.0, 0.2499, discs=3)
-    due = exact.event_rates(scene)[HOP]
-    monkeypatch.setattr(exact, "event_rates", lambda scene: {HOP: None})
+    due = methods.event_rates(scene)[HOP]
+    monkeypatch.setattr(methods, "event_rates", lambda scene: {HOP: None})
     passages.hop_rate.cache_clear()
     found = passages.hop_rate(scene, HOP)
     passages.hop_rate.cache_clear()

@@ -45,7 +45,7 @@ from twodiscs.sampling.many.initial import (
 )
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory.flux import constant
-from twodiscs.theory.many import exact
+from twodiscs.theory.many import methods
 
 #: For the rate of hops, if it is not known exactly: states on the surface, the most proposals of
 #: them, and samples of the volume. The rate then has an error of about one per cent.
@@ -273,7 +273,7 @@ def neighbours(scene, hop):
 @lru_cache(maxsize=64)
 def hop_rate(scene, hop):
     """Return the rate of hops of any pair, from samples if it is not known exactly."""
-    if rate := exact.event_rates(scene)[hop]:
+    if rate := methods.event_rates(scene)[hop]:
         return rate
     scene, hop = hopping_along(scene, hop, "x")
     volume, (accepted, proposals) = measures.sample(scene, SAMPLES, 0), surface_fraction(scene, hop)
