@@ -466,12 +466,17 @@ def transmission(
     makes κ too large by about 1e-3 for hops of this frequency, and by less for rarer hops; the
     error does not include it.
 
+    With N > 2 discs a hop is undone by the next hop of the same pair. t is then the time that a
+    disc of the mean speed takes across the room of two discs, t √(2/N) of the box, and hops are
+    those of two neighbours.
+
     Parameters
     ----------
     scene : Scene
-        The box, its two discs and their effects.
+        The box, its discs, at most 19, and their effects.
     hop : str
-        "vertical_hop" or "horizontal_hop", along an axis with walls.
+        "vertical_hop" or "horizontal_hop", along an axis with walls; of more than two discs also
+        along a ring.
     hops : float, default 2¹⁷
         Hops to follow, forwards and backwards in time for κ, forwards for the curve: an integer
         from 1 on. It is rounded up to whole blocks.
@@ -488,14 +493,14 @@ def transmission(
     -------
     Transmission
         The coefficient κ, the fraction of hops that are passages, with its error; the mean time
-        between passages, in time; and the curve κ(t), in ``frame()``. ``more(hops=…)`` goes on from
-        it.
+        between passages of any pair, in time, if the rate of hops is known exactly; and the curve
+        κ(t), in ``frame()``. ``more(hops=…)`` goes on from it.
 
     Raises
     ------
     InputError
-        For a hop that is blocked or along a periodic axis, and for more than two discs: their next
-        hop may be of another pair, which does not undo the first.
+        For a hop that is blocked; for two discs along a periodic axis, and for more across a ring;
+        for 20 discs or more, or so large ones that a hop has almost no room among the others.
 
     Examples
     --------

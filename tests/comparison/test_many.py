@@ -425,7 +425,6 @@ def test_the_mean_interval_is_compared_where_it_is_known(name):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda s: td.transmission(s, "vertical_hop"), "discs must be 2 for passages, not 3"),
         (lambda s: exact.shell_expectation(s, "vertical_hop", 0.01), "discs must be 2 for shells"),
         (lambda s: td.plot(s), "scene must be two plain discs for a drawing, but it has discs 3"),
     ],

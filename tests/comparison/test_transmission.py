@@ -1,6 +1,7 @@
 """Transmission coefficients: from counts of clusters and of hops, and from the face."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -33,7 +34,11 @@ def test_errors_of_a_correlation_between_walls_are_binomial():
     assert found.stderr == pytest.approx(math.sqrt((1 - found.value**2) / n), rel=1e-14)
 
 
-LAWS = {"order": transmission.of_order, "clusters": transmission.of_clusters}
+LAWS = {
+    "order": transmission.of_order,
+    "clusters": transmission.of_clusters,
+    "clusters of a pair of many": partial(transmission.of_clusters, others=4 / 3),
+}
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -41,7 +46,7 @@ def test_a_plateau_is_what_passages_leave(law):
     """κ follows from its value after 0.01 passages; there is none if passages are too frequent."""
     kappa, time, mean = 0.8, 5.0, 400.0
     left, derivative = law(kappa * time / mean)
-    assert left == pytest.approx(1 - 2 * kappa * time / mean, abs=4e-4)
+    assert left == pytest.approx(1 - 2 * kappa * time / mean, abs=5e-4)
     step = 1e-6
     assert derivative == pytest.approx((law(0.01 + step)[0] - left) / step, rel=1e-5)
     fallen = kappa * left
@@ -65,6 +70,46 @@ def test_independent_passages_leave_so_much(x):
     # Hops of a cluster are not independent, so the error is larger, by the root of a size at most.
     error = found.stderr * math.sqrt(np.max(np.flatnonzero(sizes)))
     assert abs(found.value - transmission.of_clusters(x)[0]) <= 5 * error < 0.02
+
+
+@pytest.mark.parametrize("others", [0.0, 4 / 3])
+def test_a_pair_that_parts_has_fewer_passages(others):
+    """The next passage of the pair comes in a gap, unless a passage of another pair comes first."""
+    rng, x, size = np.random.default_rng(2), 0.3, 2**18
+    own = rng.exponential(1 / x, size)
+    parted = rng.exponential(1 / (others * x), size) if others else np.full(size, np.inf)
+    ends = np.flatnonzero((own > 1) | (own > parted))
+    sizes = np.diff(ends)
+    odd = (sizes % 2).sum() / sizes.sum()
+    five_errors = 5 / math.sqrt(sizes.size)
+    assert abs(odd - transmission.of_clusters(x, others)[0]) <= five_errors < 0.02
+
+
+@pytest.mark.slow
+def test_the_order_of_three_discs_decays_by_passages():
+    """Bonds swap at random at a rate k = κ/(2 τ), over starts of the invariant measure.
+
+    Let a be the mean of s(0) s(t), s the order of discs 1 and 2, over states with the third disc
+    outside, and b over those with it between: a' = −3 k a + 2 k b and b' = k a − 2 k b.
+    """
+    scene, hop = td.Scene(2.25, 1.0, 0.247, discs=3), "horizontal_hop"
+
+    def ordered(start, now):
+        pairs = (("x1", "x2"), ("x1", "x3"), ("x2", "x3"))
+        return sum(np.sign(start[i] - start[j]) * np.sign(now[i] - now[j]) for i, j in pairs) / 3
+
+    early, late = 60.0, 300.0
+    parts = [td.observe(scene, ordered, [early, late], 2**15, seed=n) for n in range(16)]
+    found = np.array([part.mean for part in parts])
+    kappa = td.transmission(scene, hop, 2**16, seed=1).coefficient
+    rate = kappa.value / td.mean_times(scene)[hop] / 2
+    for time, means in zip((early, late), found.T, strict=True):
+        values, vectors = np.linalg.eig(np.array([[-3, 2], [1, -2]]) * rate * time)
+        start = np.linalg.solve(vectors, [2 / 3, 1 / 3])
+        due = (vectors @ (np.exp(values) * start)).sum()
+        error = math.hypot(means.std(ddof=1) / 4, kappa.relative_stderr * (1 - due))
+        assert abs(student_deviate((means.mean() - due) / error, 15)) <= 5
+        assert error < 0.02 * (1 - due)
 
 
 @pytest.mark.slow
@@ -105,6 +150,25 @@ def test_the_face_has_the_coefficient_and_the_curve():
     again = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
     assert again.coefficient == kappa
     assert td.transmission(scene, "horizontal_hop", hops=2**14, seed=2).coefficient != kappa
+
+
+def test_more_discs_have_a_coefficient_too(tmp_path):
+    """The time between passages is known with the exact rate of hops."""
+    three, four = (td.Scene(0.75 * n, 1.0, 0.247, discs=n) for n in (3, 4))
+    found = td.transmission(three, "horizontal_hop", 2**12)
+    assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
+    # By 2¹⁸ hops, which do not depend on the gap.
+    assert abs(found.coefficient.value - 0.838) <= 5 * found.coefficient.stderr < 0.05
+    assert found.passage_time.value == pytest.approx(found.exact_mean / found.coefficient.value)
+    other = td.transmission(four, "horizontal_hop", 2**11)
+    assert other.exact_mean is None
+    assert other.passage_time is None
+    assert "fraction of horizontal hops that are passages  0.8" in str(other)
+    assert "mean time" not in str(other)
+    other.save(tmp_path / "kappa.json")
+    assert td.load_result(tmp_path / "kappa.json").coefficient == other.coefficient
+    assert other.more(2**12).coefficient.stderr < other.coefficient.stderr
+    assert len(td.plot(other).axes[0].lines) == 2  # κ(t) and its plateau
 
 
 def test_frequent_hops_have_a_curve_only():

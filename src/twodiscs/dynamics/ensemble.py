@@ -30,6 +30,16 @@ REPLICAS = 1024
 #: Successive intervals between hops that a chain records.
 RETURNS = 256
 
+#: Replicas with one random stream, if each is a hop that is followed.
+FOLLOWED = 64
+
+#: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
+#: by less than the fraction of hops in it over their number.
+LARGEST = 2**13
+
+#: The sums at each time after a hop: n = Σ s_0 s_k and n², N hops and N².
+SUMS = 4
+
 
 def nearest_power_of_two(value):
     """Return the power of two next to ``value`` > 0 on a logarithmic scale.

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
-from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums, require_passing
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
+from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.scene import check_scene
 from twodiscs.points.estimates import Estimate
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
 from twodiscs.theory import exact
@@ -38,9 +42,13 @@ TIMES = tuple(float(f"{time:.3g}") for time in np.geomspace(0.1, 10, 21))
 
 
 def box_time(scene, hop):
-    """Return the time that a disc of speed 1 takes across the box along the axis of a ``hop``."""
+    """Return the time that a disc of speed 1 takes across the box along the axis of a ``hop``.
+
+    With N discs it is that across two of N equal parts of the box, at the mean speed of N discs.
+    """
     axis = AXIS[hop]
-    return scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+    length = scene.side(axis) if axis in scene.periodic else float(scene.reach(axis))
+    return length * math.sqrt(2 / scene.discs)
 
 
 def quiet_time(scene, hop):
@@ -77,9 +85,12 @@ def by_total(sums, replicas):
     ]
 
 
-def are_rare(scene, hop):
-    """Return whether the time that ends a cluster has at most ``MOST_IN_GAP`` hops on average."""
-    return quiet_time(scene, hop) * exact.passing_rate(scene, hop) <= MOST_IN_GAP
+def are_rare(scene, hop, mean):
+    """Return whether the time that ends a cluster has at most ``MOST_IN_GAP`` hops on average.
+
+    The ``mean`` time is that between hops of two neighbours.
+    """
+    return quiet_time(scene, hop) <= MOST_IN_GAP * mean
 
 
 def of_order(x):
@@ -88,22 +99,24 @@ def of_order(x):
     return left, -2 * left
 
 
-def of_clusters(x):
+def of_clusters(x, others=0):
     """Return (odd clusters per passage, its derivative) for x passages in a gap on average.
 
-    A cluster has n passages with probability (1 − e^(−x))^(n−1) e^(−x), and there are e^(−x)
-    clusters for each passage: the sum over odd n is 1/(2e^x − 1).
+    A cluster goes on after a passage with a probability q, and there are 1 − q clusters for each
+    passage: those of odd n are (1 − q) Σ q^(n−1) = (1 − q)/(1 + q). Passages of ``others``, each at
+    the same rate, make the pair neighbours no more. So q = (1 − e^(−(1 + others) x))/(1 + others).
     """
-    left = 1 / (2 * math.exp(x) - 1)
-    return left, -2 * math.exp(x) * left**2
+    grown = math.exp((1 + others) * x)
+    left = (others * grown + 1) / ((others + 2) * grown - 1)
+    return left, -2 * (1 + others) ** 2 * grown * (left / (others * grown + 1)) ** 2
 
 
 def plateau(estimate, time, mean, law):
     """Return κ, corrected for the passages in a ``time``, from an ``Estimate`` of κ(``time``).
 
     Passages come independently, at the rate κ/τ for the ``mean`` time τ between hops. The ``law``
-    gives the factor by which they reduce the estimate: ``of_order`` or ``of_clusters``. The result
-    is None if the time has more than ``MOST_MERGED`` passages.
+    gives the factor by which they reduce the estimate, such as ``of_order``. The result is None if
+    the time has more than ``MOST_MERGED`` passages.
     """
     value, x = estimate.value, estimate.value * time / mean
     if value <= 0 or x > MOST_MERGED:
@@ -136,8 +149,11 @@ class Transmission(Result):
         The time without a hop that ends a cluster.
     clusters : dict
         {n: number of hops in clusters of n}, empty if hops are too frequent for clusters.
-    exact_mean : float
-        The mean time τ between hops.
+    exact_mean : float or None
+        The mean time τ between hops, of any pair; None if no exact value is known.
+    neighbour_mean : float
+        The mean time between hops of two neighbours: τ for two discs. For more discs in a box it is
+        (N − 1) τ, and it has an error of about one per cent if τ is not known.
     times : tuple of float
         The times of the curve.
     curve : list of Estimate
@@ -161,7 +177,8 @@ class Transmission(Result):
     coefficient: Estimate | None
     gap: float
     clusters: dict[int, int]
-    exact_mean: float
+    exact_mean: float | None
+    neighbour_mean: float
     times: tuple[float, ...]
     curve: list[Estimate]
     settings: dict[str, object] = field(default_factory=dict)
@@ -203,8 +220,8 @@ class Transmission(Result):
 
     @property
     def passage_time(self) -> Estimate | None:
-        """The mean time between passages τ/κ, an ``Estimate``; None without a coefficient."""
-        if self.coefficient is None:
+        """The mean time between passages τ/κ, an ``Estimate``; None without κ or an exact τ."""
+        if self.coefficient is None or self.exact_mean is None:
             return None
         value, error, n = (getattr(self.coefficient, k) for k in ("value", "stderr", "n"))
         return Estimate(self.exact_mean / value, self.exact_mean * error / value**2, n)
@@ -235,12 +252,15 @@ class Transmission(Result):
         name = self.hop.replace("_", " ")
         if self.coefficient is None:
             return (
-                f"{name}s are too frequent, with a mean time of {self.exact_mean:.4g}, for a "
+                f"{name}s are too frequent, with a mean time of {self.neighbour_mean:.4g}, for a "
                 "transmission coefficient; .frame() has κ(t)"
             )
         kappa, passage = self.coefficient, self.passage_time
+        fraction = f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}"
+        if passage is None:
+            return fraction
         return (
-            f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}\n"
+            f"{fraction}\n"
             f"mean time between hops, exact  {self.exact_mean:.6g}\n"
             f"mean time between passages  {passage.value:.6g} ± {passage.stderr:.2g}"
         )
@@ -248,42 +268,44 @@ class Transmission(Result):
     __repr__ = __str__
 
 
-def parts_of(scene, hop, gap, times, blocks, name, seed):
+def passages_of(scene):
+    """Return the module that follows the hops of a ``Scene``."""
+    return import_module(of_family(scene, "dynamics", "PASSAGES"))
+
+
+def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
+    passages, names = passages_of(scene), ("expected_event_rate", "work_per_event", "interval_cost")
+    event_rate, *costs = (of_family(scene, "dynamics", name)(scene) for name in names)
+    events, work = REPLICAS * event_rate, math.prod(costs)
 
     def clusters(first, stop):
-        sizes, _ = cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
+        sizes, _ = passages.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)
         return (sizes,)
 
     def curve(first, stop):
-        sums, _ = hop_sums(scene, hop, times, stop - first, seeds["times"], first)
+        sums, _ = passages.hop_sums(scene, hop, times, stop - first, seeds["times"], first)
         return (sums.sum(axis=0),)
 
-    events = REPLICAS * exact.event_rate(scene)
-    work = exact.work_per_event(scene)
     parts = {"times": fixed(curve, blocks, times[-1] * events, work)}
-    if are_rare(scene, hop):
+    if are_rare(scene, hop, mean):
         parts["clusters"] = fixed(clusters, blocks, 2 * gap * events, work)
     return parts
 
 
 def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None):
     """Return the ``Transmission`` of a ``hop`` of a ``Scene`` (see the face)."""
-    require_passing(scene, hop)
-    if AXIS[hop] in scene.periodic:
-        raise InputError(
-            f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
-            "periodic"
-        )
+    passages_of(check_scene(scene)).require_coefficient(scene, hop)
     blocks = -(-check_count("hops", hops, most=10**9) // REPLICAS)
     if name is not None and not isinstance(name, str):
         raise InputError(f"name must be the name of a scene, not {quote(name)}")
     named = repr(Box.of(scene).parameters()) if name is None else name
-    mean, gap = 1 / exact.passing_rate(scene, hop), quiet_time(scene, hop)
+    mean, gap = exact.mean_times(scene)[hop], quiet_time(scene, hop)
+    neighbour_mean, others = passages_of(scene).neighbours(scene, hop)
     times = tuple(box_time(scene, hop) * time for time in TIMES)
     parts, kept = (
-        parts_of(scene, hop, gap, times, blocks, named, seed),
+        parts_of(scene, hop, neighbour_mean, gap, times, blocks, named, seed),
         {} if kept is None else kept,
     )
     settings = {"hop": hop, "hops": int(hops), "seed": int(seed), "name": name}
@@ -293,7 +315,10 @@ def transmission(scene, hop, hops, seed, name, cores=1, progress=None, kept=None
     if "clusters" in reached:
         (sizes,) = reached["clusters"].sums
         clusters = {n: int(number) for n, number in enumerate(sizes) if number}
-        kappa = plateau(by_clusters(sizes), gap, mean, of_clusters)
+        law = partial(of_clusters, others=others)
+        kappa = plateau(by_clusters(sizes), gap, neighbour_mean, law)
     curve = by_total(sums, blocks * REPLICAS)
     note = note_of_number("hops", settings["hops"], blocks * REPLICAS)
-    return Transmission(scene, hop, kappa, gap, clusters, mean, times, curve, settings, kept, note)
+    return Transmission(
+        scene, hop, kappa, gap, clusters, mean, neighbour_mean, times, curve, settings, kept, note
+    )

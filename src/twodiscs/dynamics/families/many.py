@@ -20,13 +20,15 @@ from twodiscs.model.events import HOPS
 from twodiscs.sampling.many.initial import LARGE
 
 __all__ = [
-    "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
+    "INTERVAL_SUMS", "PASSAGES", "advance_all", "block_replicas", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
     "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
-    "record_intervals",
-    "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap", "usual_duration",
-    "work_per_event",
+    "record_intervals", "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap",
+    "usual_duration", "work_per_event",
 ]  # fmt: skip
+
+#: The module that follows hops, imported by this name: an edit of it renews no counts of events.
+PASSAGES = "twodiscs.dynamics.many.passages"
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3

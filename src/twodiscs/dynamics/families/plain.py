@@ -33,12 +33,15 @@ from twodiscs.model.scene import hopping_along
 from twodiscs.theory.exact import event_rate as expected_event_rate
 
 __all__ = [
-    "INTERVAL_SUMS", "advance_all", "block_replicas", "cost_ratio", "events_of",
+    "INTERVAL_SUMS", "PASSAGES", "advance_all", "block_replicas", "cost_ratio", "events_of",
     "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
     "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
     "rare_run", "rare_summary", "record_intervals", "replica_duration", "run_blocks", "state_of",
     "trajectory_rate", "unwrap", "usual_duration", "work_per_event",
 ]  # fmt: skip
+
+#: The module that follows hops, imported by this name: an edit of it renews no counts of events.
+PASSAGES = "twodiscs.dynamics.two.passages"
 
 
 def record_intervals(scene, hop, *given):

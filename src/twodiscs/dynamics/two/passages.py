@@ -33,8 +33,11 @@ import math
 
 import numpy as np
 
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
 from twodiscs.dynamics.ensemble import (
     LANES,
+    LARGEST,
+    SUMS,
     across,
     find_events,
     kick_lanes,
@@ -61,26 +64,18 @@ from twodiscs.model.checks import (
     check_length,
 )
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene, hopping_along
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.prism import prism_of
 from twodiscs.sampling.starts import COMPONENTS, fill_start, require_room
 from twodiscs.sampling.streams import open_stream
+from twodiscs.theory import exact
 
 #: Passes between two looks at which lanes have come to the end of their time.
 PASSES = 2
 
-#: Replicas that share a random stream, and blocks of them whose states are in memory together.
-REPLICAS = 64
+#: Blocks of replicas whose states are in memory together.
 CHUNK = 1024
-
-#: Clusters of this many hops, or more, are in one class. It counts as even, which makes κ too small
-#: by less than the fraction of hops in it over their number.
-LARGEST = 2**13
-
-#: The sums at each time: n = Σ s_0 s_k and n², N hops and N².
-SUMS = 4
 
 
 @compiled
@@ -194,14 +189,27 @@ def require_passing(scene, hop):
     The axis of the ``hop`` may be periodic, where hops are no events of the scene.
     """
     check_choice("hop", hop, HOPS)
-    # Replicas start on the surface of the hop: the family must have initial states next to one.
-    of_family(check_scene(scene), "sampling", "origins", "passages")
-    require_room(scene)
+    require_room(check_scene(scene))
     periodic = AXIS[hop] in scene.periodic
     if not (scene.room(hop) > 0 if periodic else scene.is_possible(hop)):
         raise InputError(
             f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
         )
+
+
+def require_coefficient(scene, hop):
+    """Raise ``InputError`` unless the hops of a ``Scene`` can have a transmission coefficient."""
+    require_passing(scene, hop)
+    if AXIS[hop] in scene.periodic:
+        raise InputError(
+            f"hop {hop!r} must be between walls for a transmission coefficient, but its axis is "
+            "periodic"
+        )
+
+
+def neighbours(scene, hop):
+    """Return the mean time between hops of two neighbours, and no pairs that change this."""
+    return exact.mean_times(scene)[hop], 0
 
 
 def initial_states(scene, hop, blocks, seed, first=0, on_surface=True):

@@ -68,7 +68,7 @@ def transmission(result):
     if result.coefficient is not None:
         kappa, name = result.coefficient.value, r"$\kappa\,e^{-2\kappa t/\tau}$, by clusters"
         late = np.geomspace(0.5 * box_time(scene, hop), result.times[-1], 30)
-        end = kappa * np.exp(-2 * kappa * late / result.exact_mean)
+        end = kappa * np.exp(-2 * kappa * late / result.neighbour_mean)
         axes.plot(late, end, color=BLACK, zorder=5, label=name)
     axes.set(xscale="log", xlabel="time $t$", ylabel=r"transmission $\kappa(t)$")
     axes.xaxis.set_major_formatter("{x:g}")

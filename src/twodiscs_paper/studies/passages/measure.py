@@ -184,7 +184,7 @@ class NearThreshold:
     def clusters(self, blocks):
         """Return (κ or None, its rows)."""
         gap = quiet_time(self.scene, self.hop)
-        if not are_rare(self.scene, self.hop):
+        if not are_rare(self.scene, self.hop, self.mean):
             return None, []
         found = cluster_sizes(self.scene, self.hop, gap, blocks, self.cluster_seed)
         return self.of_sizes(*found, gap)

@@ -1,0 +1,283 @@
+"""Which hops of two of N discs are passages: ``two.passages`` for a pair among others.
+
+Discs 1 and 2 begin on the surface x1 = x2, with the law of the flux through it: a random hop is one
+of theirs, because all discs are equal. The correlations C(t) and the clusters are those of this
+pair alone. Between walls its hops alternate in direction, whatever the other discs do. On a ring
+they alternate unless the discs go around all others.
+
+A state is drawn by rejection. The centres of the pair are uniform on the surface, those of the
+others in the box; after an overlap all are drawn again. Velocities are uniform on their sphere and
+accepted with a probability ∝ |u1 − u2|.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
+from twodiscs.dynamics.ensemble import LARGEST, SUMS
+from twodiscs.dynamics.kicks import open_kicks, renew_kicks
+from twodiscs.dynamics.law import crosses, crossing_time
+from twodiscs.dynamics.many.lockstep import (
+    COLLISIONS,
+    ManyLaw,
+    N,
+    advance,
+    find_events,
+    kick_lanes,
+    law_of,
+    nearest,
+    new_kicks,
+)
+from twodiscs.model.checks import InputError, check_choice
+from twodiscs.model.events import HOPS
+from twodiscs.model.scene import hopping_along
+from twodiscs.sampling.jit import compiled, optional
+from twodiscs.sampling.many import measures
+from twodiscs.sampling.many.initial import (
+    LARGE,
+    Initial,
+    draw_velocities,
+    initial_of,
+    overlaps,
+)
+from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
+from twodiscs.theory.flux import constant
+from twodiscs.theory.many import methods
+
+#: For the rate of hops, if it is not known exactly: states on the surface, the most proposals of
+#: them, and samples of the volume. The rate then has an error of about one per cent.
+STATES, PROPOSALS, SAMPLES = 2**14, 2**24, 2**20
+
+#: The least fraction of proposals that is accepted: below it states take longer than their motion.
+LEAST = 1e-4
+
+
+class Pair(NamedTuple):
+    """The constants of a pair on its surface among other discs; ``room`` is B − σ."""
+
+    initial: Initial
+    room: float
+    law: ManyLaw
+
+
+def pair_of(scene, hop):
+    """Return the ``Pair`` of a ``Scene``, turned by a quarter if the ``hop`` is along y."""
+    scene, hop = hopping_along(scene, hop, "x")
+    return Pair(initial_of(scene, "rejection"), scene.room(hop), law_of(scene))
+
+
+@compiled
+def draw_on_surface(state, pair, states, most):
+    """Fill the columns of ``states`` (4N, number); return (accepted, proposals of centres).
+
+    It stops before the last column after ``most`` proposals.
+    """
+    initial, proposals = pair.initial, 0
+    n, ring = initial.discs, initial.ring
+    centres, velocities, cuts = np.empty((2, n)), np.empty((2, n)), np.empty(n - 1)
+    for k in range(states.shape[1]):
+        i = 0
+        while i < n:
+            if i == 0:
+                if proposals == most:
+                    return k, proposals
+                proposals += 1
+                low, high = pair.room * uniform(state), pair.room * uniform(state)
+                low, high = min(low, high), max(low, high)
+                centres[0, 0] = centres[0, 1] = initial.half_x * signed_uniform(state)
+                centres[1, 0] = low - initial.half_y
+                centres[1, 1] = initial.half_y - (pair.room - high)
+                i = 2
+            else:
+                x, y = (
+                    initial.half_x * signed_uniform(state),
+                    initial.half_y * signed_uniform(state),
+                )
+                centres[0, i], centres[1, i] = x, y
+                i = 0 if overlaps(centres, i, i, x, y, initial) else i + 1
+        while True:
+            draw_velocities(state, velocities, cuts, ring)
+            if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
+                break
+        for i in range(n):
+            states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
+            states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
+    return states.shape[1], proposals
+
+
+@optional(lambda change, ring: True)
+def is_short(change, ring):
+    """Return whether a separation has changed by less than it does half a ring apart."""
+    return abs(change) < ring[1]
+
+
+@compiled
+def follow(states, remaining, gap, net, hops, law, kicks):
+    """Follow the columns of ``states`` (4N, lanes) for the times ``remaining`` (lanes,).
+
+    Σ s_k of the hops of discs 1 and 2 is added to ``net``, their number to ``hops``. With a ``gap``
+    (above 0) a lane goes on after each hop for this time, up to ``LARGEST`` hops. Returns the
+    number of wall hits and collisions.
+    """
+    n, lanes = states.shape[0] // 4, remaining.size
+    x, y, u, v = states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n :]
+    old_x, old_y, counts = np.zeros((n, lanes)), np.zeros((n, lanes)), np.zeros((N, lanes))
+    times, codes, speeds = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    rising = np.zeros(lanes)
+    while np.max(remaining) > 0.0:
+        for l in range(lanes):
+            rising[l] = u[0, l] - u[1, l]
+        find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
+        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None)
+        kick_lanes(u, v, times, law, kicks)
+        for l in range(lanes):
+            apart = nearest(old_x[0, l] - old_x[1, l], law.ring)
+            end = nearest(x[0, l] - x[1, l], law.ring)
+            if crosses(apart, end) & is_short(end - apart, law.ring):
+                net[l] += math.copysign(1.0, rising[l])
+                hops[l] += 1.0
+                if gap > 0.0:
+                    left = gap - (times[l] - crossing_time(apart, rising[l]))
+                    remaining[l] = left if hops[l] < LARGEST else 0.0
+    return np.int64(counts[COLLISIONS:].sum())
+
+
+@compiled
+def begin(states, side, net, hops):
+    """Return a copy of ``states``, with reversed velocities if ``side`` is 1.
+
+    Zero counts as positive, so a hop will be counted for a falling pair at time 0: ``net`` and
+    ``hops`` begin below zero.
+    """
+    n, now = states.shape[0] // 4, states.copy()
+    for l in range(states.shape[1]):
+        for i in range(2 * n, 4 * n):
+            now[i, l] = -now[i, l] if side == 1 else now[i, l]
+        falls = now[2 * n, l] < now[2 * n + 1, l]
+        net[l], hops[l] = 1.0 if falls else 0.0, -1.0 if falls else 0.0
+    return now
+
+
+@compiled
+def sum_blocks(seed, first, stop, times, pair, sums):
+    """Add to ``sums`` (blocks, ``SUMS``, times) as ``two.passages`` does; return the events."""
+    discs, law, events = pair.initial.discs, pair.law, 0
+    states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)
+    net, hops, kicks = (
+        np.zeros(REPLICAS),
+        np.zeros(REPLICAS),
+        new_kicks(REPLICAS, discs, law.friction),
+    )
+    for block in range(first, stop):
+        draw_on_surface(open_stream(seed, block), pair, states, -1)
+        own, now = sums[block - first], begin(states, 0, net, hops)
+        for l in range(REPLICAS):
+            open_kicks(l, seed, block * REPLICAS + l, kicks)
+        for k in range(times.size):
+            for l in range(REPLICAS):
+                steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
+            events += follow(now, steps, 0.0, net, hops, law, kicks)
+            for l in range(REPLICAS):
+                falls = states[2 * discs, l] < states[2 * discs + 1, l]
+                n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
+                own[0, k] += n
+                own[1, k] += n * n
+                own[2, k] += m
+                own[3, k] += m * m
+    return events
+
+
+@compiled
+def count_clusters(seed, first, stop, gap, pair, sizes):
+    """Add to ``sizes`` how many hops are in clusters of each size; return the events."""
+    discs, law, events = pair.initial.discs, pair.law, 0
+    states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)
+    net, hops, kicks = (
+        np.zeros(REPLICAS),
+        np.zeros(REPLICAS),
+        new_kicks(REPLICAS, discs, law.friction),
+    )
+    for block in range(first, stop):
+        draw_on_surface(open_stream(seed, block), pair, states, -1)
+        size = np.ones(REPLICAS)
+        for side in range(2):
+            now = begin(states, side, net, hops)
+            for l in range(REPLICAS):
+                steps[l] = gap
+                if side == 0:
+                    open_kicks(l, seed, block * REPLICAS + l, kicks)
+                else:
+                    renew_kicks(l, kicks)
+            events += follow(now, steps, gap, net, hops, law, kicks)
+            for l in range(REPLICAS):
+                size[l] += hops[l]
+        for l in range(REPLICAS):
+            sizes[min(np.int64(size[l]), sizes.size - 1)] += 1
+    return events
+
+
+# From a scene to the arguments of the kernels -----------------------------------------------------
+
+
+def hop_sums(scene, hop, times, blocks, seed, first=0):
+    """Return (sums, events) of ``blocks`` of hops, see ``two.passages``."""
+    sums, pair = np.zeros((blocks, SUMS, len(times)), np.int64), pair_of(scene, hop)
+    return sums, sum_blocks(np.uint64(seed), first, first + blocks, np.array(times), pair, sums)
+
+
+def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
+    """Return (sizes, events) of ``blocks`` of hops, see ``two.passages``."""
+    sizes, pair = np.zeros(LARGEST + 1, np.int64), pair_of(scene, hop)
+    return sizes, count_clusters(np.uint64(seed), first, first + blocks, gap, pair, sizes)
+
+
+def require_coefficient(scene, hop):
+    """Raise ``InputError`` unless hops of a ``Scene`` can be followed for their coefficient."""
+    check_choice("hop", hop, HOPS)
+    if scene.discs >= LARGE:
+        raise InputError(f"discs must be at most {LARGE - 1} for passages, not {scene.discs}")
+    if scene.periodic and hop != "horizontal_hop":
+        raise InputError(f"hop must be horizontal_hop for passages on a ring, not {hop!r}")
+    if not (scene.room(hop) > 0 if scene.periodic else scene.is_possible(hop)):
+        raise InputError(
+            f"hop {hop!r} must be open for passages, but is blocked at radius {scene.radius!r}"
+        )
+    accepted, proposals = surface_fraction(scene, hop)
+    if accepted < LEAST * proposals:
+        raise InputError(
+            f"radius {scene.radius!r} is so large for {scene.discs} discs that fewer than "
+            f"{LEAST:g} of the proposals of a hop have no overlap"
+        )
+
+
+@lru_cache(maxsize=64)
+def surface_fraction(scene, hop):
+    """Return (accepted, proposals) of states on the surface of a ``hop``, from the stream 0."""
+    states = np.zeros((4 * scene.discs, STATES))
+    return draw_on_surface(open_stream(np.uint64(0), 0), pair_of(scene, hop), states, PROPOSALS)
+
+
+def neighbours(scene, hop):
+    """Return the mean time between hops of two neighbours, and with how many pairs they share one.
+
+    N − 1 pairs are neighbours, on a ring N; the number of pairs is a mean over these. The time is
+    exact if the rate of hops is known, and has an error of about one per cent if not.
+    """
+    pairs = scene.discs - (not scene.periodic)
+    return pairs / hop_rate(scene, hop), 2 - (not scene.periodic) * 2 / pairs
+
+
+@lru_cache(maxsize=64)
+def hop_rate(scene, hop):
+    """Return the rate of hops of any pair, from samples if it is not known exactly."""
+    if rate := methods.event_rates(scene)[hop]:
+        return rate
+    scene, hop = hopping_along(scene, hop, "x")
+    volume, (accepted, proposals) = measures.sample(scene, SAMPLES, 0), surface_fraction(scene, hop)
+    a, b, n = scene.range_x, scene.range_y, scene.discs
+    level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
+    empty = math.exp(n * math.log(a * b) - volume[0].log_volume)
+    return math.sqrt(2) * constant(scene.velocity_components) * level * empty

@@ -1,0 +1,147 @@
+"""Hops of a pair among other discs: against the kernel of two discs, another program, theory.
+
+Statistical comparisons allow five standard errors: with some 40 of them a false alarm comes in
+fewer than 3e-5 of all seeds.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scalar_bonds import clusters, orders
+
+from twodiscs.comparison.measured.transmission import by_clusters, by_time, of_clusters, plateau
+from twodiscs.dynamics.many import passages
+from twodiscs.dynamics.two import passages as of_two
+from twodiscs.model.scene import Scene
+from twodiscs.theory.many import methods
+
+HOP = "horizontal_hop"
+
+
+def five(found, due, error):
+    assert abs(found - due) <= 5 * error, (found, due, error)
+
+
+def same_sizes(counts, other):
+    """Compare κ, the share of single hops and the mean size up to 64 of clusters."""
+    own = np.repeat(np.arange(counts.size), counts)
+    for of in (lambda n: n % 2 / n, lambda n: n == 1, lambda n: np.minimum(n, 64)):
+        values = [np.asarray(of(sizes), float) for sizes in (own, other)]
+        errors = [part.std() / math.sqrt(part.size) for part in values]
+        five(values[0].mean(), values[1].mean(), math.hypot(*errors))
+
+
+@pytest.mark.parametrize(("hop", "friction"), [(HOP, 0.0), (HOP, 20.0), ("vertical_hop", 0.0)])
+def test_two_discs_among_no_others_are_two_discs(hop, friction):
+    sides = (1.5, 1.0) if hop == HOP else (1.0, 1.5)
+    scene = Scene(*sides, 0.246, friction=friction)
+    counts, events = passages.cluster_sizes(scene, hop, 6.0, 128, 11)
+    other, due = of_two.cluster_sizes(scene, hop, 6.0, 128, 12)
+    same_sizes(counts, np.repeat(np.arange(other.size), other))
+    assert events == pytest.approx(due, rel=0.05)
+    found, reference = (
+        by_time(module.hop_sums(scene, hop, [0.2, 1.0, 5.0], 256, 3)[0])
+        for module in (passages, of_two)
+    )
+    for mine, known in zip(found, reference, strict=True):
+        five(mine.value, known.value, math.hypot(mine.stderr, known.stderr))
+
+
+@pytest.mark.parametrize(
+    ("periodic", "discs", "radius", "gap"),
+    [("", 3, 0.24, 6.0), ("", 4, 0.1, 0.5), ("x", 3, 0.235, 6.0)],
+)
+def test_clusters_are_those_of_another_program(periodic, discs, radius, gap):
+    """In a narrow channel, among small discs and on a ring."""
+    scene = Scene(0.75 * discs, 1.0, radius, discs=discs, periodic=periodic)
+    counts, _ = passages.cluster_sizes(scene, HOP, gap, 256, 5)
+    box = discs, scene.width, scene.height, radius, bool(periodic)
+    same_sizes(counts, clusters(6, 6000, *box, gap))
+
+
+def test_correlations_are_those_of_another_program():
+    scene, time = Scene(2.25, 1.0, 0.23, discs=3), 3.0
+    (found,) = by_time(passages.hop_sums(scene, HOP, [time], 256, 7)[0])
+    other = orders(8, 6000, 3, 2.25, 1.0, 0.23, False, time)
+    five(found.value, other.mean(), math.hypot(found.stderr, other.std() / math.sqrt(other.size)))
+    assert 5 * found.stderr < min(found.value, 1 - found.value)
+
+
+def test_the_past_is_as_the_future():
+    """As many hops come within a gap before a hop as after it."""
+    scene = Scene(3.0, 1.0, 0.22, discs=4)
+    pair, states = passages.pair_of(scene, HOP), np.zeros((16, 2**13))
+    passages.draw_on_surface(passages.open_stream(np.uint64(1), 0), pair, states, -1)
+    found = []
+    for side in (0, 1):
+        net, hops = np.zeros((2, states.shape[1]))
+        now, rest = passages.begin(states, side, net, hops), np.full(states.shape[1], 4.0)
+        passages.follow(now, rest, 4.0, net, hops, pair.law, None)
+        found.append(hops)
+    change = found[1] - found[0]
+    five(change.mean(), 0.0, change.std() / math.sqrt(change.size))
+    assert change.any()
+    assert found[0].mean() > 20 * change.std() / math.sqrt(change.size)
+
+
+def test_states_are_on_the_surface_without_overlap():
+    for scene in (Scene(3.0, 1.0, 0.2499, discs=4), Scene(3.0, 1.0, 0.2, discs=4, periodic="x")):
+        pair, states = passages.pair_of(scene, HOP), np.zeros((16, 500))
+        passages.draw_on_surface(passages.open_stream(np.uint64(1), 0), pair, states, -1)
+        x, y, u, v = states.reshape(4, 4, 500)
+        assert np.array_equal(x[0], x[1])
+        dx = x[:, None] - x
+        dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
+        apart = np.hypot(dx, y[:, None] - y)[np.triu_indices(4, 1)]
+        assert apart.min() >= scene.contact_distance * (1 - 1e-15)
+        assert np.abs(y).max() <= scene.range_y / 2
+        np.testing.assert_allclose((u**2 + v**2).sum(axis=0), 1.0, rtol=1e-13)
+
+
+def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
+    """Its error is that of 2¹⁴ accepted proposals, and the smaller one of the volume."""
+    scene = Scene(2.25, 1.0, 0.2499, discs=3)
+    due = methods.event_rates(scene)[HOP]
+    monkeypatch.setattr(methods, "event_rates", lambda scene: {HOP: None})
+    passages.hop_rate.cache_clear()
+    found = passages.hop_rate(scene, HOP)
+    passages.hop_rate.cache_clear()
+    _, volume_error = passages.measures.sample(scene, passages.SAMPLES, 0)
+    five(found / due, 1.0, math.hypot(1 / math.sqrt(passages.STATES), volume_error[0]))
+
+
+@pytest.mark.parametrize(
+    ("discs", "blocks"), [(3, 256), pytest.param(6, 4096, marks=pytest.mark.slow)]
+)
+def test_the_coefficient_does_not_depend_on_the_gap(discs, blocks):
+    """Passages in the longer gap take 15 % of κ, one per cent of κ less because of other pairs.
+
+    The slow one sees both.
+    """
+    scene = Scene(0.75 * discs, 1.0, 0.246, discs=discs)
+    mean, others = passages.neighbours(scene, HOP)
+    assert others == pytest.approx(2 * (discs - 2) / (discs - 1), rel=1e-14)
+    found = []
+    for gap in (8.0, 80.0):
+        kappa = by_clusters(passages.cluster_sizes(scene, HOP, gap, blocks, 9)[0])
+        found.append(plateau(kappa, gap, mean, lambda x: of_clusters(x, others)))
+    short, long = found
+    five(short.value, long.value, math.hypot(short.stderr, long.stderr))
+
+
+@pytest.mark.parametrize(
+    ("scene", "hop", "said"),
+    [
+        (Scene(48, 1, 0.2, discs=64), HOP, r"^discs must be at most 19 for passages, not 64$"),
+        (Scene(3, 1, 0.2, discs=4), "disc_collision", "^hop must be one of"),
+        (Scene(3, 1, 0.26, discs=4), HOP, "must be open for passages, but is blocked at radius"),
+        (Scene(3, 1, 0.26, discs=4, periodic="x"), HOP, "must be open for passages, but is"),
+        (Scene(3, 1, 0.2, discs=4, periodic="x"), "vertical_hop", "horizontal_hop .* on a ring"),
+        (Scene(4, 1, 0.22, discs=14), HOP, "fewer than 0.0001 of the proposals of a hop have no"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused_in_a_sentence(scene, hop, said, monkeypatch):
+    monkeypatch.setattr(passages, "PROPOSALS", 2**16)
+    with pytest.raises(passages.InputError, match=said):
+        passages.require_coefficient(scene, hop)
