@@ -36,13 +36,7 @@ from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.many import measures
-from twodiscs.sampling.many.initial import (
-    LARGE,
-    Initial,
-    draw_velocities,
-    initial_of,
-    overlaps,
-)
+from twodiscs.sampling.many.initial import LARGE, Initial, draw_velocities, initial_of, overlaps
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory.flux import constant
 from twodiscs.theory.many import methods
@@ -92,10 +86,8 @@ def draw_on_surface(state, pair, states, most):
                 centres[1, 1] = initial.half_y - (pair.room - high)
                 i = 2
             else:
-                x, y = (
-                    initial.half_x * signed_uniform(state),
-                    initial.half_y * signed_uniform(state),
-                )
+                x = initial.half_x * signed_uniform(state)
+                y = initial.half_y * signed_uniform(state)
                 centres[0, i], centres[1, i] = x, y
                 i = 0 if overlaps(centres, i, i, x, y, initial) else i + 1
         while True:
@@ -162,56 +154,37 @@ def begin(states, side, net, hops):
 
 
 @compiled
-def sum_blocks(seed, first, stop, times, pair, sums):
-    """Add to ``sums`` (blocks, ``SUMS``, times) as ``two.passages`` does; return the events."""
-    discs, law, events = pair.initial.discs, pair.law, 0
+def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
+    """Follow the hops of blocks ``first`` … ``stop`` − 1; return the wall hits and collisions.
+
+    Without a ``gap`` (0), the sums of ``two.passages.follow_hops`` at ``times`` are added to
+    ``sums``. With a gap, which is then the only time, sizes of clusters are added to ``sizes``.
+    """
+    discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
     states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)
-    net, hops, kicks = (
-        np.zeros(REPLICAS),
-        np.zeros(REPLICAS),
-        new_kicks(REPLICAS, discs, law.friction),
-    )
+    net, hops = np.zeros(REPLICAS), np.zeros(REPLICAS)
+    kicks = new_kicks(REPLICAS, discs, law.friction)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
-        own, now = sums[block - first], begin(states, 0, net, hops)
-        for l in range(REPLICAS):
-            open_kicks(l, seed, block * REPLICAS + l, kicks)
-        for k in range(times.size):
-            for l in range(REPLICAS):
-                steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
-            events += follow(now, steps, 0.0, net, hops, law, kicks)
-            for l in range(REPLICAS):
-                falls = states[2 * discs, l] < states[2 * discs + 1, l]
-                n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
-                own[0, k] += n
-                own[1, k] += n * n
-                own[2, k] += m
-                own[3, k] += m * m
-    return events
-
-
-@compiled
-def count_clusters(seed, first, stop, gap, pair, sizes):
-    """Add to ``sizes`` how many hops are in clusters of each size; return the events."""
-    discs, law, events = pair.initial.discs, pair.law, 0
-    states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)
-    net, hops, kicks = (
-        np.zeros(REPLICAS),
-        np.zeros(REPLICAS),
-        new_kicks(REPLICAS, discs, law.friction),
-    )
-    for block in range(first, stop):
-        draw_on_surface(open_stream(seed, block), pair, states, -1)
-        size = np.ones(REPLICAS)
-        for side in range(2):
+        own, size = sums[block - first], np.ones(REPLICAS)
+        for side in range(sides):
             now = begin(states, side, net, hops)
             for l in range(REPLICAS):
-                steps[l] = gap
                 if side == 0:
                     open_kicks(l, seed, block * REPLICAS + l, kicks)
                 else:
                     renew_kicks(l, kicks)
-            events += follow(now, steps, gap, net, hops, law, kicks)
+            for k in range(times.size):
+                for l in range(REPLICAS):
+                    steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
+                events += follow(now, steps, gap, net, hops, law, kicks)
+                for l in range(REPLICAS):
+                    falls = states[2 * discs, l] < states[2 * discs + 1, l]
+                    n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
+                    own[0, k] += n
+                    own[1, k] += n * n
+                    own[2, k] += m
+                    own[3, k] += m * m
             for l in range(REPLICAS):
                 size[l] += hops[l]
         for l in range(REPLICAS):
@@ -222,16 +195,22 @@ def count_clusters(seed, first, stop, gap, pair, sizes):
 # From a scene to the arguments of the kernels -----------------------------------------------------
 
 
+def _followed(scene, hop, times, gap, blocks, seed, first):
+    sums, sizes = np.zeros((blocks, SUMS, len(times)), np.int64), np.zeros(LARGEST + 1, np.int64)
+    run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
+    return sums, sizes, follow_blocks(*run, sums, sizes)
+
+
 def hop_sums(scene, hop, times, blocks, seed, first=0):
     """Return (sums, events) of ``blocks`` of hops, see ``two.passages``."""
-    sums, pair = np.zeros((blocks, SUMS, len(times)), np.int64), pair_of(scene, hop)
-    return sums, sum_blocks(np.uint64(seed), first, first + blocks, np.array(times), pair, sums)
+    sums, _, events = _followed(scene, hop, times, 0.0, blocks, seed, first)
+    return sums, events
 
 
 def cluster_sizes(scene, hop, gap, blocks, seed, first=0):
     """Return (sizes, events) of ``blocks`` of hops, see ``two.passages``."""
-    sizes, pair = np.zeros(LARGEST + 1, np.int64), pair_of(scene, hop)
-    return sizes, count_clusters(np.uint64(seed), first, first + blocks, gap, pair, sizes)
+    _, sizes, events = _followed(scene, hop, [gap], gap, blocks, seed, first)
+    return sizes, events
 
 
 def require_coefficient(scene, hop):
