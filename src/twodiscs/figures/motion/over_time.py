@@ -56,6 +56,7 @@ def transmission(result):
     """Draw κ(t) of a ``Transmission`` with errors, its exact start and its plateau from clusters.
 
     The start is known in plain scenes, the plateau if hops are rare enough for a coefficient.
+    With more than two discs τ is the mean time between hops of two neighbours.
     """
     scene, hop = result.scene, result.hop
     figure, axes = _panel(scene, f",  {name_of(hop)}")
