@@ -53,7 +53,7 @@ LIKE_OTHERS = ("simulate on two cores", "intervals of rare hops", "scan", "start
 
 
 def stop(code, seconds=0.3):
-    """Run ``code`` and interrupt it some seconds after each "ready"; return its status and output."""
+    """Run ``code``, interrupt it some seconds after each "ready"; return its status and output."""
     with subprocess.Popen(
         [sys.executable, "-c", code],
         stdout=subprocess.PIPE,
