@@ -72,6 +72,7 @@ def own(tmp_path_factory):
     return place
 
 
+@pytest.mark.slow
 def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own):
     names = {*own.results()}
     assert {"tiny/areas.csv", "tiny/mean_times.csv"} < names
@@ -81,6 +82,7 @@ def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own)
     assert own.jobs(*there(own)) == []
 
 
+@pytest.mark.slow
 def test_no_shell_reads_the_name_of_a_folder_as_a_command(own, tmp_path):
     place = copied(own, tmp_path / NAME)
     place.configuration.parent.mkdir()
@@ -120,7 +122,8 @@ def test_without_one_the_default_is_built(complete, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"results", ".snakemake"}
 
 
-@pytest.mark.parametrize("prefix", [pytest.param("", marks=pytest.mark.slow), "discs_"])
+@pytest.mark.slow
+@pytest.mark.parametrize("prefix", ["", "discs_"])
 def test_as_a_module_it_does_the_same_jobs(own, tmp_path, prefix):
     place = copied(own, tmp_path)
     use(place, TINY, prefix)

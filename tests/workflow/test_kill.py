@@ -69,7 +69,7 @@ def begun(checkout, *words):
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
 @pytest.mark.parametrize(
-    "name", ["SIGKILL", "SIGINT", pytest.param("SIGTERM", marks=pytest.mark.slow)]
+    "name", ["SIGKILL", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGINT", "SIGTERM"))]
 )
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     checkout = fresh(tmp_path / "checkout")
