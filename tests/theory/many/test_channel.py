@@ -104,10 +104,9 @@ def test_long_channels_are_made_of_moments(discs, width, height, radius):
         assert abs(known - value) <= PROMISED * max(1, abs(value))
 
 
-@pytest.mark.parametrize("width", [1.3, 1.25])
-def test_four_discs_in_a_shorter_channel(width):
+def test_four_discs_in_a_shorter_channel():
     """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
-    scene, values = Scene(width, 0.6, 0.18, discs=4), []
+    scene, values = Scene(1.3, 0.6, 0.18, discs=4), []
     for order in (40, 56):
         x, w = np.polynomial.legendre.leggauss(order)
         y, w = scene.range_y * (1 + x) / 2, scene.range_y * w / 2
