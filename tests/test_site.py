@@ -29,6 +29,7 @@ def site(tmp_path_factory):
     return folder / "site"
 
 
+@pytest.mark.slow
 def test_links_and_pictures_lead_somewhere_on_this_machine(site):
     pages = [*site.rglob("*.html")]
     assert len(pages) > 50
@@ -45,6 +46,7 @@ def listed(pages):
     return pages if isinstance(pages, list) else [pages]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", ["pressure", "gravity", "ctrl", "cite"])
 def test_the_search_knows(site, word):
     text = (site / "searchindex.js").read_text(encoding="utf-8")
@@ -54,11 +56,13 @@ def test_the_search_knows(site, word):
     assert any(recipes in listed(pages) for found, pages in words if found.startswith(stem))
 
 
+@pytest.mark.slow
 def test_every_public_name_is_described(site):
     text = (site / "reference.html").read_text(encoding="utf-8")
     assert [name for name in td.__all__ if f'id="twodiscs.{name}"' not in text] == []
 
 
+@pytest.mark.slow
 def test_every_table_has_a_page_and_every_figure_a_place(site):
     assert [name for name in TABLES if not (site / f"tables/{name}.html").exists()] == []
     gallery = (site / "gallery.html").read_text(encoding="utf-8")

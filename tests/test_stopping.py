@@ -8,27 +8,28 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import contextmanager
 
 import pytest
 
-#: The program of a child process: a small call, for which everything is compiled, then a long one.
+#: The program of a child process: of each call first a small one, for which everything is compiled,
+#: then a long one. A call that goes on ends the process after a minute.
 CHILD = """
+import faulthandler
 import twodiscs as td
 
 scene = td.Scene(1.5, 1.0, 0.2)
 field = td.Scene(1.5, 1.0, 0.2, field=0.3)
 rare = td.Scene(1.5, 1.0, 0.2495)
 
-def call(large):
-    {call}
-
-call(False)
-print("ready", flush=True)
-try:
-    call(True)
-except KeyboardInterrupt:
-    print("stopped", flush=True)
+for call in [{calls}]:
+    call(False)
+    faulthandler.dump_traceback_later(60, exit=True)
+    print("ready", flush=True)
+    try:
+        call(True)
+    except KeyboardInterrupt:
+        print("stopped", flush=True)
+    faulthandler.cancel_dump_traceback_later()
 """
 
 CALLS = {
@@ -51,9 +52,8 @@ CALLS = {
 LIKE_OTHERS = ("simulate on two cores", "intervals of rare hops", "scan", "starts of many discs")
 
 
-@contextmanager
-def stopped(code):
-    """Give the process that ran ``code`` until it was sent the signal of Ctrl-C, and has ended."""
+def stop(code, seconds=0.3):
+    """Run ``code``, interrupt it some seconds after each "ready"; return its status and output."""
     with subprocess.Popen(
         [sys.executable, "-c", code],
         stdout=subprocess.PIPE,
@@ -62,24 +62,27 @@ def stopped(code):
         # A parent that runs the tests in the background may ignore the signal.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as child:
-        assert child.stdout.readline() == "ready\n"
-        time.sleep(1)
-        child.send_signal(signal.SIGINT)
-        try:
-            child.wait(60)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            raise
-        yield child
+        printed = []
+        for line in child.stdout:
+            printed.append(line)
+            if line == "ready\n":
+                time.sleep(seconds)
+                child.send_signal(signal.SIGINT)
+        return child.wait(60), printed, child.stderr.read()
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(c, marks=pytest.mark.slow if c in LIKE_OTHERS else ()) for c in CALLS],
+    "names",
+    [
+        [name for name in CALLS if name not in LIKE_OTHERS],
+        pytest.param(LIKE_OTHERS, marks=pytest.mark.slow),
+    ],
+    ids=["calls", "like others"],
 )
-def test_a_call_stops_at_once(name):
-    with stopped(CHILD.format(call=CALLS[name])) as child:
-        assert (child.stdout.read(), child.stderr.read()) == ("stopped\n", "")
+def test_a_call_stops_at_once(names):
+    calls = ", ".join(f"lambda large: {CALLS[name]}" for name in names)
+    found = stop(CHILD.format(calls=calls))
+    assert found == (0, ["ready\n", "stopped\n"] * len(names), "")
 
 
 @pytest.mark.parametrize("words", ["simulate --error 1e-7 --budget 1e13", "sample --samples 1e13"])
@@ -88,9 +91,7 @@ def test_a_command_stops_at_once(words):
         "import sys; from twodiscs import cli; print('ready', flush=True); sys.argv[1:] = "
         f"{[*words.split(), '--width', '1.5', '--height', '1', '--radius', '0.2']!r}; cli.main()"
     )
-    with stopped(code) as child:
-        assert child.returncode == -signal.SIGINT
-        assert child.stderr.read() == ""
+    assert stop(code, 1.0) == (-signal.SIGINT, ["ready\n"], "")
 
 
 #: Names the kernels that the main thread calls, each by its first call.

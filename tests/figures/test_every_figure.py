@@ -11,7 +11,7 @@ from twodiscs.figures.radius import volume
 from twodiscs.model.box import Box
 
 #: Boxes where labels could meet, and of any size.
-TABLED = ("paper", "nearly square", "tiny", "small", "large")
+TABLED = ("paper", "nearly square", "tiny", "large")
 
 
 def pairs():

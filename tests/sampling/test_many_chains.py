@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -43,12 +42,6 @@ def moments(scene, found):
     return seen.mean(1), seen.std(1) / math.sqrt(seen.shape[1])
 
 
-@cache
-def usual(scene, number):
-    """Return the ``moments`` of the chains as they are."""
-    return moments(scene, drawn(scene, number, 1))
-
-
 EDGES = (1.0, 1.05, 1.2, 1.5, 2.0, 2.5, 3.5)
 
 
@@ -87,13 +80,13 @@ def test_states_are_allowed(scene):
         box(20, 0.1),
         box(20, 0.55),
         box(20, 0.5, "x"),
-        box(32, 0.6),
+        pytest.param(box(32, 0.6), marks=pytest.mark.slow),
         Scene(9.6, 0.75, 0.18, discs=24),
     ],
     ids=repr,
 )
 def test_chains_of_single_moves_agree(scene):
-    one = moments(scene, drawn(scene, 900, 1))
+    one = moments(scene, drawn(scene, 500, 1))
     check(one, moments(scene, drawn(scene, 400, 2, chain=one_by_one(scene, 4000))))
 
 
@@ -112,17 +105,17 @@ def test_much_longer_chains_of_single_moves_agree(scene):
     ids=repr,
 )
 def test_longer_event_chains_are_no_different(scene, monkeypatch):
-    number = 2**16 // scene.discs
-    one = usual(scene, number)
+    number = 2**14 // scene.discs
+    one = moments(scene, drawn(scene, number, 1))
     monkeypatch.setattr(chains, "CONTACTS", 4 * chains.CONTACTS)
     check(one, moments(scene, drawn(scene, number // 2, 2)))
 
 
 def test_event_chains_that_are_too_short_are_seen(monkeypatch):
-    scene = box(64, 0.6)
-    one = usual(scene, 1024)
+    scene = box(32, 0.6)
+    one = moments(scene, drawn(scene, 200, 1))
     monkeypatch.setattr(chains, "CONTACTS", 16)
-    mean, error = moments(scene, drawn(scene, 1000, 2))
+    mean, error = moments(scene, drawn(scene, 200, 2))
     assert np.max(np.abs(mean - one[0]) / np.hypot(error, one[1])) > 10
 
 

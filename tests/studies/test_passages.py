@@ -483,14 +483,14 @@ def test_the_error_of_an_exponent_is_that_of_a_line_through_two_logarithms(inert
 #: {rate of kicks: {halvings of the distance below h/4: κ}}, measured by another program with errors
 #: of 0.002 to 0.005.
 WITH_FRICTION = {
-    10.0: {4: 0.278, 6: 0.469, 8: 0.648, 10: 0.789, 12: 0.881, 14: 0.938, 16: 0.967},
-    40.0: {8: 0.319, 10: 0.515, 12: 0.703, 14: 0.820, 16: 0.901},
+    10.0: {4: 0.278, 8: 0.648, 12: 0.881, 16: 0.967},
+    40.0: {8: 0.319, 12: 0.703},
     160.0: {8: 0.097, 12: 0.341},
 }
 
 
 def test_passages_with_friction_are_those_of_another_program():
-    """Within three standard errors: 14 differences have a false alarm in 4 % of the seeds."""
+    """Within three standard errors: 8 differences have a false alarm in 2 % of the seeds."""
     for friction, due in WITH_FRICTION.items():
         for n, expected in due.items():
             scene = Box(1.5, 1.0, {"friction": friction}).scene(measure.radius_at(0.25, n))

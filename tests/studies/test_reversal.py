@@ -12,7 +12,7 @@ from twodiscs.sampling.starts import states
 from twodiscs_paper.studies.stability import measure as stability
 
 
-@pytest.mark.parametrize("sides", [(1.5, 1.0), (3.0, 1.0), (1e-3, 1.3e-3)])
+@pytest.mark.parametrize("sides", [(1.5, 1.0), (1e-3, 1.3e-3)])
 def test_events_retraced_are_those_the_exponent_allows(sides):
     """z within 5 for the exponents; the number within five binary digits of roundings."""
     box = Box(*sides)

@@ -33,6 +33,14 @@ def processes(folder):
     return {pid: line for pid, line in found.items() if "-m twodiscs_paper.pipeline.jobs." in line}
 
 
+def threads(pid):
+    """Return the number of threads of a process, 0 if it has ended."""
+    try:
+        return len(os.listdir(f"/proc/{pid}/task"))
+    except OSError:
+        return 0
+
+
 def wait_until(condition, seconds=300):
     end = time.monotonic() + seconds
     while not condition():
@@ -43,6 +51,7 @@ def wait_until(condition, seconds=300):
 def begun(checkout, *words):
     """Return a process of a Python module, as of a terminal, when a job of it is at work.
 
+    A job that is at work has a second thread, which ends it with the workflow.
     The file ``printed`` of the checkout has what it prints.
     """
     with open(checkout.path / "printed", "w", encoding="utf-8") as printed:
@@ -54,13 +63,13 @@ def begun(checkout, *words):
             stderr=printed,
             start_new_session=True,
         )
-    wait_until(lambda: processes(checkout.path))
+    wait_until(lambda: any(threads(pid) > 1 for pid in processes(checkout.path)))
     return run
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
 @pytest.mark.parametrize(
-    "name", ["SIGKILL", "SIGINT", pytest.param("SIGTERM", marks=pytest.mark.slow)]
+    "name", ["SIGKILL", *(pytest.param(n, marks=pytest.mark.slow) for n in ("SIGINT", "SIGTERM"))]
 )
 def test_a_killed_run_leaves_no_job_and_the_next_one_resumes(tmp_path, name):
     checkout = fresh(tmp_path / "checkout")

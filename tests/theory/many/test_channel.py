@@ -1,10 +1,9 @@
-"""The ordered channel: against other theories, moments in many digits, and its limits."""
+"""The ordered channel: against other theories, sums of moments, and its limits."""
 
 import math
 
 import numpy as np
 import pytest
-from mpmath import mp, mpf
 
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
@@ -37,88 +36,77 @@ def test_three_discs_have_the_quadrature(width, height):
     agree(channel.measures(scene), three.measures(scene), BOUND)
 
 
-def by_moments(scene, digits, order):
-    """Return the ``Measures`` of a channel that is longer than the discs in a row, as ``mpf``.
+def by_moments(scene, order=40):
+    """Return the ``Measures`` of a channel that is longer than the discs in a row.
 
     There the rooms A/(N − 1) − d of the bonds are positive, and A − S is their sum: V = ∫ (A − S)^N
-    is made of their moments, by Gauss's rule in many digits. Derivatives are such integrals of
-    N (A − S)^(N−1) times the derivative of S, hops those of δ(y_i − y_j).
+    is made of their moments, by Gauss's rule. Derivatives are such integrals of N (A − S)^(N−1)
+    times the derivative of S, hops those of δ(y_i − y_j). All terms are positive: nothing cancels.
     """
-    n = scene.discs
-    with mp.workdps(digits):
-        sigma = 2 * mpf(scene.radius)
-        a, b = mpf(scene.width) - sigma, mpf(scene.height) - sigma
-        assert a > (n - 1) * sigma
-        nodes = [
-            mp.findroot(lambda z: mp.legendre(order, z), mpf(start), solver="newton")
-            for start in np.polynomial.legendre.leggauss(order)[0]
-        ]
-        w = np.array([b * (1 - z * z) / (order * mp.legendre(order - 1, z)) ** 2 for z in nodes])
-        y = np.array([b * (1 + z) / 2 for z in nodes])
-        square = (y[:, None] - y) ** 2
-        d = np.array([[mp.sqrt(s) for s in row] for row in sigma**2 - square])
-        # Moments stand over k!, so that those of sums are convolutions.
-        moments = [mpf(1) + 0 * d]
-        for k in range(1, n + 1):
-            moments.append(moments[-1] * (a / (n - 1) - d) / k)
+    n, sigma, a, b = scene.discs, scene.contact_distance, scene.range_x, scene.range_y
+    assert a > (n - 1) * sigma
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    y, w = b * (1 + nodes) / 2, b * weights / 2
+    square = (y[:, None] - y) ** 2
+    d = np.sqrt(sigma**2 - square)
+    # Moments stand over k!, so that those of sums are convolutions.
+    moments = [1 + 0 * d]
+    for k in range(1, n + 1):
+        moments.append(moments[-1] * (a / (n - 1) - d) / k)
 
-        def joined(left, right):
-            """Return the moments of a sum, and integrate over the node between its parts."""
-            return [
-                sum(left[m] @ (w * right[k - m].T).T for m in range(k + 1)) for k in range(n + 1)
-            ]
+    def joined(left, right):
+        """Return the moments of a sum, and integrate over the node between its parts."""
+        return [sum(left[m] * w @ right[k - m] for m in range(k + 1)) for k in range(n + 1)]
 
-        # Of 0, 1, … bonds from a node on, whatever their other end.
-        ends = [[mpf(k == 0) + 0 * y for k in range(n + 1)]]
-        for _ in range(n - 1):
-            ends.append(joined(moments, ends[-1]))
-        volume = w @ ends[-1][n]
+    # Of 0, 1, … bonds from a node on, whatever their other end.
+    ends = [[float(k == 0) + 0 * y for k in range(n + 1)]]
+    for _ in range(n - 1):
+        ends.append(joined(moments, ends[-1]))
+    volume = w @ ends[-1][n]
 
-        def mean(factor):
-            """Return Σ over bonds of ∫ N (A − S)^(N−1) times a ``factor`` of the bond, over V."""
-            bond = [factor * each for each in moments]
-            total = mpf(0)
-            for i in range(n - 1):
-                beyond = joined(bond, ends[n - 2 - i])
-                total += sum((w * ends[i][k]) @ beyond[n - 1 - k] for k in range(n))
-            return total / volume
+    def mean(factor):
+        """Return Σ over bonds of ∫ N (A − S)^(N−1) times a ``factor`` of the bond, over V."""
+        bond = [factor * each for each in moments]
+        total = 0.0
+        for i in range(n - 1):
+            beyond = joined(bond, ends[n - 2 - i])
+            total += sum((w * ends[i][k]) @ beyond[n - 1 - k] for k in range(n))
+        return total / volume
 
-        chain, level = moments, mpf(0)
-        for bonds in range(1, n):
-            closed = [np.diag(each) for each in chain]
-            for i in range(n - bonds):
-                left, right = ends[i], ends[n - 1 - i - bonds]
-                for k in range(n + 1):
-                    inner = sum(left[m] * closed[k - m] for m in range(k + 1))
-                    level += (w * inner) @ right[n - k]
-            chain = joined(chain, moments)
-        return Measures(
-            mp.log(mp.factorial(n) * volume),
-            w @ ends[-1][n - 1] / volume,
-            n / b + mean(square / (b * d)),
-            mean(sigma / d),
-            horizontal_hops=mpf(0),
-            vertical_hops=level / volume,
-        )
+    chain, level = moments, 0.0
+    for bonds in range(1, n):
+        closed = [np.diag(each) for each in chain]
+        for i in range(n - bonds):
+            left, right = ends[i], ends[n - 1 - i - bonds]
+            for k in range(n + 1):
+                inner = sum(left[m] * closed[k - m] for m in range(k + 1))
+                level += (w * inner) @ right[n - k]
+        chain = joined(chain, moments)
+    return Measures(
+        math.log(math.factorial(n) * volume),
+        w @ ends[-1][n - 1] / volume,
+        n / b + mean(square / (b * d)),
+        mean(sigma / d),
+        horizontal_hops=0.0,
+        vertical_hops=level / volume,
+    )
 
 
 @pytest.mark.parametrize(
     ("discs", "width", "height", "radius"),
-    [(4, 1.5, 0.6, 0.18), (4, 2.5, 1.0, 0.28), (4, 6.0, 1.0, 0.3), (5, 2.4, 0.6, 0.17),
-     (8, 4.9, 1.0, 0.3)],
+    [(4, 1.6, 0.6, 0.18), (4, 2.5, 1.0, 0.28), (4, 6.0, 1.0, 0.3), (5, 2.4, 0.6, 0.17),
+     (8, 4.9, 1.0, 0.3), pytest.param(4, 1.5, 0.6, 0.18, marks=pytest.mark.slow)],
 )  # fmt: skip
-def test_channels_in_many_digits(discs, width, height, radius):
+def test_long_channels_are_made_of_moments(discs, width, height, radius):
     """The bound is the one that ``theory.exact.volume`` promises."""
     scene = Scene(width, height, radius, discs=discs)
-    expected = by_moments(scene, 25, 16 if height < 3.4 * radius else 24)
-    for known, value in zip(channel.measures(scene), expected, strict=True):
+    for known, value in zip(channel.measures(scene), by_moments(scene), strict=True):
         assert abs(known - value) <= PROMISED * max(1, abs(value))
 
 
-@pytest.mark.parametrize("width", [1.3, 1.25])
-def test_four_discs_in_a_shorter_channel(width):
+def test_four_discs_in_a_shorter_channel():
     """By a product rule over the heights: the integrand has a kink in its fourth derivative."""
-    scene, values = Scene(width, 0.6, 0.18, discs=4), []
+    scene, values = Scene(1.3, 0.6, 0.18, discs=4), []
     for order in (40, 56):
         x, w = np.polynomial.legendre.leggauss(order)
         y, w = scene.range_y * (1 + x) / 2, scene.range_y * w / 2
@@ -127,8 +115,8 @@ def test_four_discs_in_a_shorter_channel(width):
         room = scene.range_x - middle
         total = 0.0
         for i in range(order):
-            left = np.maximum(room[i, :, :, None] - d[None], 0.0) ** 4
-            total += w[i] * np.einsum("j,k,l,jkl", w, w, w, left)
+            left = np.maximum(room[i, :, :, None] - d[None], 0.0) ** 2
+            total += w[i] * (left * left @ w @ w @ w)
         values.append(math.log(total))
     spread = abs(values[0] - values[1])
     assert spread < 1e-7
