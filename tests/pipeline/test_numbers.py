@@ -426,3 +426,15 @@ def test_the_long_run_is_what_its_shards_counted_and_agrees():
     counted = [sum(counts) for counts in zip(*(shard["sums"][0] for shard in used), strict=True)]
     # Events that were declared later were not counted.
     assert counted == [point.counts[event] for event in EVENTS if event in point.counts]
+
+
+def test_the_page_on_passages_has_the_numbers_of_the_build_and_of_the_long_run():
+    """Every value with an error is that of a row, rounded as in the manuscript."""
+    folders = PAPER / "expected", PAPER / "long_run" / "passages"
+    rows = [row for folder in folders for row in TABLES["passages"].read(folder / "passages.csv")]
+    printed = (formats.with_error(r["estimate"], r["stderr"]).text for r in rows if r["stderr"])
+    known = {re.sub("[$ -]", "", text) for text in printed}
+    page = (PAPER.parent / "docs" / "passages.md").read_text()
+    found = {*re.findall(r"\d+\.\d+\(\d+\)", page)}
+    assert len(found) > 50
+    assert found <= known
