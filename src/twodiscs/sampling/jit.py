@@ -173,17 +173,18 @@ class CacheFile(caching.IndexDataCacheFile):
         return f"{Path(self._index_name).stem}.{uuid.uuid4().hex}.nbc"
 
 
-def compiled(function):
+def compiled(function, **options):
     """Compile ``function`` with ``OPTIONS``; the functions that it calls are compiled into it.
 
-    The code is kept on disk if possible.
+    The code is kept on disk if possible. ``options`` are further ones of ``numba.njit``.
     """
+    options = OPTIONS | options
     if cache_home() is None or function.__module__.partition(".")[0] not in PACKAGES:
-        return numba.njit(function, **OPTIONS)
+        return numba.njit(function, **options)
     usual = numba.config.CACHE_LOCATOR_CLASSES
     numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{BySources.__name__}"
     try:
-        kept = numba.njit(function, cache=True, **OPTIONS)
+        kept = numba.njit(function, cache=True, **options)
     finally:
         numba.config.CACHE_LOCATOR_CLASSES = usual
     kept._cache._cache_file.__class__ = CacheFile
@@ -220,8 +221,14 @@ def _compile_once(cache, name):
 
 
 def inlined(function):
-    """Compile ``function`` into its callers, whatever its length: for the innermost loops."""
-    return numba.njit(function, forceinline=True, **OPTIONS)
+    """Compile ``function`` into its callers, whatever its length: for the innermost loops.
+
+    Its code is kept, because several kernels have it. A function within a function is not kept,
+    because others in its module have the same name.
+    """
+    if "<" in function.__qualname__:
+        return numba.njit(function, forceinline=True, **OPTIONS)
+    return compiled(function, forceinline=True)
 
 
 def optional(absent):
