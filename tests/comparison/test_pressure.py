@@ -194,3 +194,32 @@ def test_slopes_know_that_their_ends_are_of_the_same_replicas():
     spread = np.std([run.mean[1, 1] for run in runs], ddof=1)
     assert abs(spread / runs[0].stderr[1, 1] - 1) < 5 / math.sqrt(78) + 0.05
     assert td.plot(runs[0]).axes[0].get_legend().texts[1].get_text() == "diffusion"
+
+
+def test_monte_carlo_of_many_discs_has_the_pressures_of_the_dynamics():
+    """Walls and contacts of insertions, walls and collisions of the motion: two times two ways.
+
+    A wall that recedes by dw adds N S dw to the volume V, so its pressure over kT is N S/(V h). V
+    is homogeneous in the sides and σ, so contacts tell the mean of both pressures.
+    """
+    w, h, n, sigma = 1.3, 1.0, 8, 0.2
+    scene = td.Scene(w, h, sigma / 2, discs=n)
+    insertion = td.sample(scene, samples=2**18, seed=5)
+    volume, kt = insertion["volume"], 1 / (2 * n)
+    walls = [n * insertion[f"{wall}_wall_area"].value for wall in ("right", "top")]
+    contacts = insertion["disc_collision_area"]
+    grown = sigma * (contacts.value / math.sqrt(2) + sum(walls)) / volume.value
+    due = {
+        "right_wall_pressure": kt * walls[0] / (volume.value * h),
+        "top_wall_pressure": kt * walls[1] / (volume.value * w),
+        "virial_pressure": kt * (2 * n + grown) / (2 * w * h),
+    }
+    # Areas and volume are of the same insertions: these errors are not too small.
+    names = ("volume", "disc_collision_area", "right_wall_area", "top_wall_area")
+    relative = [insertion[name].stderr / insertion[name].value for name in names]
+    error = math.hypot(relative[0], max(relative[1:]))
+    found = td.pressure(td.simulate(scene, budget=1e6, error=0.1, seed=6))
+    for name, value in due.items():
+        z = (value - found[name].value) / math.hypot(value * error, found[name].stderr)
+        assert abs(z) < 5, (name, value, found[name].value, z)
+        assert error < 0.01
