@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import twodiscs
+from twodiscs.dynamics import law
 from twodiscs.model.sources import fingerprint, imported, imports_of, modules
 from twodiscs.sampling import jit, streams
 
@@ -343,3 +344,16 @@ def test_absent_effects_leave_no_instruction(package):
         env=environment, capture_output=True, check=False,
     )  # fmt: skip
     assert failed.returncode != 0
+
+
+def test_inlined_functions_are_kept_but_those_within_a_function():
+    """Several kernels have them. Two lambdas have one name, and bytecode that may be the same."""
+    once, again = (jit.inlined(law.crosses.py_func) for _ in range(2))
+    assert once(-1.0, 1.0)
+    assert again(-1.0, 1.0)
+    assert again.stats.cache_hits
+
+    first, second = (lambda x: x + 1.0), (lambda x: x + 2.0)
+    for function in (first, second):
+        function.__module__ = law.__name__
+    assert [jit.inlined(function)(1.0) for function in (first, second)] == [2.0, 3.0]

@@ -277,7 +277,7 @@ def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
     passages, names = passages_of(scene), ("expected_event_rate", "work_per_event", "interval_cost")
-    event_rate, *costs = (of_family(scene, "dynamics", name)(scene) for name in names)
+    event_rate, *costs = (of_family(scene, "dynamics", each)(scene) for each in names)
     events, work = REPLICAS * event_rate, math.prod(costs)
 
     def clusters(first, stop):

@@ -143,8 +143,7 @@ def first_of(gap, speed, code, other_gap, other_speed, number, half):
 
 @optional(lambda position, velocity, half: (NEVER, 1.0))
 def walled_quotient(position, velocity, half):
-    """Return (gap, speed) to the wall ahead; without walls (``half`` is None) the gap is
-    infinite."""
+    """Return (gap, speed) to the wall ahead; without walls (``half`` None) the gap is infinite."""
     return wall_quotient(position, velocity, half)
 
 

@@ -102,7 +102,7 @@ def draw_on_surface(state, pair, states, most):
 
 @optional(lambda change, ring: True)
 def is_short(change, ring):
-    """Return whether a separation has changed by less than it does half a ring apart."""
+    """Return whether a separation made this ``change`` by motion, not by a change of image."""
     return abs(change) < ring[1]
 
 
@@ -157,8 +157,9 @@ def begin(states, side, net, hops):
 def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
     """Follow the hops of blocks ``first`` … ``stop`` − 1; return the wall hits and collisions.
 
-    Without a ``gap`` (0), the sums of ``two.passages.follow_hops`` at ``times`` are added to
-    ``sums``. With a gap, which is then the only time, sizes of clusters are added to ``sizes``.
+    Without a ``gap`` (0), ``sums`` gets the sums of ``two.passages.follow_hops`` at ``times``.
+    With a gap, which is then the only time, ``sizes`` gets the numbers of clusters of each size.
+    The other of the two arrays is overwritten and has no meaning.
     """
     discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
     states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)

@@ -22,6 +22,7 @@ from twodiscs_paper.studies.passages.figure import (
     LOOKS,
     columns,
     first_scene,
+    is_empty,
     points,
     residuals,
     select,
@@ -66,12 +67,7 @@ def draw(box, tables):
     right = WIDTH - COLUMN + panels.LEFT
     moved = panels.add_panel(figure, panels.BOTTOM + half + GAP, half, right, name="moved")
     collapse = panels.add_panel(figure, panels.BOTTOM, half, right, name="collapse")
-    for axes, name in zip(figure.axes, "abcde", strict=True):
-        panels.letter(axes, name)
-    if not rows:
-        panels.name_box(ring, box, ": no hop becomes blocked")
-        for axes in figure.axes:
-            axes.set_axis_off()
+    if is_empty(figure, ring, rows, box):
         return figure
     panels.name_box(ring, first_scene(rows, box)[0])
     _ring(ring, rows)

@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.figures.kit import drawing, panels
 from twodiscs.figures.kit.style import BLACK, GREY, SERIES, new_figure
 from twodiscs.model.box import Box
-from twodiscs_paper.studies.passages.figure import columns, first_scene, points, select
+from twodiscs_paper.studies.passages.figure import columns, first_scene, is_empty, points, select
 from twodiscs_paper.studies.passages.measure import KICKED
 
 #: Inches: heights of the panels of κ and of the exponent, the gap, the margin above.
@@ -27,12 +27,7 @@ def draw(box, tables):
     figure = new_figure(panels.BOTTOM + EXPONENT + panels.GAP + KAPPA + TOP)
     upper = panels.add_panel(figure, panels.BOTTOM + EXPONENT + panels.GAP, KAPPA, name="kappa")
     lower = panels.add_panel(figure, panels.BOTTOM, EXPONENT, name="exponent")
-    for axes, name in zip(figure.axes, "ab", strict=True):
-        panels.letter(axes, name)
-    if not rows:
-        panels.name_box(upper, box, ": no hop becomes blocked")
-        for axes in figure.axes:
-            axes.set_axis_off()
+    if is_empty(figure, upper, rows, box):
         return figure
     panels.name_box(upper, first_scene(rows, box)[0])
     for friction, look in LOOKS.items():
