@@ -206,9 +206,9 @@ def test_reference(scene):
 BITS = """
 import sys
 from twodiscs.model.scene import Scene
-from twodiscs.theory.exact import measures
+from twodiscs.theory.exact import areas, volume
 step, *scenes = sys.argv[1:]
-print(sorted((text, measures(eval(text))) for text in scenes[:: int(step)]))
+print(sorted((text, volume(eval(text)), areas(eval(text))) for text in scenes[:: int(step)]))
 """
 
 

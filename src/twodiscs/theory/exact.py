@@ -11,7 +11,6 @@ more than two discs exact values are known in some scenes. A value that is not k
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 from twodiscs.model.checks import InputError, check_choice, check_length
 from twodiscs.model.events import DECLARED, EVENTS, HOPS
@@ -38,12 +37,6 @@ if TYPE_CHECKING:
 #: The least fraction of the prism (both centres in their ranges) without overlap in a scene with
 #: effects. Initial states are drawn from the prism by rejection.
 MIN_FRACTION = 1e-4
-
-
-@lru_cache(maxsize=1024)
-def measures(scene):
-    """Return (volume, {event: area}) of a ``Scene``; the last thousand scenes are cached."""
-    return of_family(scene, "theory", "volume_and_areas")(scene)
 
 
 def volume(scene: Scene) -> float:
@@ -76,7 +69,7 @@ def volume(scene: Scene) -> float:
     >>> round(td.volume(scene), 12)
     0.236114482448
     """
-    return measures(check_scene(scene))[0]
+    return of_family(check_scene(scene), "theory", "volume")(scene)
 
 
 def areas(scene: Scene) -> dict[str, float]:
@@ -87,7 +80,7 @@ def areas(scene: Scene) -> dict[str, float]:
     length⁵ for balls; they have a factor 1/√mass (1 for disc 1), and the weight
     (1 − U/E)₊^((D − 1)/2) in a field (see ``volume``). For more than two discs an area is None if
     no exact value is known. Accuracy and exceptions are those of ``volume``."""
-    return dict(measures(check_scene(scene))[1])
+    return dict(of_family(check_scene(scene), "theory", "areas")(scene))
 
 
 def rate(scene: Scene, event: str) -> float:
@@ -119,9 +112,8 @@ def rate(scene: Scene, event: str) -> float:
     >>> round(td.rate(scene, "any_wall"), 12)
     2.804358669238
     """
-    volume, areas = measures(check_scene(scene))
-    check_choice("event", event, EVENTS)
-    return of_family(scene, "theory", "rate")(scene, event, volume, areas)
+    rate_of = of_family(check_scene(scene), "theory", "rate")
+    return rate_of(scene, check_choice("event", event, EVENTS))
 
 
 def passing_rate(scene, hop):
@@ -135,7 +127,7 @@ def passing_rate(scene, hop):
     if DECLARED[hop].axis not in check_scene(scene).periodic:
         return rate(scene, hop)
     rate_of = of_family(scene, "theory", "passing_rate", "passages along a periodic axis")
-    return rate_of(scene, hop, volume(scene))
+    return rate_of(scene, hop)
 
 
 def event_rate(scene):
@@ -227,7 +219,7 @@ def fraction_near(scene, hop, distance):
     limit = math.sqrt(2) * min(scene.radii)
     if distance > limit:
         raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
-    return fraction_of(scene, hop, distance, volume(scene))
+    return fraction_of(scene, hop, distance)
 
 
 def shell_expectation(scene, event, epsilon):

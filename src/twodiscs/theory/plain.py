@@ -16,6 +16,7 @@ difference that cancels is computed from exact fractions of the given doubles an
 
 import math
 from fractions import Fraction
+from functools import lru_cache
 from typing import NamedTuple
 
 from twodiscs.model.events import DECLARED, by_kind
@@ -112,6 +113,7 @@ def measures(arc):
     return Measures(volume, 2 * math.sqrt(2) * disc, right, top)
 
 
+@lru_cache(maxsize=1024)
 def volume_and_areas(scene):
     """Return (volume, {event: area}) of a plain ``Scene``, in length⁴ and length³."""
     arc = Arc.of(scene)

@@ -408,6 +408,7 @@ def _area(space, event):
 # Exact values -------------------------------------------------------------------------------------
 
 
+@lru_cache(maxsize=1024)
 def volume(scene):
     """Return the weighted volume V of a ``Scene``, in length⁴ (length⁶ for balls).
 
@@ -422,6 +423,7 @@ def areas_near(scene, axis, distance):
     return {event: _area(space, event) for event in EVENTS}
 
 
+@lru_cache(maxsize=1024)
 def areas(scene):
     """Return {event: weighted area A} of a ``Scene``, keys ``EVENTS`` in their order.
 

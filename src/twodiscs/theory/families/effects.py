@@ -10,11 +10,11 @@ from twodiscs.theory import weighted
 from twodiscs.theory.exact import MIN_FRACTION as least_free_fraction
 from twodiscs.theory.families.clusters import replicas_needed
 from twodiscs.theory.flux import constant
-from twodiscs.theory.weighted import shell_expectation
+from twodiscs.theory.weighted import areas, shell_expectation, volume
 
 __all__ = [
-    "fraction_near", "least_free_fraction", "passing_rate", "rate", "replicas_needed",
-    "shell_expectation", "shells", "volume_and_areas", "work_per_event",
+    "areas", "fraction_near", "least_free_fraction", "passing_rate", "rate", "replicas_needed",
+    "shell_expectation", "shells", "volume", "work_per_event",
 ]  # fmt: skip
 
 #: Crossings of the periodic cell between two events that the usual cost of an event includes.
@@ -24,20 +24,16 @@ PASSES_PER_EVENT = 64
 KICK = 15
 
 
-def volume_and_areas(scene):
-    """Return (volume, {event: area}) of a ``Scene``, weighted in a field."""
-    return weighted.volume(scene), weighted.areas(scene)
+def rate(scene, event):
+    """Return the rate of ``event``."""
+    flux = DECLARED[event].ways / 2 * constant(scene.velocity_components) * areas(scene)[event]
+    return flux / volume(scene)
 
 
-def rate(scene, event, volume, areas):
-    """Return the rate of ``event``, given the ``volume`` and {event: area}."""
-    return DECLARED[event].ways / 2 * constant(scene.velocity_components) * areas[event] / volume
-
-
-def passing_rate(scene, hop, volume):
+def passing_rate(scene, hop):
     """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
     area = weighted.passing_area(scene, hop)
-    return constant(scene.velocity_components) * area / volume
+    return constant(scene.velocity_components) * area / volume(scene)
 
 
 def work_per_event(scene, event_rate):
@@ -57,6 +53,6 @@ def shells(scene):
     return scene.events
 
 
-def fraction_near(scene, hop, distance, volume):
+def fraction_near(scene, hop, distance):
     """Return the fraction of configuration space within a ``distance`` of a hop, see ``exact``."""
-    return weighted.volume_near(scene, hop, distance) / volume
+    return weighted.volume_near(scene, hop, distance) / volume(scene)

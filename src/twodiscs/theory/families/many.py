@@ -2,15 +2,25 @@
 
 from twodiscs.theory.many.methods import event_rates, volume_and_areas
 
-__all__ = ["least_free_fraction", "rate", "replicas_needed", "volume_and_areas", "work_per_event"]
+__all__ = ["areas", "least_free_fraction", "rate", "replicas_needed", "volume", "work_per_event"]
 
 
 #: Initial states do not need a free prism.
 least_free_fraction = 0.0
 
 
-def rate(scene, event, volume, areas):
-    """Return the rate of ``event``, None if no exact value is known; the volume is not used."""
+def volume(scene):
+    """Return the volume of a ``Scene``, None if no exact value is known."""
+    return volume_and_areas(scene)[0]
+
+
+def areas(scene):
+    """Return {event: area} of a ``Scene``, values None if not known."""
+    return volume_and_areas(scene)[1]
+
+
+def rate(scene, event):
+    """Return the rate of ``event``, None if no exact value is known."""
     return event_rates(scene)[event]
 
 

@@ -6,8 +6,8 @@ from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.theory.plain import shell_expectation, volume_and_areas
 
 __all__ = [
-    "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation",
-    "shells", "volume_and_areas", "work_per_event",
+    "areas", "fraction_near", "least_free_fraction", "rate", "replicas_needed", "shell_expectation",
+    "shells", "volume", "work_per_event",
 ]  # fmt: skip
 
 
@@ -15,8 +15,19 @@ __all__ = [
 least_free_fraction = 0.0
 
 
-def rate(scene, event, volume, areas):
-    """Return the rate of ``event``, given the ``volume`` and {event: area}."""
+def volume(scene):
+    """Return the volume of a ``Scene``, see ``exact``."""
+    return volume_and_areas(scene)[0]
+
+
+def areas(scene):
+    """Return {event: area} of a ``Scene``, see ``exact``."""
+    return volume_and_areas(scene)[1]
+
+
+def rate(scene, event):
+    """Return the rate of ``event``."""
+    volume, areas = volume_and_areas(scene)
     return DECLARED[event].ways * areas[event] / (1.5 * math.pi * volume)
 
 
@@ -30,10 +41,10 @@ def shells(scene):
     return SHELLS
 
 
-def fraction_near(scene, hop, distance, volume):
+def fraction_near(scene, hop, distance):
     """Return the fraction of configuration space within a ``distance`` of a hop, see ``exact``."""
     epsilon = distance / math.sqrt(2)
-    return 2 * epsilon * shell_expectation(scene, hop, epsilon) / volume
+    return 2 * epsilon * shell_expectation(scene, hop, epsilon) / volume(scene)
 
 
 def replicas_needed(scene, event, error):

@@ -39,7 +39,7 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream, signed_uniform
-from twodiscs.theory import exact, laws
+from twodiscs.theory import exact, laws, plain
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 from twodiscs.theory.numerics.reference import DIGITS, MpScene, disc_collision_area, volume
 from twodiscs_paper.studies.accuracy_cost import precision, scalar, timestepping
@@ -231,7 +231,7 @@ def exactly(quantity, scene, work, seed):
     """Evaluate the exact theory without its cache; ``work`` and ``seed`` are not used."""
     for _ in range(CALLS):
         # Results of recent scenes are cached.
-        exact.measures.cache_clear()
+        plain.volume_and_areas.cache_clear()
         volume, areas = exact.volume(scene), exact.areas(scene)
     return {quantity: volume if quantity == "volume" else areas["disc_collision"]}, 1, CALLS
 
