@@ -9,9 +9,9 @@ from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
     GREEN,
-    ORANGE,
     PURPLE,
     SIZES,
+    SKY,
     VERMILLION,
     new_figure,
 )
@@ -23,14 +23,14 @@ from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 UP = 24
 
 #: Inches: the heights of the panels of κ(t) and of the times, the gap, the margin above.
-CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.5
+CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.56
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
 
 #: Colour and marker of smooth discs, and of rough discs of each moment of inertia.
 LOOKS = {
-    None: (BLUE, "o"), 0.1: (ORANGE, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
+    None: (BLUE, "o"), 0.1: (SKY, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
