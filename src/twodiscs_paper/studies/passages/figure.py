@@ -56,12 +56,13 @@ def caption(shown):
     return """
     Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c that are
     halved from one to the next. (a) Transmission coefficient κ(t): the correlation between the
-    order of the discs at a time t after a hop and the direction of the hop, averaged over states on
-    the surface of the hop, for smooth discs (circles) and rough ones (squares). It starts with the
-    exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls
-    as passages follow one another (lines): κ is the fraction of odd clusters among all hops, from
-    independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻² close to the threshold) and
-    mean time τ/κ between passages (symbols). Error bars are one standard error.
+    order of the discs at a time t after a hop and the direction of the hop. It is averaged over
+    states on the surface of the hop, for smooth discs (circles) and rough ones (squares). κ(t)
+    starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a
+    plateau, which falls as passages follow one another (lines). There κ is the fraction of odd
+    clusters among all hops, from independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻²
+    close to the threshold) and mean time τ/κ between passages (symbols). Error bars are one
+    standard error.
     """
 
 
