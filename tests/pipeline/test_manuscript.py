@@ -130,6 +130,7 @@ def test_no_figure_is_shown_twice_and_those_that_are_shown_are_there_and_spoken_
         ("It starts in (a) at r_c", ["(a)", "r_c"]),
         ("3wh/(8√2 r), with mr", ["3wh", "r", "mr"]),
         ("1 − κ falls as ∛δ", ["κ", "δ"]),
+        ("at t×. A hop, (c) A file of range A", ["t×", ". A ", "(c) A ", "A"]),
     ],
 )
 def test_words_of_captions_are_no_variables(caption, variables):

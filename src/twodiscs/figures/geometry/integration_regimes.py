@@ -71,11 +71,11 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and B = h
-    − 2r, except the quarter circle of radius σ = 2r in which the discs overlap. The arc is the
+    The separations u = |x1 − x2| and v = |y1 − y2| fill a rectangle of sides A = w − 2r and B = h −
+    2r. The discs overlap in the quarter circle of radius σ = 2r, which is left out. The arc is the
     surface of collisions; the coloured parts of the axes are the surfaces of vertical hops (below)
-    and horizontal hops (on the left). If σ exceeds B, horizontal hops are blocked; if it exceeds
-    A, vertical hops are. The overlaps are then a sector (hatched) and triangles (dotted).
+    and horizontal hops (on the left). If σ exceeds B, horizontal hops are blocked; if it exceeds A,
+    vertical hops are. The overlaps are then a sector (hatched) and triangles (dotted).
     """
 
 

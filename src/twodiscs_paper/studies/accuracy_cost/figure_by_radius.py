@@ -37,16 +37,17 @@ def draw(box=None, *, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    (a) Processor time for a relative error of 1e-3 in each mean time, against the radius: from the
-    speed and the errors of a pilot (open symbols), by a run to that error (full symbols), and
-    predicted from the exact rates and one speed for a Poisson process (lines). Hops near the radius
-    where they are blocked are counted from initial states in a strip next to their surface (grey),
-    at a cost that stays constant, here up to a relative distance of 1e-6. (b) The times of pilots
-    divided by the times of a Poisson process. Apart from the speed at that radius, this ratio is
-    the variance of the number of events divided by its mean. If it is below one, as for hits of any
-    wall, events are more regular than in a Poisson process. Above one they come in clusters. (c)
-    Error of the mean time between disc collisions near the largest radius, in double and in single
-    precision. Rounding lengths to 24 bits changes the distance to the largest radius (dashed).
+    (a) Processor time for a relative error of 1e-3 in each mean time, against the radius. It comes
+    from the speed and the errors of a pilot (open symbols) or from a run to that error (full
+    symbols). Lines are predicted from the exact rates and one speed for a Poisson process. Hops
+    near the radius where they are blocked are counted from initial states in a strip next to their
+    surface (grey). Their cost stays constant, here up to a relative distance of 1e-6. (b) The times
+    of pilots divided by the times of a Poisson process. Apart from the speed at that radius, this
+    ratio is the variance of the number of events divided by its mean. If it is below one, as for
+    hits of any wall, events are more regular than in a Poisson process. Above one they come in
+    clusters. (c) Error of the mean time between disc collisions near the largest radius, in double
+    and in single precision. Rounding lengths to 24 bits changes the distance to the largest radius
+    (dashed).
     """
 
 

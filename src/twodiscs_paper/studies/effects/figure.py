@@ -79,14 +79,15 @@ def caption(shown):
     """Return the caption."""
     text = """
     Mean times of scenes with one effect or two, divided by the mean times of plain discs in the
-    same box at the same radius (of disc 1) and total energy, up to the largest radius of plain
-    discs, for (a) vertical hops, (b) disc collisions and (c) hits of any disc on any wall: exact
-    (lines) and by event-driven molecular dynamics (symbols). Error bars are one standard error;
-    they are hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4, where
-    hops of plain discs become blocked, and their largest radius. The torus has neither hops nor
-    walls. Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d) Processor
-    time per wall hit or disc collision at r = 0.2, divided by the time for plain discs with all
-    events counted. Leaving a periodic cell takes as much time as an event, but is not counted.
+    same box at the same radius (of disc 1) and total energy: exact (lines) and by event-driven
+    molecular dynamics (symbols). The events are (a) vertical hops, (b) disc collisions and (c) hits
+    of any disc on any wall, up to the largest radius of plain discs. Error bars are one standard
+    error; they are hidden if they are smaller than the symbols. Vertical lines mark h/4 and w/4,
+    where hops of plain discs become blocked, and their largest radius. The torus has neither hops
+    nor walls. Residuals z beneath are in standard errors, with guide lines at ±2 and ±5. (d)
+    Processor time per wall hit or disc collision at r = 0.2, divided by the time for plain discs
+    with all events counted. Leaving a periodic cell takes as much time as an event, but is not
+    counted.
     """
     return text + shown.if_any(
         lambda row: row.get("estimate") and row["stderr"] is None and row["quantity"] != SHARE,

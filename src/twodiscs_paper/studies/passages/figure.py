@@ -9,9 +9,9 @@ from twodiscs.figures.kit.style import (
     BLACK,
     BLUE,
     GREEN,
-    ORANGE,
     PURPLE,
     SIZES,
+    SKY,
     VERMILLION,
     new_figure,
 )
@@ -23,14 +23,14 @@ from twodiscs_paper.studies.passages.measure import ONE_INERTIA, thresholds
 UP = 24
 
 #: Inches: the heights of the panels of κ(t) and of the times, the gap, the margin above.
-CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.5
+CURVES, TIMES, GAP, TOP = 2.0, 1.8, 0.4, 0.56
 
 #: Halvings of the distance at which κ(t) is shown, for smooth discs and for rough discs.
 SHOWN = {None: (3, 5, 7, 9, 12), ONE_INERTIA: (3, 5, 7)}
 
 #: Colour and marker of smooth discs, and of rough discs of each moment of inertia.
 LOOKS = {
-    None: (BLUE, "o"), 0.1: (ORANGE, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
+    None: (BLUE, "o"), 0.1: (SKY, "v"), 0.25: (GREEN, "^"), 0.5: (VERMILLION, "s"),
     1.0: (PURPLE, "D"),
 }  # fmt: skip
 
@@ -56,12 +56,13 @@ def caption(shown):
     return """
     Hops near the radius r_c at which they become blocked, at distances δ = (r_c − r)/r_c that are
     halved from one to the next. (a) Transmission coefficient κ(t): the correlation between the
-    order of the discs at a time t after a hop and the direction of the hop, averaged over states on
-    the surface of the hop, for smooth discs (circles) and rough ones (squares). It starts with the
-    exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a plateau, which falls
-    as passages follow one another (lines): κ is the fraction of odd clusters among all hops, from
-    independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻² close to the threshold) and
-    mean time τ/κ between passages (symbols). Error bars are one standard error.
+    order of the discs at a time t after a hop and the direction of the hop. It is averaged over
+    states on the surface of the hop, for smooth discs (circles) and rough ones (squares). κ(t)
+    starts with the exact slope −2p(0⁺) (dashed, in the limit δ → 0). If hops are rare it has a
+    plateau, which falls as passages follow one another (lines). There κ is the fraction of odd
+    clusters among all hops, from independent runs. (b) Exact mean time τ between hops (lines, ∝ δ⁻²
+    close to the threshold) and mean time τ/κ between passages (symbols). Error bars are one
+    standard error.
     """
 
 

@@ -11,7 +11,6 @@ from twodiscs.figures.kit.style import (
     COLUMN,
     GREEN,
     GREY,
-    ORANGE,
     PURPLE,
     SKY,
     VERMILLION,
@@ -38,7 +37,7 @@ WIDTH, RING, RESIDUALS, LATTICE, GAP, TOP = 7.0, 1.9, 0.8, 1.15, 0.42, 0.22
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
 
 #: Long files, smooth and with friction.
-SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (ORANGE, "v")
+SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (PURPLE, "v")
 
 #: Looks of distances in a collapse.
 OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
@@ -49,8 +48,8 @@ RANDOM_WALK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2))}
 #: {quantity: colour, marker, name} of residuals.
 RESIDUAL_LOOKS = {
     "rate": (GREEN, "^", "rate of hops"),
-    "diffusion": (PURPLE, "D", "$D$, both methods"),
-    "single_file": (ORANGE, "v", "$F$"),
+    "diffusion": (BLUE, "o", "$D$, both methods"),
+    "single_file": (PURPLE, "v", "$F$"),
 }
 
 
@@ -96,19 +95,19 @@ def caption(shown):
     """Return the caption."""
     return """
     Diffusion by hops. (a) Coefficient D of diffusion on a ring, divided by its value for a random
-    walk with ν hops of a disc per time in either direction, each by ℓ (dashed): of two discs by
-    correlations of hops (open symbols) and by displacements (dots), of four and eight discs by
-    displacements, and of long files by the order of the discs; at distances δ = (r_c − r)/r_c from
-    the radius r_c at which hops become blocked. With friction, all velocities are drawn anew at
-    random times, at a rate γ. (b) Residuals z in standard errors, from the exact rate, between two
-    estimators, or of F from theory. (c) A single file on a lattice, whose neighbours swap with the
-    probability p: the same ratio. (d) Mean square displacement of a tagged disc in a long file on a
-    ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8), in units of ℓ² and of the thermal
-    speed. Black lines are theory of the blocked files, without a free parameter: sound, until it
-    has gone around half of the ring, and damped sound. Grey lines add what hops do to the file of
-    places, as the order of the discs has it. (e) Files with friction: displacements over F√t×, at
-    times over t× = (F/2D)², where single file and hops contribute equally. The line is √s + s.
-    Error bars are one standard error.
+    walk with ν hops of a disc per time in either direction, each by ℓ (dashed), at distances δ =
+    (r_c − r)/r_c from the radius r_c at which hops become blocked. For two discs it is measured by
+    correlations of hops (open symbols) and by displacements (dots), for four and eight discs by
+    displacements, and for long files by the order of the discs. With friction, all velocities are
+    drawn anew at random times, at a rate γ. (b) Residuals z in standard errors, from the exact
+    rate, between two estimators, or of F from theory. (c) The same ratio for a single file on a
+    lattice, whose neighbours swap with the probability p. (d) Mean square displacement of a tagged
+    disc in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8). Units are
+    ℓ² and the thermal speed. Black lines are theory of the blocked files at long times, without a
+    free parameter: sound, until it has gone around half of the ring, and damped sound. Grey lines
+    add what hops do to the file of places, as the order of the discs has it. (e) Files with
+    friction: displacements in units of F√t×, at times over t× = (F/2D)², where single file and hops
+    contribute equally. The line is √u + u with u = t/t×. Error bars are one standard error.
     """
 
 

@@ -70,12 +70,12 @@ def caption(shown):
     """Return the caption."""
     return """
     Passages with friction: all velocities are drawn anew at random times of the rate γ. (a) The
-    fraction κ of hops that are passages, near the radius r_c = h/4 at which hops become blocked,
-    over x = γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ = 2r. Dashed:
-    the limits of ballistic discs, 1, and of discs that diffuse through the neck, 3/(4x). (b) The
-    local power of the distance r_c − r with which the time τ/κ between passages grows, from one
-    distance to the next; dashed: the powers that were found for diffusive and for ballistic discs.
-    Error bars are one standard error.
+    fraction κ of hops that are passages, near the radius r_c = h/4 at which hops become blocked.
+    The abscissa is x = γ√(εσ), with the room ε = h − 4r that the discs leave in the neck and σ =
+    2r. Dashed: the limits of ballistic discs, 1, and of discs that diffuse through the neck,
+    3/(4x). (b) The local power of the distance r_c − r with which the time τ/κ between passages
+    grows, from one distance to the next. Dashed: the powers that were found for diffusive and for
+    ballistic discs. Error bars are one standard error.
     """
 
 

@@ -38,9 +38,9 @@ def caption(shown):
     """Return the caption."""
     text = """
     Theory and sampling at hard radii; dashed lines are the required bounds. (a) Relative error of
-    volume and areas in double precision below the largest radius, and (b) on both sides of the
-    radii where a hop becomes blocked: closed forms, and the worst of volume, areas and mean times
-    as computed here. (c) Accepted share of proposed configurations, by rejection from the prism and
+    closed forms in double precision, and of the worst of volume, areas and mean times as computed
+    here, below the largest radius. (b) The same on both sides of the radii where a hop becomes
+    blocked. (c) Accepted share of proposed configurations, by rejection from the prism and
     by the conditioned sampler of initial states. (d) Residuals z of volume and areas by this
     sampler.
     """

@@ -53,9 +53,9 @@ def draw(box, tables):
 def caption(shown):
     """Return the caption."""
     return """
-    (a) Probability that the next event takes longer than t, in units of the exact mean time τ: from
-    initial states near the motions that last, with exact weights (open symbols), and by plain
-    counting (dots). Discs that move almost along an axis pass clear of each other for a time ∝
+    (a) Probability that the next event takes longer than t, in units of the exact mean time τ. Open
+    symbols come from initial states near the motions that last, with exact weights, and dots from
+    plain counting. Discs that move almost along an axis pass clear of each other for a time ∝
     1/(their drift). The tail therefore falls as C/t³, with the exact C (lines), and not
     exponentially (dashed). (b) The same probabilities divided by C/t³. (c) Beyond h/4 no such
     motion avoids vertical hops: the tail looks exponential, but its rate is not 1/τ (dashed). Error
