@@ -105,7 +105,7 @@ def test_walls_that_symmetry_makes_equal_are_counted_together():
     """Beyond h/4 a component has two of the four pairs of a disc and a wall of x, and one rate."""
     scene = PAPER.with_radius(0.3)
     left, right = (
-        counting.run_blocks(scene, EVENTS, 1, 0, 4, 32.0, sides=(side, 0)) for side in (-1, 1)
+        counting.run_blocks(scene, EVENTS, 1, 0, 4, 32.0, order=(side, 0)) for side in (-1, 1)
     )
     expected = scene.multiplicity("right_wall") * 32.0 / mean_times(scene)["right_wall"]
     assert scene.multiplicity("right_wall") == 2

@@ -133,7 +133,7 @@ def test_a_quarter_of_the_proposals_is_accepted_at_least(width, height, radius):
 def test_components_are_chosen(radius, sides):
     scene = Scene(1.5, 1.0, radius)
     n = 20_000
-    x1, y1, x2, y2 = states(scene, n, 5, sides=sides)[:4]
+    x1, y1, x2, y2 = states(scene, n, 5, order=sides)[:4]
     for side, difference in zip(sides, (x1 - x2, y1 - y2), strict=True):
         above = np.count_nonzero(difference > 0)
         if side:

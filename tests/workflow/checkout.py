@@ -44,9 +44,13 @@ rule mine:
 #: lattice, of repetitions. They do not follow from the budget of a scene and take long.
 QUICKER = (
     ("passages", "range(3, 15), range(3, 10), range(3, 7)", "range(5, 8), range(4, 7), [3]"),
+    ("passages", "(5, 6, 8, 10, 12, 14, 16), 40.0: range(6, 17, 2)", "(5, 6), 40.0: (6, 8)"),
+    ("passages", "160.0: range(8, 17, 2)", "160.0: (8, 10)"),
     ("passages", "(1.0, 0.3, 0.1, 0.03, 0.01), 8, 128", "(1.0, 0.3, 0.1), 8, 32"),
-    ("passages", "= 128, 32, range(3, 6)", "= 128, 16, range(3, 6)"),
-    ("stability", "REPETITIONS = 1600", "REPETITIONS = 400"),
+    ("passages", "= 128, 32, range(3, 6)", "= 32, 8, range(3, 5)"),
+    ("more_discs", "(0.1, 0.2, 0.28)", "(0.1, 0.2)"),
+    ("accuracy_cost", "REPETITIONS = 16", "REPETITIONS = 4"),
+    ("stability", "REPETITIONS = 1600", "REPETITIONS = 200"),
 )
 
 #: For a module whose files are in a separate folder.

@@ -155,16 +155,16 @@ def pair_at_distance(state, half, missing, order):
 
 
 @compiled
-def draw_configuration(state, draw, side_x, side_y):
+def draw_configuration(state, draw, sign_x, sign_y):
     """Return centres (x1, y1, x2, y2), uniform over the allowed configurations.
 
-    ``side_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``side_y``
+    ``sign_x`` > 0 means x1 > x2, < 0 means x1 < x2, and 0 either with probability 1/2; ``sign_y``
     likewise. If a hop is blocked, this chooses the ergodic component.
     """
     corner_x, corner_y, _ = draw_separation(state, draw)
     bits = next_bits(state)
-    order_x = side_x if side_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
-    order_y = side_y if side_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
+    order_x = sign_x if sign_x != 0 else (1 if bits & np.uint64(1 << 62) else -1)
+    order_y = sign_y if sign_y != 0 else (1 if bits & np.uint64(1 << 61) else -1)
     x1, x2 = pair_at_distance(state, draw.half_x, corner_x, order_x)
     y1, y2 = pair_at_distance(state, draw.half_y, corner_y, order_y)
     return x1, y1, x2, y2

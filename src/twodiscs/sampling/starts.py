@@ -72,10 +72,10 @@ def state_in(initial_states, i):
 
 
 @compiled
-def draw_starts(state, draw, side_x, side_y, initial_states):
+def draw_starts(state, draw, sign_x, sign_y, initial_states):
     """Fill the first 8 rows of ``initial_states`` with states of the invariant measure."""
     for i in range(initial_states.shape[1]):
-        x1, y1, x2, y2 = draw_configuration(state, draw, side_x, side_y)
+        x1, y1, x2, y2 = draw_configuration(state, draw, sign_x, sign_y)
         u1, v1, u2, v2 = draw_velocity(state)
         initial_states[0, i], initial_states[1, i], initial_states[2, i], initial_states[3, i] = (
             x1,
@@ -133,12 +133,12 @@ def fill_start(state, prism, surface, initial_states, i):
     set_pair(initial_states, i, 8, velocity[3], velocity[7], prism.inertia)
 
 
-def _plain_starts(state, draw, sides, initial_states, prism):
-    draw_starts(state, draw, sides[0], sides[1], initial_states)
+def _plain_starts(state, draw, order, initial_states, prism):
+    draw_starts(state, draw, order[0], order[1], initial_states)
 
 
 @optional(_plain_starts)
-def draw_any_starts(state, draw, sides, initial_states, prism):
+def draw_any_starts(state, draw, order, initial_states, prism):
     """Fill ``initial_states`` from the invariant measure, by ``prism`` unless it is None."""
     for i in range(initial_states.shape[1]):
         fill_start(state, prism, None, initial_states, i)
@@ -166,20 +166,20 @@ def start_on_surface(state, draw, surface, start, prism):
     fill_start(state, prism, surface, start, 0)
 
 
-def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
+def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     """Return ``number`` states of the invariant measure of a ``Scene``, one a column.
 
     They are the first states of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
-    ``COMPONENTS`` rows. ``sides`` choose the ergodic component of a plain scene (see
+    ``COMPONENTS`` rows. ``order`` chooses the ergodic component of a plain scene (see
     ``draw_configuration``). For N > 2 discs there are 4N rows, in the order of ``components``.
     ``progress``, if given, is called repeatedly with the number of drawn states, and ``number``.
     """
     require_room(scene)
     draw = of_family(scene, "sampling", "states")
-    return draw(scene, number, seed, block, sides, progress)
+    return draw(scene, number, seed, block, order, progress)
 
 
-def states_of_two(scene, number, seed, block, sides, progress):
+def states_of_two(scene, number, seed, block, order, progress):
     """Return ``states`` of two discs."""
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
@@ -192,7 +192,7 @@ def states_of_two(scene, number, seed, block, sides, progress):
         for start in range(first, stop, PIECE):
             end = min(start + PIECE, stop)
             some = buffer if end - start == buffer.shape[1] else np.zeros((COMPONENTS, end - start))
-            draw_any_starts(state, draw, sides, some, prism)
+            draw_any_starts(state, draw, order, some, prism)
             filled[:used, start:end] = some[:used]
         return stop
 

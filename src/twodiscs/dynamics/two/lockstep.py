@@ -152,13 +152,13 @@ def unpack(packed, more, counts, lane):
 
 @compiled
 def count_blocks(
-    seed, first, stop, replicas, lanes, duration, law, draw, prism, sides, identical, hops, walls,
+    seed, first, stop, replicas, lanes, duration, law, draw, prism, order, identical, hops, walls,
     rest,
 ):  # fmt: skip
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of EVENTS. Starts come from ``draw`` with ``sides`` as in ``draw_configuration``, or
+    the order of EVENTS. Starts come from ``draw`` in an ``order`` as in ``draw_configuration``, or
     from ``prism`` unless it is None. ``identical`` discs, ``hops``, ``walls`` and ``rest`` (the
     hits of all walls need a counter) are True or None. Nothing is compiled for None.
     """
@@ -188,7 +188,7 @@ def count_blocks(
                 busy[i] = False
                 running -= 1
             if used == replicas and block < stop:
-                draw_any_starts(open_stream(seed, block), draw, sides, initial_states, prism)
+                draw_any_starts(open_stream(seed, block), draw, order, initial_states, prism)
                 block, used = block + 1, 0
             if used < replicas:
                 put_state(rows, i, initial_states[:, used], law)
@@ -251,12 +251,12 @@ def block_replicas(scene):
 
 def run_blocks(
     scene, events, seed, first, stop, duration, *,
-    replicas=REPLICAS, lanes=LANES, sides=(0, 0),
+    replicas=REPLICAS, lanes=LANES, order=(0, 0),
 ):  # fmt: skip
     """Count ``events`` in the blocks ``first`` … ``stop`` − 1 of the stream ``seed``.
 
     A block is ``replicas`` starts from the invariant measure, each followed for ``duration``;
-    ``sides`` chooses the component (see ``draw_configuration``). Only these ``events`` are
+    ``order`` chooses the component (see ``draw_configuration``). Only these ``events`` are
     detected: without a hop among them no crossing is searched. Returns (sums, products) as
     ``count_blocks`` does, integers that shards can add.
     """
@@ -267,7 +267,7 @@ def run_blocks(
     rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        sides, scene.identical or None, hops, walls, rest,
+        order, scene.identical or None, hops, walls, rest,
     )  # fmt: skip
 
 

@@ -21,8 +21,8 @@ def proposals_per_event(scene, duration):
     return 0.0
 
 
-def states(scene, number, seed, block=0, sides=(0, 0), progress=None):
-    """Return ``number`` initial states, see ``starts.states``; there are no ``sides`` to choose."""
+def states(scene, number, seed, block=0, order=(0, 0), progress=None):
+    """Return ``number`` initial states, see ``starts.states``; there is no ``order`` to choose."""
     return labelled(scene, number, seed, block, progress)
 
 

@@ -26,12 +26,12 @@ def simulated_events(counts):
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, duration, sigma, draw, sides):
+def count_blocks(seed, first, stop, replicas, duration, sigma, draw, order):
     """Return (sums, products) of ``COUNTED`` as ``counting.count_blocks`` does."""
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     starts = np.zeros((8, replicas))
     for block in range(first, stop):
-        draw_starts(open_stream(seed, block), draw, sides[0], sides[1], starts)
+        draw_starts(open_stream(seed, block), draw, order[0], order[1], starts)
         for replica in range(replicas):
             start = starts[:, replica]
             counts = count_replica(
