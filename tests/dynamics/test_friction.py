@@ -25,6 +25,7 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import components, states
+from twodiscs.sampling.streams import exponential, open_stream
 from twodiscs.theory import exact
 
 PLAIN = Scene(1.5, 1.0, 0.2)
@@ -158,6 +159,14 @@ def test_lanes_without_a_replica_are_not_kicked():
     kicks = new_kicks(3, law_of(replace(PLAIN, friction=2.0)).friction)
     open_kicks(1, np.uint64(3), 0, kicks)
     assert np.isfinite(kicks.waits).tolist() == [False, True, False]
+
+
+def test_kicks_have_other_random_numbers_than_initial_states():
+    """The first kick does not come at the time that the stream of a block of states would give."""
+    kicks, seed = new_kicks(1, law_of(replace(PLAIN, friction=2.0)).friction), np.uint64(3)
+    for replica in range(4):
+        open_kicks(0, seed, replica, kicks)
+        assert kicks.waits[0] != exponential(open_stream(seed, replica)) / 2.0
 
 
 @pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from scalar_bonds import clusters, orders
+from scipy.stats import f
 
 from twodiscs.comparison.measured.transmission import by_clusters, by_time, of_clusters, plateau
 from twodiscs.dynamics.many import passages
@@ -97,6 +98,27 @@ def test_states_are_on_the_surface_without_overlap():
         assert apart.min() >= scene.contact_distance * (1 - 1e-15)
         assert np.abs(y).max() <= scene.range_y / 2
         np.testing.assert_allclose((u**2 + v**2).sum(axis=0), 1.0, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("periodic", "components"), [("", 4), ("x", 3)])
+def test_relative_speeds_on_the_surface_have_the_law_of_the_flux(periodic, components):
+    """For s, the relative speed over its largest, (1 − s²)^((D − 1)/2) is uniform."""
+    scene = Scene(1.5, 1.0, 0.2, discs=2, periodic=periodic)
+    states = np.zeros((8, 2**14))
+    stream = passages.open_stream(np.uint64(1), 0)
+    passages.draw_on_surface(stream, passages.pair_of(scene, HOP), states, -1)
+    law = (1 - (states[4] - states[5]) ** 2 / 2) ** ((components - 1) / 2)
+    five(law.mean(), 0.5, 1 / math.sqrt(12 * law.size))
+
+
+@pytest.mark.parametrize("module", [passages, of_two])
+def test_blocks_have_separate_kicks(module):
+    """The means of 20 seeds vary as those of 16 independent blocks: F test, five errors."""
+    scene, blocks = Scene(1.5, 1.0, 0.1, friction=20.0), 16
+    sums = [module.hop_sums(scene, HOP, [2.0], blocks, seed)[0][:, 2, 0] for seed in range(20)]
+    within = np.var(sums, axis=1, ddof=1).mean()
+    ratio = blocks * np.mean(sums, axis=1).var(ddof=1) / within
+    assert f.sf(ratio, 19, 20 * (blocks - 1)) > 5.7e-7
 
 
 def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
