@@ -9,8 +9,9 @@ import pytest
 import twodiscs as td
 from twodiscs.comparison.measured import transmission
 from twodiscs.comparison.scores import student_deviate
-from twodiscs.dynamics.two.passages import LARGEST, REPLICAS, SUMS
+from twodiscs.dynamics.two.passages import LARGEST, REPLICAS, SUMS, cluster_sizes, hop_sums
 from twodiscs.points.estimates import Estimate
+from twodiscs.sampling.blocks import rounds
 
 
 def test_clusters_are_weighed_by_their_sizes():
@@ -150,6 +151,18 @@ def test_the_face_has_the_coefficient_and_the_curve():
     again = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
     assert again.coefficient == kappa
     assert td.transmission(scene, "horizontal_hop", hops=2**14, seed=2).coefficient != kappa
+
+
+def test_calls_add_up_to_separate_blocks(monkeypatch):
+    """One call a block gives what one call gives for all of them."""
+    monkeypatch.setattr(rounds, "CALL", 1.0)
+    given, hops = (td.Scene(1.5, 1.0, 0.246), "horizontal_hop"), 2**10
+    found, blocks = td.transmission(*given, hops, seed=1, name="a"), hops // REPLICAS
+    seeds = [transmission.seed_of(*given, "a", 1, part) for part in ("clusters", "times")]
+    sizes, _ = cluster_sizes(*given, found.gap, blocks, seeds[0])
+    assert found.clusters == {n: hops for n, hops in enumerate(sizes.tolist()) if hops}
+    sums, _ = hop_sums(*given, found.times, blocks, seeds[1])
+    assert found.curve == transmission.by_time(sums)
 
 
 def test_more_discs_have_a_coefficient_too(tmp_path):
