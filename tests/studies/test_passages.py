@@ -350,6 +350,15 @@ def test_the_measured_density_is_exact_in_an_ordered_channel():
     assert abs(found.value - due) < 5 * found.stderr
 
 
+def test_the_measured_density_is_the_limit_of_long_waves():
+    """Discs that leave the places of a lattice independently have S(q) = 1 − exp(−q²s²)."""
+    scene, n = Scene(24.0, 1.0, 0.28, discs=32, periodic="x"), 32
+    offsets = 0.05 * np.random.default_rng(1).standard_normal((1, n, 1000))
+    found = file.measured_density(scene, 0.75 * np.arange(n)[:, None] + offsets)
+    shortest = (2 * math.pi / scene.width * file.WAVES * 0.05) ** 2
+    assert abs(found.value) < 5 * found.stderr < 0.1 * shortest
+
+
 def joined(name, box, inertias=(0.5,)):
     """Return the rows of all parts that there are for a box; all that are due are among them."""
     own, parts = {"name": name, "box": box, "events": 2**18, "seed": 1}, []
@@ -461,6 +470,13 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
         for module in (figure, figure_transmission, figure_diffusion):
             for some in (rows, lattice, []):
                 assert module.draw(Box(1.0, 4.0), {"passages": some})
+
+
+def test_scores_have_the_errors_of_both_estimates():
+    near = measure.NearThreshold("a", BOX.scene(0.24), HOP, 5, 1)
+    two, five = Estimate(2.0, 0.3, 100), Estimate(5.0, 0.4, 100)
+    row = near.make_row("plateau", "hops", two, 1.0, five)
+    assert (row["z"], row["reference_stderr"]) == (pytest.approx(-6), 0.4)
 
 
 @pytest.mark.parametrize("inertia", [None, 0.5])
