@@ -170,6 +170,10 @@ def test_more_discs_have_a_coefficient_too(tmp_path):
     three, four = (td.Scene(0.75 * n, 1.0, 0.247, discs=n) for n in (3, 4))
     found = td.transmission(three, "horizontal_hop", 2**12)
     assert found.neighbour_mean == pytest.approx(2 * found.exact_mean, rel=1e-14)
+    sizes = np.zeros(LARGEST + 1, np.int64)
+    sizes[[*found.clusters]] = [*found.clusters.values()]
+    raw, law = transmission.by_clusters(sizes), partial(transmission.of_clusters, others=1.0)
+    assert found.coefficient == transmission.plateau(raw, found.gap, found.neighbour_mean, law)
     # By 2¹⁸ hops, which do not depend on the gap.
     assert abs(found.coefficient.value - 0.838) <= 5 * found.coefficient.stderr < 0.05
     assert found.passage_time.value == pytest.approx(found.exact_mean / found.coefficient.value)

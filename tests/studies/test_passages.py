@@ -313,6 +313,10 @@ def test_a_long_file_with_kicks_has_the_law_of_its_density(monkeypatch):
     assert moved == pytest.approx(place, rel=1e-9)
     (bulk,) = (row for row in rows if row["quantity"] == "density")
     assert bulk["stderr"] < 0.2 * bulk["estimate"]
+    # F is ∝ √S.
+    (law,) = (row for row in judged if row["distance"] > 0)
+    relative = bulk["stderr"] / bulk["estimate"] / 2
+    assert law["reference_stderr"] == pytest.approx(relative * law["reference"], rel=1e-12)
 
 
 def test_the_longest_wave_of_a_blocked_file_is_sound_and_heat():
