@@ -137,6 +137,17 @@ MUTANTS = [
     ("twodiscs_paper/studies/agreement/measure.py", "counts of strips in a sum", 'of_event.items() if row["starts"] == "invariant"', "of_event.items()"),
     ("sampling/prism.py", "energy in the measure of proposals", " else measure * neck.most ** (prism.components / 2 - 1)", " else measure"),
     ("sampling/prism.py", "both orders of a draw count", "return q1, q1 - q2, sign * (q1 - q2) > 0.0", "return q1, q1 - q2, True"),
+    ("dynamics/many/passages.py", "flux weight cut off", "math.sqrt(2.0) * uniform(state) < abs(", "uniform(state) < abs("),
+    ("dynamics/many/passages.py", "the same kicks in all blocks", "block * REPLICAS + l, kicks)", "l, kicks)"),
+    ("dynamics/kicks.py", "one stream for kicks and initial states", "open_stream(seed ^ SEED, replica)", "open_stream(seed, replica)"),
+    ("comparison/measured/transmission.py", "each call repeats the first blocks", 'seeds["clusters"], first)', 'seeds["clusters"], 0)'),
+    ("comparison/measured/transmission.py", "passages of other pairs", "partial(of_clusters, others=others)", "of_clusters"),
+    ("sampling/many/initial.py", "proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
+    ("twodiscs_paper/studies/passages/measure.py", "error of the second estimate", "math.hypot(estimate.stderr, reference.stderr)", "estimate.stderr"),
+    ("twodiscs_paper/studies/passages/measure.py", "half of the rows that are due", "LONG_FILE)] * 2 * len(LAGS)", "LONG_FILE)] * len(LAGS)"),
+    ("twodiscs_paper/studies/passages/measure.py", "error of a root", "variance.value / 2 if variance", "variance.value if variance"),
+    ("twodiscs_paper/studies/passages/models/file.py", "limit of long waves", "np.polyfit(numbers**2, sizes", "np.polyfit(numbers, sizes"),
+    ("twodiscs_paper/pipeline/results/verdict.py", "one of several rows that are due is enough", "(Counter(due) - there).elements()", "{*due} - there.keys()"),
 ]
 # fmt: on
 
