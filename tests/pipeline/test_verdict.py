@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections import Counter
 from itertools import product
 from pathlib import Path
 
@@ -337,31 +336,6 @@ def test_no_row_of_a_study_that_is_compared_can_go(name):
         assert "is missing" in next(verdict.study_failures(without, due)), rows[i]
         empty = [*rows[:i], rows[i] | {"z": None}, *rows[i + 1 :]]
         assert any("no score" in said for said in verdict.study_failures(empty, due)), rows[i]
-
-
-#: The kinds of rows of passages.csv that every build has.
-ALWAYS = {
-    ("correlation", "hops"), ("slope", "hops"), ("last_exponent", "fit"), ("rate", "states"),
-    ("diffusion", "hops"), ("diffusion", "states"), ("diffusion", "lattice"),
-    ("displacement", "states"), ("single_file", "states"), ("single_file", "lattice"),
-    ("amplitude", "limit"),
-}  # fmt: skip
-
-
-def test_all_rows_of_passages_that_every_build_has_are_due():
-    """κ without friction is due, too, except the one that is next to its limit."""
-    due = [*STUDIES["passages"].due(load(CONFIGURATION))]
-    rows = STUDY_TABLES["passages"].read(EXPECTED / "passages.csv")
-    rows = [row for row in rows if row["friction"] is None or row["quantity"] != "coefficient"]
-    found = Counter(tuple((name, row[name]) for name in due[0]) for row in rows)
-    more = [dict(row) for row in (found - Counter(tuple(row.items()) for row in due)).elements()]
-    assert not [row for row in more if (row["quantity"], row["method"]) in ALWAYS]
-    kappa = Counter(
-        (row["scene"], row["event"], row["moment_of_inertia"])
-        for row in more
-        if row["quantity"] == "coefficient"
-    )
-    assert {*kappa.values()} <= {1}
 
 
 @pytest.mark.parametrize("name", STUDIES)

@@ -4,7 +4,10 @@ Statistical comparisons allow five standard errors: with some 20 of them a false
 fewer than 2e-5 of all seeds.
 """
 
+import json
 import math
+from collections import Counter
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -21,6 +24,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
+from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.results import verdict
 from twodiscs_paper.studies.passages import (
     figure,
@@ -30,9 +34,11 @@ from twodiscs_paper.studies.passages import (
     measure,
 )
 from twodiscs_paper.studies.passages.models import exclusion, file
+from twodiscs_paper.studies.passages.study import STUDY
 from twodiscs_paper.studies.passages.table import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
+EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"
 
 
 def test_thresholds_are_those_before_the_box_is_full():
@@ -379,6 +385,31 @@ def joined(name, box, inertias=(0.5,)):
     due = [row for given in parts for row in measure.due(**given)]
     assert not [said for said in verdict.study_failures(rows, due) if "is missing" in said]
     return rows
+
+
+#: The kinds of rows that every build has.
+ALWAYS = {
+    ("correlation", "hops"), ("slope", "hops"), ("last_exponent", "fit"), ("rate", "states"),
+    ("diffusion", "hops"), ("diffusion", "states"), ("diffusion", "lattice"),
+    ("displacement", "states"), ("single_file", "states"), ("single_file", "lattice"),
+    ("amplitude", "limit"),
+}  # fmt: skip
+
+
+def test_all_rows_that_every_build_has_are_due():
+    """κ without friction is due, too, except the one that is next to its limit."""
+    due = [*STUDY.due(load(json.loads((EXPECTED / "configuration.json").read_text("utf-8"))))]
+    rows = Passages.read(EXPECTED / "passages.csv")
+    rows = [row for row in rows if row["friction"] is None or row["quantity"] != "coefficient"]
+    found = Counter(tuple((name, row[name]) for name in due[0]) for row in rows)
+    more = [dict(row) for row in (found - Counter(tuple(row.items()) for row in due)).elements()]
+    assert not [row for row in more if (row["quantity"], row["method"]) in ALWAYS]
+    kappa = Counter(
+        (row["scene"], row["event"], row["moment_of_inertia"])
+        for row in more
+        if row["quantity"] == "coefficient"
+    )
+    assert {*kappa.values()} <= {1}
 
 
 @pytest.fixture
