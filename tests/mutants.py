@@ -140,6 +140,7 @@ MUTANTS = [
     ("dynamics/many/passages.py", "flux weight cut off", "math.sqrt(2.0) * uniform(state) < abs(", "uniform(state) < abs("),
     ("dynamics/many/passages.py", "the same kicks in all blocks", "block * REPLICAS + l, kicks)", "l, kicks)"),
     ("dynamics/kicks.py", "one stream for kicks and initial states", "open_stream(seed ^ SEED, replica)", "open_stream(seed, replica)"),
+    ("dynamics/kicks.py", "the same kicks of all blocks of states", "open_kicks(i, seed, first + i, kicks)", "open_kicks(i, seed, i, kicks)"),
     ("comparison/measured/transmission.py", "each call repeats the first blocks", 'seeds["clusters"], first)', 'seeds["clusters"], 0)'),
     ("comparison/measured/transmission.py", "passages of other pairs", "partial(of_clusters, others=others)", "of_clusters"),
     ("sampling/many/initial.py", "proposals of heights as states", "    settle(state, initial, centres, initial.chain)\n", ""),
