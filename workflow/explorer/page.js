@@ -113,7 +113,7 @@ function readAddress() {
   // In every box, discs of this radius can hop in both ways.
   const usual = Number((Math.min(state.width, state.height) / 5).toFixed(3));
   state.radius = "radius" in asked ? inUnits(asked.radius) : usual;
-  chooseEffects(asked);
+  chooseEffects("width" in asked || "height" in asked ? asked : { ...first, ...asked });
   changed();
 }
 
@@ -163,7 +163,8 @@ function prepareControls() {
   for (const scene of DATA.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    button.textContent = `${short(scene.width, 12)} × ${short(scene.height, 12)}`;
+    const more = ["periodic", ...RATES].filter((name) => scene[name]).map((name) => `, ${name} ${scene[name]}`);
+    button.textContent = `${short(scene.width, 12)} × ${short(scene.height, 12)}${more.join("")}`;
     button.title = `The box of the scene ${scene.name}, with the points of its tables`;
     button.addEventListener("click", () => {
       choose(scene);
