@@ -225,9 +225,11 @@ MOTION = """
     const changes = sums.map((sum, k) => sum && sum / Math.sqrt(squares[k]));
 
     const one = pair(new Random(3)), { halfX, halfY, ringX, ringY, field } = one;
-    let worst = 0, kicks = 0, time = 0;
+    let worst = 0, kicks = 0, time = 0, waits = 0;
     for (let i = 0; i < 20000; i++) {
-        kicks += one.step(Infinity) === KICK;
+        const kicked = one.step(Infinity) === KICK;
+        kicks += kicked;
+        waits += kicked && one.wait ** 2;
         time += one.flight;
         const { x1, y1, x2, y2, u1, v1, u2, v2 } = one;
         const kinetic = u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2;
@@ -236,7 +238,8 @@ MOTION = """
             ringX ? Math.abs(u1 + u2) : Math.max(Math.abs(x1), Math.abs(x2)) - halfX,
             ringY ? Math.abs(v1 + v2) : Math.max(Math.abs(y1), Math.abs(y2)) - halfY);
     }
-    return { measured: COUNTED.map((_, i) => runs.measured(i)), changes, worst, kicks, time };
+    const measured = COUNTED.map((_, i) => runs.measured(i));
+    return { measured, changes, worst, kicks, time, waits };
 })
 """
 
@@ -259,6 +262,10 @@ def test_motion_with_effects_is_that_of_theory(tmp_path):
         assert seen["worst"] < 1e-11, effects
         expected = effects.get("friction", 0) * seen["time"]
         assert abs(seen["kicks"] - expected) <= SIGMAS * math.sqrt(expected), effects
+        # An exponential time t with mean 1 has the means 2 of t² and 24 of t⁴.
+        if kicks := seen["kicks"]:
+            square = effects["friction"] ** 2 * seen["waits"] / kicks
+            assert abs(square - 2) < SIGMAS * math.sqrt(20 / kicks), effects
     assert compared > 20
 
 
@@ -275,6 +282,21 @@ def test_points_are_those_of_the_tables():
             right = exact.mean_times(box.scene(radius))[event]
             assert abs(time - right) < SIGMAS * error, (event, radius)
             assert error < 0.2 * time
+
+
+@pytest.mark.parametrize("effects", EFFECTS[:4])
+def test_times_by_monte_carlo_know_the_conserved_momenta(effects):
+    scene = Box(1.5, 1, effects).scene(0.2)
+    common = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
+    areas = [
+        common | {"quantity": f"{event}_area", "estimate": area, "exact": area}
+        for event, area in exact.areas(scene).items()
+    ]
+    volume = common | {"estimate": exact.volume(scene)}
+    found = explorer.by_monte_carlo([volume], areas, scene.velocity_components)
+    times = exact.mean_times(scene)
+    for event, rows in found.items():
+        assert [row[1] for row in rows] == pytest.approx([times[event]] if times[event] else [])
 
 
 def test_a_scene_may_have_no_tables():

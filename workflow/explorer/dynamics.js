@@ -87,11 +87,10 @@ function initialStates(width, height, radius, { periodic = "", field = 0 } = {})
     do {
       x = distance(sideX, ringX);
       y = distance(sideY, ringY);
-      // The lower centre is uniform in the heights at which it has room and energy.
-      low = (rangeY > B ? y / 2 : y) * random.uniform();
+      low = y * random.uniform(); // the height of the lower disc above the bottom
       kinetic = 1 - 2 * field * (B - y + 2 * low);
     } while (excess - x * (2 * A - x) - y * (2 * B - y) <= 0
-      || (field && !(low < rangeY - B + y && random.uniform() < kinetic ** (1 - periodic.length / 2))));
+      || (field && !(random.uniform() < kinetic ** (1 - periodic.length / 2)))); // false for NaN
     // For a given separation, the centre of both is uniform over the range that is left to it. Only
     // its value modulo the side matters on a periodic axis.
     const centres = (apart, middle) => {
