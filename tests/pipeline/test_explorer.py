@@ -662,7 +662,8 @@ def test_a_number_that_is_typed_is_taken_if_it_is_a_length(driven, text, kept):
 def test_effects_are_in_the_address_and_in_any_unit(driven, tmp_path):
     scenes = [{"name": "ring", "width": 30.0, "height": 20.0, "effects": {"periodic": "x"}}]
     path = written(tmp_path / "explorer.html", scenes)
-    page = driven("radius=4&seed=7&field=0.01&runs=2000", path=path)
+    assert driven("seed=7", path=path).look("state.periodic") == "x"
+    page = driven("radius=4&seed=7&periodic=x&field=0.01&runs=2000", path=path)
     for event, row in counted(page, 2000).items():
         box = Box(30, 20, {"periodic": "x", "field": 0.01})
         good = exact.mean_times(box.scene(4))[event]
@@ -675,10 +676,10 @@ def test_effects_are_in_the_address_and_in_any_unit(driven, tmp_path):
         "var box = at('friction'); box.value = '0.5'; box.dispatchEvent(new Event('change'));"
     )
     page.look(type_number)
-    assert page.look("location.hash").endswith("&friction=0.5&periodic=x")
+    assert page.look("location.hash").endswith("&friction=0.5")
     page.look("at('y').click()")
     assert page.look("[state.field, at('field').disabled, state.periodic]") == [0, True, "xy"]
-    assert page.look("location.hash").endswith("friction=0.5&periodic=xy")
+    assert "periodic=xy" in page.look("location.hash")
     assert "field" not in page.look("location.hash")
     assert page.look("runs.exact.times.any_wall") is None
     page.look("for (const axis of 'xy') at(axis).click()")

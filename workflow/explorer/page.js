@@ -113,7 +113,8 @@ function readAddress() {
   // In every box, discs of this radius can hop in both ways.
   const usual = Number((Math.min(state.width, state.height) / 5).toFixed(3));
   state.radius = "radius" in asked ? inUnits(asked.radius) : usual;
-  chooseEffects("width" in asked || "height" in asked ? asked : { ...first, ...asked });
+  const own = [...SIDES, "periodic", ...RATES].some((name) => name in asked);
+  chooseEffects(own ? asked : first);
   changed();
 }
 
