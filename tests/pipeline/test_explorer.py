@@ -677,9 +677,11 @@ def test_effects_are_in_the_address_and_in_any_unit(driven, tmp_path):
     )
     page.look(type_number)
     assert page.look("location.hash").endswith("&friction=0.5")
+    page.look(type_number.replace("0.5", "1e9"))
+    assert page.look("location.hash").endswith("&friction=30")
     page.look("at('y').click()")
     assert page.look("[state.field, at('field').disabled, state.periodic]") == [0, True, "xy"]
-    assert "periodic=xy" in page.look("location.hash")
+    assert "&periodic=xy&" in page.look("location.hash")
     assert "field" not in page.look("location.hash")
     assert page.look("runs.exact.times.any_wall") is None
     page.look("for (const axis of 'xy') at(axis).click()")

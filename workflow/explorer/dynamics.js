@@ -1,8 +1,8 @@
 "use strict";
 // Two equal discs, event by event, and the statistics of many independent runs.
 //
-// Masses are 1 and the total energy is 1/2, so that the speed √(v1² + v2²) is 1 without a field. The
-// effects of a scene are those of theory.js and {friction}, the rate of kicks.
+// Masses are 1 and the total energy is 1/2. Without a field the speed √(v1² + v2²) is therefore 1.
+// The effects of a scene are those of theory.js and {friction}, the rate of kicks.
 
 /** Uniform numbers in [0, 1) from a seed: xoshiro128++ of Blackman and Vigna. */
 class Random {
@@ -68,10 +68,10 @@ function initialStates(width, height, radius, { periodic = "", field = 0 } = {})
   const [A, B, sigma, rangeX, rangeY] = [given.A, given.B, given.sigma, ...given.ranges].map(
     (value) => given.float(value, 1));
   const square = given.sigma ** 2n;
-  // Without a field the separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density (A − u)(B − v)
-  // outside the arc, without the factor of a periodic axis. The free part of [0, A] × [0, B] fills a
-  // good part of its bounding rectangle at every radius. The sides of this rectangle, exact where
-  // terms cancel near the largest radius:
+  // Without a field the separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density
+  // (A − u)(B − v) outside the arc; a periodic axis has no factor. The free part of
+  // [0, A] × [0, B] fills a good part of its bounding rectangle at every radius. The sides of this
+  // rectangle, exact where terms cancel near the largest radius:
   const excess = given.float(given.A ** 2n + given.B ** 2n - square, 2);
   const side = (range, other) => {
     const nearest = Math.sqrt(Math.max(given.float(square - other ** 2n, 2), 0));
@@ -110,8 +110,14 @@ const END = 0, WALL_X1 = 1, WALL_X2 = 2, WALL_Y1 = 3, WALL_Y2 = 4, DISC = 5;
 // These are no events: the separation leaves ±half a period, or all velocities are drawn anew.
 const WRAP_X = -1, WRAP_Y = -2, KICK = -3;
 
-/** The time in which a disc in a field reaches the first wall, at ±half. The roots are taken in the
- *  forms that do not cancel. */
+/** The time in which a disc reaches the wall ahead, at ±half.
+ *
+ * A disc that rounding has put behind it reaches it in an equally short time. For a disc at rest this
+ * is infinity or NaN, and neither is less than a time. */
+const wallTime = (x, u, half) => Math.abs((u > 0 ? half : -half) - x) / Math.abs(u);
+
+/** The time in which a disc in a field reaches the first wall. The roots are taken in the forms that
+ *  do not cancel. */
 function fallTime(y, v, half, field) {
   const above = Math.abs(half - y), below = Math.abs(half + y);
   const left = v * v - 2 * field * above;
@@ -120,8 +126,8 @@ function fallTime(y, v, half, field) {
   return v > 0 ? (v + fast) / field : (2 * below) / (fast - v);
 }
 
-/** Coordinates whose separation has left ±half a `period`, with one of them moved by the period. It is
- *  the one that leaves both next to the origin. */
+/** Coordinates whose separation has left ±half a `period`, with one of them moved by the period: the
+ *  one that leaves both next to the origin. */
 const nearer = (q1, q2, period) => {
   const move = q1 > q2 ? period : -period;
   return q1 + q2 > 0 === q1 > q2 ? [q1 - move, q2] : [q1, q2 + move];
@@ -155,26 +161,24 @@ class Pair {
     const { halfX, halfY, ringX, ringY, field } = this;
     const dx = x1 - x2, dy = y1 - y2, du = u1 - u2, dv = v1 - v2;
 
-    // The wall ahead is at ±half; a disc that rounding has put behind it reaches it in an equally
-    // short time. For a disc at rest this is infinity or NaN, and neither is less than a time.
     let time = most, code = END, t;
     if (this.wait < time) (time = this.wait), (code = KICK);
     if (ringX) {
       t = Math.abs((du > 0 ? this.width : -this.width) / 2 - dx) / Math.abs(du);
       if (t < time) (time = t), (code = WRAP_X);
     } else {
-      t = Math.abs((u1 > 0 ? halfX : -halfX) - x1) / Math.abs(u1);
+      t = wallTime(x1, u1, halfX);
       if (t < time) (time = t), (code = WALL_X1);
-      t = Math.abs((u2 > 0 ? halfX : -halfX) - x2) / Math.abs(u2);
+      t = wallTime(x2, u2, halfX);
       if (t < time) (time = t), (code = WALL_X2);
     }
     if (ringY) {
       t = Math.abs((dv > 0 ? this.height : -this.height) / 2 - dy) / Math.abs(dv);
       if (t < time) (time = t), (code = WRAP_Y);
     } else {
-      t = field ? fallTime(y1, v1, halfY, field) : Math.abs((v1 > 0 ? halfY : -halfY) - y1) / Math.abs(v1);
+      t = field ? fallTime(y1, v1, halfY, field) : wallTime(y1, v1, halfY);
       if (t < time) (time = t), (code = WALL_Y1);
-      t = field ? fallTime(y2, v2, halfY, field) : Math.abs((v2 > 0 ? halfY : -halfY) - y2) / Math.abs(v2);
+      t = field ? fallTime(y2, v2, halfY, field) : wallTime(y2, v2, halfY);
       if (t < time) (time = t), (code = WALL_Y2);
     }
 
@@ -226,7 +230,8 @@ class Pair {
     this.v2 = v2;
     this.wait -= time;
     if (code === KICK) {
-      Object.assign(this, velocities(this.random, u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2, this.periodic));
+      const square = u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2;
+      Object.assign(this, velocities(this.random, square, this.periodic));
       this.renewWait();
     }
     return code;

@@ -20,6 +20,9 @@ const CHUNK = 2000, CHUNKS = 200;
 /** Milliseconds between two renewals of the numbers, long enough to read them. */
 const RENEWED = 250;
 
+/** The strongest effects that can be drawn, in units. */
+const STRONGEST = { field: 100, friction: 300 };
+
 /** The range of mean times in the plot, in units. */
 const SHOWN_TIMES = [0.001, 1000];
 
@@ -164,8 +167,9 @@ function prepareControls() {
   for (const scene of DATA.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    const more = ["periodic", ...RATES].filter((name) => scene[name]).map((name) => `, ${name} ${scene[name]}`);
-    button.textContent = `${short(scene.width, 12)} × ${short(scene.height, 12)}${more.join("")}`;
+    const more = ["periodic", ...RATES].filter((name) => scene[name]);
+    button.textContent = [`${short(scene.width, 12)} × ${short(scene.height, 12)}`,
+      ...more.map((name) => `${name} ${scene[name]}`)].join(", ");
     button.title = `The box of the scene ${scene.name}, with the points of its tables`;
     button.addEventListener("click", () => {
       choose(scene);
@@ -207,6 +211,7 @@ function showControls() {
 /** Start again with another box or radius. */
 function changed() {
   if (state.periodic.includes("y")) state.field = 0; // else the discs would fall for ever
+  for (const name of RATES) state[name] = Math.min(state[name], STRONGEST[name]);
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
   showControls();
   at("duration").textContent = short(unit * DURATION);
@@ -296,7 +301,8 @@ function draw() {
     for (const [disc, [, , paint]] of discs.entries()) {
       context.strokeStyle = paint;
       for (let i = 1; i < trail.length; i++) {
-        const [from, to] = [trail[i - 1], trail[i]].map((point) => point.slice(1 + 2 * disc, 3 + 2 * disc));
+        const [from, to] = [trail[i - 1], trail[i]].map(
+          (point) => point.slice(1 + 2 * disc, 3 + 2 * disc));
         // No line through the box for a disc that comes back on the other side.
         if (Math.abs(to[0] - from[0]) > width / 2 || Math.abs(to[1] - from[1]) > height / 2) continue;
         context.globalAlpha = 0.8 * Math.max(0, 1 - (time - trail[i][0]) / 1.5);
@@ -481,7 +487,8 @@ function showIntervals() {
   const { event, mean, total } = intervals();
   intervalsPlot.draw();
   at("explanation").textContent = mean === null
-    ? `${exists(event) ? "In this box discs of this radius" : "Along a periodic axis discs"} make no ${NAMES[event]}.`
+    ? (exists(event) ? "In this box discs of this radius" : "Along a periodic axis discs")
+      + ` make no ${NAMES[event]}.`
     : `Bars are ${spaced(total)} intervals; the dashed line is the exponential of the exact mean,`
       + ` τ = ${short(unit * mean)}: the law of independent hops.`;
 }
