@@ -104,7 +104,7 @@ def explorer(results, output):
     with TemporaryDirectory() as folder:
         page, picture = Path(folder, "explorer.html"), Path(folder, "explorer.png")
         page.write_text(text.replace("</body>", f"<script>{AT_A_HOP}</script></body>"), "utf-8")
-        photograph(page, picture, "1280,1064")
+        photograph(page, picture, "1280,1100")
         with Image.open(picture) as image:
             image.convert("RGB").quantize(256).save(output / "explorer.png", optimize=True)
 

@@ -15,7 +15,6 @@ from checkout import REPOSITORY
 
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
-from twodiscs.model.events import EVENTS
 from twodiscs.theory import exact
 from twodiscs_paper.pipeline.documents import explorer
 
@@ -26,10 +25,25 @@ PARTS = [path for path in SOURCES.rglob("*") if path.is_file()]
 EXPECTED = REPOSITORY / "paper" / "expected" / "paper"
 TABLES = [EXPECTED / f"{name}.csv" for name in ("volume", "areas", "mean_times")]
 
-#: The scenes in the report; the explorer leaves out the one with an effect.
+#: The scenes in the report; the explorer leaves out the one with an effect that it does not have.
 SCENES = [
     {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}},
-    {"name": "torus", "width": 1.0, "height": 1.0, "effects": {"periodic": "xy"}},
+    {"name": "balls", "width": 1.0, "height": 1.0, "effects": {"depth": 1.0, "field": 1.0}},
+    {"name": "ring", "width": 1.0, "height": 2.0, "effects": {"periodic": "x", "field": 0.5}},
+]
+
+#: Effects that the page has, for each number of velocity components less conserved momenta.
+EFFECTS = [
+    {},
+    {"periodic": "x"},
+    {"periodic": "y"},
+    {"periodic": "xy"},
+    {"field": 1e-6},
+    {"field": 0.3},
+    {"field": 1.0},
+    {"field": 40.0},
+    {"periodic": "x", "field": 0.5},
+    {"periodic": "x", "field": 3.0},
 ]
 
 #: |z| beyond which a comparison fails.
@@ -55,6 +69,10 @@ def written(path, scenes):
 # Formulas -----------------------------------------------------------------------------------------
 
 BOXES = [Box(*sides) for sides in ((1.5, 1), (3, 1), (1, 1), (2, 1), (0.7, 1.2), (0.5, 2), (40, 1))]
+
+
+#: Boxes with effects.
+MORE = [Box(*sides, effects) for effects in EFFECTS[1:] for sides in ((1.5, 1), (0.5, 2))]
 
 
 def radii(box):
@@ -110,22 +128,44 @@ def test_formulas_in_javascript_are_those_of_the_package(tmp_path):
             continue
         assert written["volume"] == pytest.approx(right["volume"], rel=1e-12, abs=0), (box, radius)
         for kind in ("areas", "times"):
-            assert {*explorer.COUNTED} <= {*written[kind]} <= {*EVENTS}
+            assert [*written[kind]] == [*explorer.COUNTED]
             for event, value in written[kind].items():
                 good = right[kind][event]
                 same = value is None if good is None else math.isclose(value, good, rel_tol=1e-12)
                 assert same, (box, radius, event, kind, value, good)
 
 
-def test_limits_in_javascript_are_those_of_the_package(tmp_path):
-    sides = [[box.width, box.height] for box in BOXES]
-    largest = evaluated(
-        f"{json.dumps(sides)}.map((box) => largestRadius(...box))", tmp_path, "theory.js"
+def test_times_with_effects_are_those_of_the_package(tmp_path):
+    cases = [
+        (box, fraction * box.last_radius) for box in MORE for fraction in (0.01, 0.45, 0.7, 0.999)
+    ]
+    given = [[box.width, box.height, radius, box.effects] for box, radius in cases]
+    computed = evaluated(
+        f"{json.dumps(given)}.map((sides) => exact(...sides).times)", tmp_path, "theory.js"
     )
-    ends = evaluated(f"{json.dumps(sides)}.map((box) => thresholds(...box))", tmp_path, "theory.js")
-    assert largest == pytest.approx([box.largest_radius for box in BOXES], rel=1e-15)
-    for box, named in zip(BOXES, ends, strict=True):
-        assert [radius for radius, _ in named] == [*box.thresholds]
+    for (box, radius), written in zip(cases, computed, strict=True):
+        right = exact.mean_times(box.scene(radius))
+        for event, value in written.items():
+            good = right[event]
+            same = value is None if good is None else math.isclose(value, good, rel_tol=1e-11)
+            assert same, (box, radius, event, value, good)
+
+
+def test_limits_in_javascript_are_those_of_the_package(tmp_path):
+    boxes = BOXES + MORE
+    given = json.dumps([[box.width, box.height, box.effects] for box in boxes])
+    limits = f"{given}.map((box) => [largestRadius(...box), thresholds(...box)])"
+    for box, (largest, named) in zip(boxes, evaluated(limits, tmp_path, "theory.js"), strict=True):
+        # The package finds limits with effects by bisection.
+        worst = 1e-12 if box.effects else 1e-15
+        assert largest == pytest.approx(box.last_radius, rel=worst)
+        assert [radius for radius, _ in named] == pytest.approx([*box.thresholds], rel=worst)
+
+
+def test_discs_that_do_not_fit_have_no_times(tmp_path):
+    given = [[*box.sides, box.last_radius * 1.001, box.effects] for box in MORE]
+    fitting = f"{json.dumps(given)}.map((sides) => exact(...sides))"
+    assert evaluated(fitting, tmp_path, "theory.js") == [None] * len(MORE)
 
 
 # Errors -------------------------------------------------------------------------------------------
@@ -148,6 +188,87 @@ def test_scores_scatter_by_one(tmp_path):
         assert abs(square - 99 / 97) < SIGMAS * math.sqrt(2.2 / SCORES)
 
 
+# Motion with effects ------------------------------------------------------------------------------
+
+#: Boxes, radii and effects; the last but one is at an energy at which discs never reach the top.
+MOVING = [
+    ((1.5, 1.0, 0.2), {"friction": 20.0}),
+    ((1.5, 1.0, 0.3), {"periodic": "x", "friction": 3.0}),
+    ((1.5, 1.0, 0.2), {"periodic": "y"}),
+    ((1.0, 1.0, 0.2), {"periodic": "xy", "friction": 1.0}),
+    ((1.5, 1.0, 0.2), {"field": 0.3}),
+    ((1.5, 1.0, 0.37), {"field": 1.0}),
+    ((1.5, 1.0, 0.2), {"periodic": "x", "field": 1.0}),
+    ((3.0, 1.0, 0.24), {"field": 20.0, "friction": 2.0}),
+    ((1.5, 1.0, 0.3), {"periodic": "x", "field": 3.0, "friction": 3.0}),
+]
+
+#: Of a scene: the measured events of 1000 runs; the changes of some means of an ensemble by its
+#: motion, in standard errors; on one path the worst energy, momenta and places, and the kicks.
+MOTION = """
+(([width, height, radius, effects]) => {
+    const runs = new Runs(width, height, radius, 7, effects);
+    while (runs.done < 1000) runs.advance(10000, 1000);
+
+    const pair = (random) => new Pair(width, height, radius, effects, runs.draw(random));
+    const random = new Random(11), n = 10000, sums = Array(5).fill(0), squares = Array(5).fill(0);
+    const means = ({ x1, y1, x2, y2, u1, v2 }) =>
+        [Math.abs(x1 - x2), Math.abs(y1 - y2), y1 + y2, u1 ** 2, v2 ** 4];
+    for (let i = 0; i < n; i++) {
+        const moved = pair(random), before = means(moved);
+        for (let left = 0.7; left > 0; left -= moved.flight) moved.step(left);
+        means(moved).forEach((value, k) => {
+            sums[k] += value - before[k];
+            squares[k] += (value - before[k]) ** 2;
+        });
+    }
+    const changes = sums.map((sum, k) => sum && sum / Math.sqrt(squares[k]));
+
+    const one = pair(new Random(3)), { halfX, halfY, ringX, ringY, field } = one;
+    let worst = 0, kicks = 0, time = 0, waits = 0;
+    for (let i = 0; i < 20000; i++) {
+        const kicked = one.step(Infinity) === KICK;
+        kicks += kicked;
+        waits += kicked && one.wait ** 2;
+        time += one.flight;
+        const { x1, y1, x2, y2, u1, v1, u2, v2 } = one;
+        const kinetic = u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2;
+        worst = Math.max(worst, Math.abs(kinetic + 2 * field * (y1 + y2 + 2 * halfY) - 1),
+            2 * radius - Math.hypot(x1 - x2, y1 - y2),
+            ringX ? Math.abs(u1 + u2) : Math.max(Math.abs(x1), Math.abs(x2)) - halfX,
+            ringY ? Math.abs(v1 + v2) : Math.max(Math.abs(y1), Math.abs(y2)) - halfY);
+    }
+    const measured = COUNTED.map((_, i) => runs.measured(i));
+    return { measured, changes, worst, kicks, time, waits };
+})
+"""
+
+
+def test_motion_with_effects_is_that_of_theory(tmp_path):
+    given = json.dumps([[*sides, effects] for sides, effects in MOVING])
+    found = evaluated(f"{given}.map({MOTION})", tmp_path, "theory.js", "dynamics.js")
+    compared = 0
+    for (sides, effects), seen in zip(MOVING, found, strict=True):
+        times = exact.mean_times(Box(*sides[:2], effects).scene(sides[2]))
+        for event, measured in zip(explorer.COUNTED, seen["measured"], strict=True):
+            if times[event] is None:
+                assert measured["count"] == 0, (effects, event)
+            elif measured["error"]:
+                assert abs(measured["time"] - times[event]) < SIGMAS * measured["error"], effects
+                compared += 1
+        # The invariant measure stays as it is.
+        assert max(map(abs, seen["changes"])) < SIGMAS, (effects, seen["changes"])
+        # Roundings of 20000 events walk: energies are exact to some hundred last digits.
+        assert seen["worst"] < 1e-11, effects
+        expected = effects.get("friction", 0) * seen["time"]
+        assert abs(seen["kicks"] - expected) <= SIGMAS * math.sqrt(expected), effects
+        # An exponential time t with mean 1 has the means 2 of t² and 24 of t⁴.
+        if kicks := seen["kicks"]:
+            square = effects["friction"] ** 2 * seen["waits"] / kicks
+            assert abs(square - 2) < SIGMAS * math.sqrt(20 / kicks), effects
+    assert compared > 20
+
+
 # Points -------------------------------------------------------------------------------------------
 
 
@@ -161,6 +282,21 @@ def test_points_are_those_of_the_tables():
             right = exact.mean_times(box.scene(radius))[event]
             assert abs(time - right) < SIGMAS * error, (event, radius)
             assert error < 0.2 * time
+
+
+@pytest.mark.parametrize("effects", EFFECTS[:4])
+def test_times_by_monte_carlo_know_the_conserved_momenta(effects):
+    scene = Box(1.5, 1, effects).scene(0.2)
+    common = {"radius": 0.2, "stderr": 1e-3, "bias": 0.0}
+    areas = [
+        common | {"quantity": f"{event}_area", "estimate": area, "exact": area}
+        for event, area in exact.areas(scene).items()
+    ]
+    volume = common | {"estimate": exact.volume(scene)}
+    found = explorer.by_monte_carlo([volume], areas, scene.velocity_components)
+    times = exact.mean_times(scene)
+    for event, rows in found.items():
+        assert [row[1] for row in rows] == pytest.approx([times[event]] if times[event] else [])
 
 
 def test_a_scene_may_have_no_tables():
@@ -177,14 +313,15 @@ def test_the_page_is_one_file(page):
 
 
 @pytest.mark.parametrize(
-    ("scenes", "left_out", "example"),
-    [(SCENES, True, False), (SCENES[:1], False, False), (SCENES[1:], True, True)],
+    ("scenes", "shown"),
+    [(SCENES, ["paper", "ring"]), (SCENES[:1], ["paper"]), (SCENES[1:2], [])],
 )
-def test_scenes_that_are_left_out_are_named(tmp_path, scenes, left_out, example):
+def test_scenes_that_are_left_out_are_named(tmp_path, scenes, shown):
     text = written(tmp_path / "explorer.html", scenes).read_text(encoding="utf-8")
     data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', text, re.DOTALL)[1])
-    assert [scene["name"] for scene in data["scenes"]] == ["paper"] * (not example)
-    assert ("The build also has: torus." in text) == ("torus" in text) == left_out
+    assert [scene["name"] for scene in data["scenes"]] == shown
+    left_out = len(shown) < len(scenes)
+    assert ("because of their effects: balls." in text) == ("balls" in text) == left_out
 
 
 # In a browser -------------------------------------------------------------------------------------
@@ -410,7 +547,7 @@ def test_lengths_are_in_any_unit(driven, tmp_path, name, sides, radius, next_rad
     for event, row in rows.items():
         assert value(row["exact"]) == pytest.approx(times[event], rel=3e-3), event
         assert abs(value(row["z"])) < SIGMAS, event
-    shown = "[...document.querySelectorAll('input[type=number]')].map(field => field.value)"
+    shown = "LENGTHS.map(name => numberOf(name).value)"
     assert [*map(float, page.look(shown))] == [*sides, float(radius)]
     ends = page.look("[at('radius').min, at('radius').max].map(value => unit * value)")
     assert ends[0] < 0.03 * Box(*sides).largest_radius
@@ -479,7 +616,7 @@ def test_every_control_has_a_name(driven):
         "[...document.querySelectorAll('input, select, summary')]"
         ".map(e => e.ariaLabel ?? e.labels[0].innerText)"
     )
-    assert len({*names}) == len(names) == 11
+    assert len({*names}) == len(names) == 16
     assert all(names)
 
 
@@ -500,10 +637,10 @@ def test_the_address_holds_the_scene_and_brings_it_back(driven):
     address = page.look("location.hash.slice(1)")
     assert address == "seed=7&width=2.75&height=1&radius=0.123"
     page = driven(address)
-    assert page.look("runs.scene") == [2.75, 1, 0.123]
+    assert page.look("runs.scene.slice(0, 3)") == [2.75, 1, 0.123]
     page.look("location.hash = '#width=3&height=1&radius=0.24'")
     page.until("runs.scene[0] === 3")
-    assert page.look("runs.scene") == [3, 1, 0.24]
+    assert page.look("runs.scene.slice(0, 3)") == [3, 1, 0.24]
     page.look("at('radius').focus()")
     page.press("ArrowRight")
     page.until("location.hash.endsWith('radius=0.241')")
@@ -522,11 +659,60 @@ def test_a_number_that_is_typed_is_taken_if_it_is_a_length(driven, text, kept):
     assert page.problems == []
 
 
-@pytest.mark.parametrize("wrong", ["radius=abc", "width=-1", "periodic=xy"])
-def test_what_the_address_cannot_ask_for_is_named(driven, wrong):
-    page = driven(f"seed=7&{wrong}")
-    assert wrong in page.look("at('problem').innerText")
-    assert page.look("runs.scene") == [1.5, 1, 0.2]
+def test_effects_are_in_the_address_and_in_any_unit(driven, tmp_path):
+    scenes = [{"name": "ring", "width": 30.0, "height": 20.0, "effects": {"periodic": "x"}}]
+    path = written(tmp_path / "explorer.html", scenes)
+    assert driven("seed=7", path=path).look("state.periodic") == "x"
+    page = driven("radius=4&seed=7&periodic=x&field=0.01&runs=2000", path=path)
+    for event, row in counted(page, 2000).items():
+        box = Box(30, 20, {"periodic": "x", "field": 0.01})
+        good = exact.mean_times(box.scene(4))[event]
+        if good is None:
+            assert row == {"count": "0", "time": "–", "error": "–", "exact": "–", "z": "–"}
+            continue
+        assert value(row["exact"]) == pytest.approx(good, rel=3e-3)
+        assert abs(value(row["z"])) < SIGMAS
+    type_number = (
+        "var box = at('friction'); box.value = '0.5'; box.dispatchEvent(new Event('change'));"
+    )
+    page.look(type_number)
+    assert page.look("location.hash").endswith("&friction=0.5")
+    page.look(type_number.replace("0.5", "1e9"))
+    assert page.look("location.hash").endswith("&friction=30")
+    page.look("at('y').click()")
+    assert page.look("[state.field, at('field').disabled, state.periodic]") == [0, True, "xy"]
+    assert "&periodic=xy&" in page.look("location.hash")
+    assert "field" not in page.look("location.hash")
+    assert page.look("runs.exact.times.any_wall") is None
+    page.look("for (const axis of 'xy') at(axis).click()")
+    assert "periodic" not in page.look("location.hash")
+    assert page.look("runs.exact.times.any_wall") > 0
+    assert page.problems == []
+
+
+@pytest.mark.parametrize("effects", ["periodic=x", "periodic=xy&friction=3"])
+def test_the_drawing_has_all_images_of_the_discs_in_the_box(driven, effects):
+    """It has those one period to each side. Each disc is therefore within 3/4 of a period."""
+    page = driven(f"radius=0.2&seed=7&runs=0&{effects}")
+    farthest = page.look(
+        "(() => { let most = 0; for (let i = 0; i < 2000; i++) { move(0.02);"
+        " most = Math.max(most, Math.abs(drawn.pair.x1), Math.abs(drawn.pair.x2)); }"
+        " draw(); return most / state.width; })()"
+    )
+    assert 0.5 < farthest <= 0.75 + 1e-12
+    assert page.problems == []
+
+
+WRONG = ["radius=abc", "width=-1", "periodic=z", "field=-1", "friction=Infinity", "mass_ratio=2"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "named"), [*zip(WRONG, WRONG, strict=True), ("periodic=y&field=1", "field=1:")]
+)
+def test_what_the_address_cannot_ask_for_is_named(driven, asked, named):
+    page = driven(f"seed=7&{asked}")
+    assert named in page.look("at('problem').innerText")
+    assert page.look("[...runs.scene.slice(0, 3), state.field]") == [1.5, 1, 0.2, 0]
 
 
 # The plots ----------------------------------------------------------------------------------------

@@ -163,7 +163,7 @@ def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     assert built.jobs("crate") == []
 
 
-def test_the_explorer_is_made_when_asked_for_of_scenes_without_effects(built):
+def test_the_explorer_is_made_when_asked_for(built):
     assert "explorer.html" not in built.results()
     built.snakemake("--cores", "1", "explorer")
     page = (built.path / "results" / "explorer.html").read_text(encoding="utf-8")

@@ -1,7 +1,8 @@
 "use strict";
 // Two equal discs, event by event, and the statistics of many independent runs.
 //
-// Masses are 1 and the total energy is 1/2, so that the speed √(v1² + v2²) is 1.
+// Masses are 1 and the total energy is 1/2. Without a field the speed √(v1² + v2²) is therefore 1.
+// The effects of a scene are those of theory.js and {friction}, the rate of kicks.
 
 /** Uniform numbers in [0, 1) from a seed: xoshiro128++ of Blackman and Vigna. */
 class Random {
@@ -44,76 +45,142 @@ class Random {
   }
 }
 
+/** Draw velocities {u1, v1, u2, v2} with this sum of squares, uniform on the sphere in the dimensions
+ *  that are left if the total momentum along `periodic` axes is 0. */
+function velocities(random, square, periodic) {
+  // Marsaglia's method for a point on the sphere in four dimensions (1972).
+  let [u1, v1, first] = random.inDisc();
+  let [u2, v2, second] = random.inDisc();
+  const scale = Math.sqrt((1 - first) / second);
+  u2 *= scale;
+  v2 *= scale;
+  // The projection of an isotropic vector is isotropic.
+  if (periodic.includes("x")) u1 = -(u2 = (u2 - u1) / 2);
+  if (periodic.includes("y")) v1 = -(v2 = (v2 - v1) / 2);
+  const factor = Math.sqrt(square / (u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2));
+  return { u1: u1 * factor, v1: v1 * factor, u2: u2 * factor, v2: v2 * factor };
+}
+
 /** Return a function that draws initial states from the invariant measure: centres in all of
- *  configuration space, velocities on the unit sphere in four dimensions. */
-function initialStates(width, height, radius) {
-  const given = lengths(width, height, radius);
-  const [A, B, sigma] = [given.A, given.B, given.sigma].map((value) => given.float(value, 1));
+ *  configuration space, with the density (1 − U/E)^(D/2 − 1), and their `velocities`. */
+function initialStates(width, height, radius, { periodic = "", field = 0 } = {}) {
+  const given = lengths(width, height, radius, { periodic, field });
+  const [A, B, sigma, rangeX, rangeY] = [given.A, given.B, given.sigma, ...given.ranges].map(
+    (value) => given.float(value, 1));
   const square = given.sigma ** 2n;
-  // The separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density (A − u)(B − v) outside the
-  // arc. The free part of [0, A] × [0, B] fills a good part of its bounding rectangle at every
-  // radius. The sides of this rectangle, exact where terms cancel near the largest radius:
+  // Without a field the separations (u, v) = (|x1 − x2|, |y1 − y2|) have the density
+  // (A − u)(B − v) outside the arc; a periodic axis has no factor. The free part of
+  // [0, A] × [0, B] fills a good part of its bounding rectangle at every radius. The sides of this
+  // rectangle, exact where terms cancel near the largest radius:
   const excess = given.float(given.A ** 2n + given.B ** 2n - square, 2);
   const side = (range, other) => {
     const nearest = Math.sqrt(Math.max(given.float(square - other ** 2n, 2), 0));
     return nearest > 0 ? excess / (range + nearest) : range;
   };
   const sideX = side(A, given.B), sideY = side(B, given.A);
+  const [ringX, ringY] = [..."xy"].map((axis) => periodic.includes(axis));
 
   return (random) => {
-    let x, y;
+    const distance = (side, ring) => side * (ring ? random.uniform() : Math.sqrt(random.uniform()));
+    let x, y, low, kinetic;
     // x = A − u has a density in proportion to x; u² + v² > σ² in terms of x and y.
     do {
-      x = sideX * Math.sqrt(random.uniform());
-      y = sideY * Math.sqrt(random.uniform());
-    } while (excess - x * (2 * A - x) - y * (2 * B - y) <= 0);
-    // For a given separation, the centre on the left is uniform over the range that is left to it.
-    const centres = (range, free) => {
-      const low = free * random.uniform() - range / 2, high = low + (range - free);
-      return random.uniform() < 0.5 ? [low, high] : [high, low];
+      x = distance(sideX, ringX);
+      y = distance(sideY, ringY);
+      low = y * random.uniform(); // the height of the lower disc above the bottom
+      kinetic = 1 - 2 * field * (B - y + 2 * low);
+    } while (excess - x * (2 * A - x) - y * (2 * B - y) <= 0
+      || (field && !(random.uniform() < kinetic ** (1 - periodic.length / 2)))); // false for NaN
+    // For a given separation, the centre of both is uniform over the range that is left to it. Only
+    // its value modulo the side matters on a periodic axis.
+    const centres = (apart, middle) => {
+      const both = [middle - apart / 2, middle + apart / 2];
+      return random.uniform() < 0.5 ? both : both.reverse();
     };
-    const [x1, x2] = centres(A, x);
-    const [y1, y2] = centres(B, y);
-    // Marsaglia's method for a point on the sphere (1972).
-    const [p, q, first] = random.inDisc();
-    const [m, n, second] = random.inDisc();
-    const scale = Math.sqrt((1 - first) / second);
-    return { x1, y1, x2, y2, u1: p, v1: q, u2: m * scale, v2: n * scale };
+    const middle = (range) => range * (random.uniform() - 0.5);
+    const [x1, x2] = centres(A - x, middle(ringX ? width : x));
+    const [y1, y2] = centres(B - y, ringY ? middle(height) : low - (rangeY - B + y) / 2);
+    const seed = random.bits();
+    return { x1, y1, x2, y2, ...velocities(random, kinetic, periodic), seed };
   };
 }
 
 const END = 0, WALL_X1 = 1, WALL_X2 = 2, WALL_Y1 = 3, WALL_Y2 = 4, DISC = 5;
 
+// These are no events: the separation leaves ±half a period, or all velocities are drawn anew.
+const WRAP_X = -1, WRAP_Y = -2, KICK = -3;
+
+/** The time in which a disc reaches the wall ahead, at ±half.
+ *
+ * A disc that rounding has put behind it reaches it in an equally short time. For a disc at rest this
+ * is infinity or NaN, and neither is less than a time. */
+const wallTime = (x, u, half) => Math.abs((u > 0 ? half : -half) - x) / Math.abs(u);
+
+/** The time in which a disc in a field reaches the first wall. The roots are taken in the forms that
+ *  do not cancel. */
+function fallTime(y, v, half, field) {
+  const above = Math.abs(half - y), below = Math.abs(half + y);
+  const left = v * v - 2 * field * above;
+  if (v > 0 && left > 0) return (2 * above) / (v + Math.sqrt(left));
+  const fast = Math.sqrt(v * v + 2 * field * below);
+  return v > 0 ? (v + fast) / field : (2 * below) / (fast - v);
+}
+
+/** Coordinates whose separation has left ±half a `period`, with one of them moved by the period: the
+ *  one that leaves both next to the origin. */
+const nearer = (q1, q2, period) => {
+  const move = q1 > q2 ? period : -period;
+  return q1 + q2 > 0 === q1 > q2 ? [q1 - move, q2] : [q1, q2 + move];
+};
+
 /** A pair of discs in a box, whose centre is the origin. */
 class Pair {
-  constructor(width, height, radius, initial) {
-    Object.assign(this, initial);
+  constructor(width, height, radius, { periodic = "", field = 0, friction = 0 } = {}, initial) {
+    Object.assign(this, initial, { width, height, periodic, field, friction });
     this.halfX = width / 2 - radius;
     this.halfY = height / 2 - radius;
     this.square = (2 * radius) ** 2;
+    this.ringX = periodic.includes("x");
+    this.ringY = periodic.includes("y");
+    this.random = friction && new Random(this.seed);
+    this.renewWait();
     // The time in the last flight at which y1 = y2 or x1 = x2; −1 if there is none.
     this.vertical = -1;
     this.horizontal = -1;
     this.flight = 0;
   }
 
+  /** Draw the time to the next kick of a Poisson process. */
+  renewWait() {
+    this.wait = this.friction ? -Math.log(1 - this.random.uniform()) / this.friction : Infinity;
+  }
+
   /** Fly to the next event, but no longer than `most`; return its code. `flight` is the time. */
   step(most) {
     let { x1, y1, x2, y2, u1, v1, u2, v2 } = this;
-    const { halfX, halfY } = this;
+    const { halfX, halfY, ringX, ringY, field } = this;
     const dx = x1 - x2, dy = y1 - y2, du = u1 - u2, dv = v1 - v2;
 
-    // The wall ahead is at ±half; a disc that rounding has put behind it reaches it in an equally
-    // short time. For a disc at rest this is infinity or NaN, and neither is less than a time.
-    let time = most, code = END;
-    let t = Math.abs((u1 > 0 ? halfX : -halfX) - x1) / Math.abs(u1);
-    if (t < time) (time = t), (code = WALL_X1);
-    t = Math.abs((u2 > 0 ? halfX : -halfX) - x2) / Math.abs(u2);
-    if (t < time) (time = t), (code = WALL_X2);
-    t = Math.abs((v1 > 0 ? halfY : -halfY) - y1) / Math.abs(v1);
-    if (t < time) (time = t), (code = WALL_Y1);
-    t = Math.abs((v2 > 0 ? halfY : -halfY) - y2) / Math.abs(v2);
-    if (t < time) (time = t), (code = WALL_Y2);
+    let time = most, code = END, t;
+    if (this.wait < time) (time = this.wait), (code = KICK);
+    if (ringX) {
+      t = Math.abs((du > 0 ? this.width : -this.width) / 2 - dx) / Math.abs(du);
+      if (t < time) (time = t), (code = WRAP_X);
+    } else {
+      t = wallTime(x1, u1, halfX);
+      if (t < time) (time = t), (code = WALL_X1);
+      t = wallTime(x2, u2, halfX);
+      if (t < time) (time = t), (code = WALL_X2);
+    }
+    if (ringY) {
+      t = Math.abs((dv > 0 ? this.height : -this.height) / 2 - dy) / Math.abs(dv);
+      if (t < time) (time = t), (code = WRAP_Y);
+    } else {
+      t = field ? fallTime(y1, v1, halfY, field) : wallTime(y1, v1, halfY);
+      if (t < time) (time = t), (code = WALL_Y1);
+      t = field ? fallTime(y2, v2, halfY, field) : wallTime(y2, v2, halfY);
+      if (t < time) (time = t), (code = WALL_Y2);
+    }
 
     // Discs that touch collide only if they approach. The discriminant is computed as
     // a σ² − (Δx ∧ Δv)², which does not cancel in a grazing collision.
@@ -128,14 +195,17 @@ class Pair {
     }
     if (time < 0) time = 0;
 
+    const gained = field * time;
     x1 += u1 * time;
-    y1 += v1 * time;
+    y1 += (v1 - gained / 2) * time;
     x2 += u2 * time;
-    y2 += v2 * time;
-    if (code === WALL_X1) (x1 = u1 > 0 ? halfX : -halfX), (u1 = -u1);
-    else if (code === WALL_X2) (x2 = u2 > 0 ? halfX : -halfX), (u2 = -u2);
-    else if (code === WALL_Y1) (y1 = v1 > 0 ? halfY : -halfY), (v1 = -v1);
-    else if (code === WALL_Y2) (y2 = v2 > 0 ? halfY : -halfY), (v2 = -v2);
+    y2 += (v2 - gained / 2) * time;
+    v1 -= gained;
+    v2 -= gained;
+    if (code === WALL_X1) (x1 = x1 > 0 ? halfX : -halfX), (u1 = -u1);
+    else if (code === WALL_X2) (x2 = x2 > 0 ? halfX : -halfX), (u2 = -u2);
+    else if (code === WALL_Y1) (y1 = y1 > 0 ? halfY : -halfY), (v1 = -v1);
+    else if (code === WALL_Y2) (y2 = y2 > 0 ? halfY : -halfY), (v2 = -v2);
     else if (code === DISC) {
       const nx = x1 - x2, ny = y1 - y2;
       const exchange = (nx * du + ny * dv) / (nx * nx + ny * ny);
@@ -143,11 +213,12 @@ class Pair {
       v1 -= exchange * ny;
       u2 += exchange * nx;
       v2 += exchange * ny;
-    }
+    } else if (code === WRAP_X) [x1, x2] = nearer(x1, x2, this.width);
+    else if (code === WRAP_Y) [y1, y2] = nearer(y1, y2, this.height);
 
-    // A hop is a change of sign over the flight; zero counts as positive.
-    this.vertical = dy < 0 !== y1 - y2 < 0 ? -dy / dv : -1;
-    this.horizontal = dx < 0 !== x1 - x2 < 0 ? -dx / du : -1;
+    // A hop is a change of sign over the flight; zero counts as positive. Periodic axes have no hops.
+    this.vertical = !ringY && dy < 0 !== y1 - y2 < 0 ? -dy / dv : -1;
+    this.horizontal = !ringX && dx < 0 !== x1 - x2 < 0 ? -dx / du : -1;
     this.flight = time;
     this.x1 = x1;
     this.y1 = y1;
@@ -157,11 +228,15 @@ class Pair {
     this.v1 = v1;
     this.u2 = u2;
     this.v2 = v2;
+    this.wait -= time;
+    if (code === KICK) {
+      const square = u1 * u1 + v1 * v1 + u2 * u2 + v2 * v2;
+      Object.assign(this, velocities(this.random, square, this.periodic));
+      this.renewWait();
+    }
     return code;
   }
 }
-
-const COUNTED = ["vertical_hop", "horizontal_hop", "disc_collision", "any_wall"];
 
 /** The time in which a run counts events. */
 const DURATION = 20;
@@ -182,11 +257,11 @@ const ENOUGH = 100;
  * otherwise long intervals would be missing. Intervals longer than the histogram are only counted.
  */
 class Runs {
-  constructor(width, height, radius, seed) {
-    this.scene = [width, height, radius];
+  constructor(width, height, radius, seed, effects = {}) {
+    this.scene = [width, height, radius, effects];
     this.random = new Random(seed);
-    this.draw = initialStates(width, height, radius);
-    this.exact = exact(width, height, radius);
+    this.draw = initialStates(...this.scene);
+    this.exact = exact(...this.scene);
     this.done = 0;
     this.events = 0;
     this.sums = new Float64Array(COUNTED.length);
@@ -219,12 +294,12 @@ class Runs {
     const { pair, counts } = this;
     const code = pair.step(DURATION - this.time);
     if (code === DISC) counts[2]++;
-    else if (code !== END) counts[3]++;
+    else if (code > END) counts[3]++;
     this.hop(0, pair.vertical, true);
     this.hop(1, pair.horizontal, true);
     // A run ends exactly at DURATION; roundings of its flights do not matter.
     this.time = code === END ? DURATION : this.time + pair.flight;
-    this.events++;
+    if (code >= END) this.events++;
   }
 
   /** Whether an interval that began in this run is still incomplete and within the histogram. */
@@ -233,11 +308,11 @@ class Runs {
   }
 
   follow() {
-    this.pair.step(Infinity);
+    const code = this.pair.step(Infinity);
     this.hop(0, this.pair.vertical, false);
     this.hop(1, this.pair.horizontal, false);
     this.time += this.pair.flight;
-    this.events++;
+    if (code >= END) this.events++;
   }
 
   hop(hop, after, counted) {

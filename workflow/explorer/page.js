@@ -3,10 +3,10 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 
-/** The address holds the scene: #width=3&height=1&radius=0.24. In addition, seed=7 chooses other
- *  random numbers and runs=5000 ends the counting after 5000 runs. */
-const KEYS = ["width", "height", "radius", "seed", "runs"];
-const SIDES = ["width", "height"], LENGTHS = [...SIDES, "radius"];
+/** The address holds the scene: #width=3&height=1&radius=0.24&periodic=x&friction=5. In addition,
+ *  seed=7 chooses other random numbers and runs=5000 ends the counting after 5000 runs. */
+const SIDES = ["width", "height"], LENGTHS = [...SIDES, "radius"], RATES = ["field", "friction"];
+const NUMBERS = [...LENGTHS, ...RATES], KEYS = [...NUMBERS, "seed", "runs"];
 
 /** Time units per second in the drawing. */
 const SPEED = 0.6;
@@ -19,6 +19,9 @@ const CHUNK = 2000, CHUNKS = 200;
 
 /** Milliseconds between two renewals of the numbers, long enough to read them. */
 const RENEWED = 250;
+
+/** The strongest effects that can be drawn, in units. */
+const STRONGEST = { field: 100, friction: 300 };
 
 /** The range of mean times in the plot, in units. */
 const SHOWN_TIMES = [0.001, 1000];
@@ -33,6 +36,9 @@ const NAMES = {
   any_wall: "wall hits",
 };
 const GLYPHS = { o: "●", s: "■", "^": "▲", P: "✚", D: "◆", v: "▼" };
+
+/** The axes with walls that an event needs, any one of them. */
+const NEEDED = { vertical_hop: "y", horizontal_hop: "x", disc_collision: "", any_wall: "xy" };
 
 /** The events whose colours the discs have. */
 const DISCS = ["vertical_hop", "horizontal_hop"];
@@ -53,7 +59,16 @@ const unitOf = ({ width, height }) => (
 /** A length or a time in units, without the last bits that the division adds. */
 const inUnits = (value) => Number((value / unit).toPrecision(15));
 
+/** The printed value of a number of the scene. Field and friction are per length. */
+const printed = (name) => (RATES.includes(name) ? state[name] / unit : unit * state[name]);
+
 const state = { paused: matchMedia("(prefers-reduced-motion: reduce)").matches };
+
+const effects = () => ({ periodic: state.periodic, field: state.field, friction: state.friction });
+
+/** Whether an event exists in the scene, though it may be impossible at this radius. */
+const exists = (event) => !NEEDED[event]
+  || [...NEEDED[event]].some((axis) => !state.periodic.includes(axis));
 
 let asked; // {name: number} of the address
 let runs; // the statistics of the scene
@@ -63,7 +78,7 @@ let drawn; // the run in the drawing: {pair, time, trail, flash}
 // Controls -----------------------------------------------------------------------------------
 
 /** The largest radius of the slider, slightly below the largest radius of the box. */
-const lastRadius = () => Math.floor(999 * largestRadius(state.width, state.height)) / 1000;
+const lastRadius = () => Math.floor(999 * largestRadius(state.width, state.height, effects())) / 1000;
 
 /** Take a box and its unit; the sliders reach all boxes of the build with the same unit. */
 function choose(box) {
@@ -77,36 +92,51 @@ function choose(box) {
   }
 }
 
+/** Take the effects of a scene, in any unit. */
+function chooseEffects({ periodic = "", field = 0, friction = 0 }) {
+  Object.assign(state, { periodic, field: field * unit, friction: friction * unit });
+}
+
 /** Read the address; name its parts that this page cannot show. */
 function readAddress() {
   const given = [...new URLSearchParams(location.hash.slice(1))];
-  const taken = ([name, text]) => KEYS.includes(name) && text !== ""
-    && (LENGTHS.includes(name) ? Number(text) > 0 && Number(text) < Infinity : Number(text) >= 0);
+  const periodic = Object.fromEntries(given).periodic ?? "";
+  const taken = ([name, text]) => (name === "periodic" ? ["x", "y", "xy"].includes(text)
+    : KEYS.includes(name) && text !== "" && Number(text) < Infinity
+      && (LENGTHS.includes(name) ? Number(text) > 0 : Number(text) >= 0)
+      && !(name === "field" && Number(text) && periodic.includes("y")));
   const wrong = given.filter((pair) => !taken(pair)).map((pair) => pair.join("="));
   at("problem").textContent = wrong.length
-    ? `The address asks for ${wrong.join(", ")}: this page knows ${KEYS.join(", ")}, each a number.` : "";
-  asked = Object.fromEntries(given.filter(taken).map(([name, text]) => [name, Number(text)]));
+    ? `The address asks for ${wrong.join(", ")}: this page knows ${KEYS.join(", ")}, each a number, and `
+      + "periodic, which is x, y or xy. A field needs walls along y." : "";
+  asked = Object.fromEntries(given.filter(taken).map(
+    ([name, text]) => [name, name === "periodic" ? text : Number(text)]));
   const first = DATA.scenes[0] ?? { width: 1.5, height: 1 };
   choose({ width: asked.width ?? first.width, height: asked.height ?? first.height });
   // In every box, discs of this radius can hop in both ways.
   const usual = Number((Math.min(state.width, state.height) / 5).toFixed(3));
   state.radius = "radius" in asked ? inUnits(asked.radius) : usual;
+  const own = [...SIDES, "periodic", ...RATES].some((name) => name in asked);
+  chooseEffects(own ? asked : first);
   changed();
 }
 
 /** Write the scene into the address, so that a copy of the address shows the same scene. */
 function writeAddress() {
-  const lengths = LENGTHS.map((name) => [name, short(unit * state[name], 12)]);
-  history.replaceState(null, "", `#${new URLSearchParams({ ...asked, ...Object.fromEntries(lengths) })}`);
+  for (const name of NUMBERS) asked[name] = short(printed(name), 12);
+  asked.periodic = state.periodic;
+  for (const name of ["periodic", ...RATES]) if (!state[name]) delete asked[name];
+  history.replaceState(null, "", `#${new URLSearchParams(asked)}`);
 }
 
-/** Take a typed length; a box of another size gets new sliders. */
+/** Take a typed number; a box of another size gets new sliders. */
 function typed(name, value) {
-  if (value > 0 && value < Infinity) {
-    const lengths = Object.fromEntries(LENGTHS.map((each) => [each, unit * state[each]]));
-    lengths[name] = value;
-    if (SIDES.includes(name)) choose(lengths);
-    state.radius = inUnits(lengths.radius);
+  if (value < Infinity && (value > 0 || (value === 0 && RATES.includes(name)))) {
+    const numbers = Object.fromEntries(NUMBERS.map((each) => [each, printed(each)]));
+    numbers[name] = value;
+    if (SIDES.includes(name)) choose(numbers);
+    state.radius = inUnits(numbers.radius);
+    chooseEffects({ ...numbers, periodic: state.periodic });
   }
   changed();
 }
@@ -114,24 +144,36 @@ function typed(name, value) {
 function prepareControls() {
   at("radius").min = 0.01;
   for (const name of LENGTHS) {
-    const slider = at(name), field = slider.nextElementSibling;
+    const slider = at(name);
     slider.addEventListener("input", () => {
       state[name] = Number(slider.value);
       changed();
     });
     slider.addEventListener("change", writeAddress);
-    field.addEventListener("change", () => {
-      typed(name, field.valueAsNumber);
+  }
+  for (const name of NUMBERS) {
+    numberOf(name).addEventListener("change", (event) => {
+      typed(name, event.target.valueAsNumber);
+      writeAddress();
+    });
+  }
+  for (const axis of "xy") {
+    at(axis).addEventListener("change", () => {
+      state.periodic = [..."xy"].filter((each) => at(each).checked).join("");
+      changed();
       writeAddress();
     });
   }
   for (const scene of DATA.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    button.textContent = `${short(scene.width, 12)} × ${short(scene.height, 12)}`;
+    const more = ["periodic", ...RATES].filter((name) => scene[name]);
+    button.textContent = [`${short(scene.width, 12)} × ${short(scene.height, 12)}`,
+      ...more.map((name) => `${name} ${scene[name]}`)].join(", ");
     button.title = `The box of the scene ${scene.name}, with the points of its tables`;
     button.addEventListener("click", () => {
       choose(scene);
+      chooseEffects(scene);
       changed();
       writeAddress();
     });
@@ -149,22 +191,31 @@ function showPause() {
   at("pause").textContent = state.paused ? "Run" : "Pause";
 }
 
+/** The number field of a number, which is next to its slider if it has one. */
+const numberOf = (name) => (RATES.includes(name) ? at(name) : at(name).nextElementSibling);
+
 function showControls() {
   at("radius").max = lastRadius();
-  for (const name of LENGTHS) {
-    const slider = at(name), text = short(unit * state[name], 12);
-    slider.value = state[name];
-    slider.ariaValueText = text;
-    Object.assign(slider.nextElementSibling, { value: text, step: short(unit * slider.step, 12) });
+  for (const name of NUMBERS) {
+    const text = short(printed(name), 12);
+    numberOf(name).value = text;
+    if (RATES.includes(name)) continue;
+    const slider = at(name);
+    Object.assign(slider, { value: state[name], ariaValueText: text });
+    numberOf(name).step = short(unit * slider.step, 12);
   }
+  for (const axis of "xy") at(axis).checked = state.periodic.includes(axis);
+  at("field").disabled = state.periodic.includes("y");
 }
 
 /** Start again with another box or radius. */
 function changed() {
+  if (state.periodic.includes("y")) state.field = 0; // else the discs would fall for ever
+  for (const name of RATES) state[name] = Math.min(state[name], STRONGEST[name]);
   state.radius = Math.min(Math.max(state.radius, 0.01), lastRadius());
   showControls();
   at("duration").textContent = short(unit * DURATION);
-  runs = new Runs(state.width, state.height, state.radius, asked.seed ?? DATA.seed);
+  runs = new Runs(state.width, state.height, state.radius, asked.seed ?? DATA.seed, effects());
   show(runs.current);
   const possible = [0, 1].filter((hop) => runs.exact.times[COUNTED[hop]] !== null);
   if (possible.length === 1) at("hop").value = possible[0];
@@ -180,7 +231,7 @@ function changed() {
 // The drawing --------------------------------------------------------------------------------
 
 function show(initial) {
-  const pair = new Pair(state.width, state.height, state.radius, initial);
+  const pair = new Pair(...runs.scene, initial);
   drawn = { pair, time: 0, trail: [[0, pair.x1, pair.y1, pair.x2, pair.y2]], flash: null };
 }
 
@@ -217,32 +268,62 @@ function draw() {
     [pair.x2, pair.y2, colour(DISCS[1])],
   ];
 
+  const { width, height, periodic } = state;
   context.fillStyle = ink("--inside");
-  context.fillRect(-state.width / 2, -state.height / 2, state.width, state.height);
-  context.lineWidth = 3 * line;
-  context.strokeStyle = ink("--ink");
-  context.strokeRect(-state.width / 2, -state.height / 2, state.width, state.height);
-
-  context.lineWidth = 1.5 * line;
-  for (const [disc, [, , paint]] of discs.entries()) {
-    context.strokeStyle = paint;
-    for (let i = 1; i < trail.length; i++) {
-      context.globalAlpha = 0.8 * Math.max(0, 1 - (time - trail[i][0]) / 1.5);
+  context.fillRect(-width / 2, -height / 2, width, height);
+  // Walls, and dashed lines where the box repeats itself.
+  for (const [axis, right, up] of [["x", 0, height], ["y", width, 0]]) {
+    const ring = periodic.includes(axis);
+    context.lineWidth = (ring ? 1 : 3) * line;
+    context.setLineDash(ring ? [5 * line, 5 * line] : []);
+    context.strokeStyle = ink(ring ? "--soft" : "--ink");
+    for (const side of [-0.5, 0.5]) {
       context.beginPath();
-      context.moveTo(trail[i - 1][1 + 2 * disc], trail[i - 1][2 + 2 * disc]);
-      context.lineTo(trail[i][1 + 2 * disc], trail[i][2 + 2 * disc]);
+      context.moveTo(side * (width - right) - right / 2, side * (height - up) - up / 2);
+      context.lineTo(side * (width - right) + right / 2, side * (height - up) + up / 2);
       context.stroke();
     }
   }
-  for (const [x, y, paint] of discs) {
-    context.globalAlpha = 0.55;
-    context.fillStyle = context.strokeStyle = paint;
+  context.setLineDash([]);
+
+  context.lineWidth = 1.5 * line;
+  context.save();
+  if (periodic) {
     context.beginPath();
-    context.arc(x, y, state.radius, 0, 2 * Math.PI);
-    context.fill();
-    context.globalAlpha = 1;
-    context.stroke();
+    context.rect(-width / 2, -height / 2, width, height);
+    context.clip();
   }
+  // The images of the discs that may be in the box.
+  const images = (axis, side) => (periodic.includes(axis) ? [-side, 0, side] : [0]);
+  for (const right of images("x", width)) for (const up of images("y", height)) {
+    context.save();
+    context.translate(right, up);
+    for (const [disc, [, , paint]] of discs.entries()) {
+      context.strokeStyle = paint;
+      for (let i = 1; i < trail.length; i++) {
+        const [from, to] = [trail[i - 1], trail[i]].map(
+          (point) => point.slice(1 + 2 * disc, 3 + 2 * disc));
+        // No line through the box for a disc that comes back on the other side.
+        if (Math.abs(to[0] - from[0]) > width / 2 || Math.abs(to[1] - from[1]) > height / 2) continue;
+        context.globalAlpha = 0.8 * Math.max(0, 1 - (time - trail[i][0]) / 1.5);
+        context.beginPath();
+        context.moveTo(...from);
+        context.lineTo(...to);
+        context.stroke();
+      }
+    }
+    for (const [x, y, paint] of discs) {
+      context.globalAlpha = 0.55;
+      context.fillStyle = context.strokeStyle = paint;
+      context.beginPath();
+      context.arc(x, y, state.radius, 0, 2 * Math.PI);
+      context.fill();
+      context.globalAlpha = 1;
+      context.stroke();
+    }
+    context.restore();
+  }
+  context.restore();
 
   const age = flash ? time - flash.since : Infinity;
   if (age >= 0.35) return;
@@ -294,7 +375,7 @@ function showTable() {
       spaced(count),
       time === null ? "–" : rounded(time),
       error === null ? "–" : `${((100 * error) / time).toPrecision(2)} %`,
-      exact === null ? "never" : rounded(exact),
+      exact === null ? (exists(event) ? "never" : "–") : rounded(exact),
       z === null ? "–" : `${z < 0 ? "−" : "+"}${Math.abs(z).toFixed(1)}`.replace("−0.0", "+0.0"),
     ];
     const row = cells.map((cell) => `<td>${cell}</td>`).join("");
@@ -310,11 +391,12 @@ function showTable() {
 
 /** {radii, times: {event: mean times}}: dense near the ends of each regime, where curves bend. */
 function exactCurves() {
-  const ends = thresholds(state.width, state.height).map(([radius]) => radius);
-  const edges = [0, ...ends, largestRadius(state.width, state.height)];
+  const { width, height } = state;
+  const ends = thresholds(width, height, effects()).map(([radius]) => radius);
+  const edges = [0, ...ends, largestRadius(width, height, effects())];
   const radii = edges.slice(1).flatMap((high, i) => Array.from({ length: DENSE }, (_, j) =>
     edges[i] + (high - edges[i]) * Math.sin((Math.PI / 2) * ((j + 0.5) / DENSE)) ** 2));
-  const computed = radii.map((radius) => [radius, exact(state.width, state.height, radius)]);
+  const computed = radii.map((radius) => [radius, exact(width, height, radius, effects())]);
   const kept = computed.filter(([, numbers]) => numbers !== null);
   return {
     radii: kept.map(([radius]) => radius),
@@ -323,13 +405,14 @@ function exactCurves() {
   };
 }
 
-/** The tables of the build for the box of the sliders, if it is one of its scenes. */
-const builtScene = () => DATA.scenes.find(
-  ({ width, height }) => inUnits(width) === state.width && inUnits(height) === state.height);
+/** The tables of the build for the scene, if it is one of its scenes; friction changes no time. */
+const builtScene = () => DATA.scenes.find(({ width, height, periodic = "", field = 0 }) =>
+  inUnits(width) === state.width && inUnits(height) === state.height
+  && periodic === state.periodic && field * unit === state.field);
 
 /** Draw the curves, and points with errors, from the build and from the counts of this page. */
 function paintTimes(plot) {
-  for (const [radius] of thresholds(state.width, state.height)) {
+  for (const [radius] of thresholds(state.width, state.height, effects())) {
     plot.line(radius, ink("--grid"), [4, 4]);
   }
   for (const event of COUNTED) plot.curve(curves.radii, curves.times[event], colour(event));
@@ -350,9 +433,9 @@ function paintTimes(plot) {
 const timesPlot = new Plot(at("times"), {
   x: {
     label: "radius r (length)",
-    range: () => [0, 1.03 * largestRadius(state.width, state.height)],
+    range: () => [0, 1.03 * largestRadius(state.width, state.height, effects())],
     text: (tick) => short(unit * tick),
-    marks: () => thresholds(state.width, state.height),
+    marks: () => thresholds(state.width, state.height, effects()),
   },
   y: {
     label: "mean time τ (length/speed)",
@@ -362,9 +445,9 @@ const timesPlot = new Plot(at("times"), {
   },
   paint: paintTimes,
   read: (radius) => {
-    const numbers = radius > 0 && exact(state.width, state.height, radius);
+    const numbers = radius > 0 && exact(state.width, state.height, radius, effects());
     if (!numbers) return `r = ${short(unit * radius)}: the discs do not fit`;
-    const times = COUNTED.map((event) => {
+    const times = COUNTED.filter(exists).map((event) => {
       const time = numbers.times[event];
       return `${NAMES[event]} ${time === null ? "never" : short(unit * time)}`;
     });
@@ -404,7 +487,8 @@ function showIntervals() {
   const { event, mean, total } = intervals();
   intervalsPlot.draw();
   at("explanation").textContent = mean === null
-    ? `In this box discs of this radius make no ${NAMES[event]}.`
+    ? (exists(event) ? "In this box discs of this radius" : "Along a periodic axis discs")
+      + ` make no ${NAMES[event]}.`
     : `Bars are ${spaced(total)} intervals; the dashed line is the exponential of the exact mean,`
       + ` τ = ${short(unit * mean)}: the law of independent hops.`;
 }

@@ -103,9 +103,9 @@ class Plot {
       this.write(this.y.text(tick), left - 6, y, "right", "middle");
     }
     (this.x.marks?.() ?? []).forEach(([value, name], i, { length }) => {
-      // Two marks may be close: their names are on different sides.
+      // Two marks may be close: their names are on different sides. None is on the ticks of y.
       const [x] = this.at(value, yLow), align = length === 1 ? "center" : ["right", "left"][i];
-      this.write(name, x, top - 5, align, "bottom");
+      this.write(name, x, top - 5, x < left + 60 ? "left" : align, "bottom");
     });
     context.strokeStyle = ink("--soft");
     context.strokeRect(left, top, width, height);

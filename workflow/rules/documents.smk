@@ -152,7 +152,7 @@ rule explorer:
         # The page needs no points: it takes the built ones, and is renewed with them.
         tables=[
             path
-            for scene in CONFIGURATION.plain
+            for scene in CONFIGURATION.scenes
             for name, path in CONFIGURATION.tables(scene.name).items()
             if name in ("volume", "areas", "mean_times") and os.path.exists(path)
         ],

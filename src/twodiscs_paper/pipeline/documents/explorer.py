@@ -1,7 +1,7 @@
 """The explorer: one HTML file that moves the discs and counts events, beside exact mean times.
 
 The file contains its own theory, dynamics and plots, in JavaScript, and the points of all built
-scenes without effects. It loads no other file.
+scenes that it can show. It loads no other file.
 """
 
 import json
@@ -13,9 +13,13 @@ from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.events import DECLARED
+from twodiscs.theory.flux import constant
 
 #: The scripts of the page in their order.
 SCRIPTS = ("theory.js", "dynamics.js", "plot.js", "page.js")
+
+#: The effects that the page can show.
+SHOWN = {"periodic", "field", "friction"}
 
 #: The events that the page counts.
 COUNTED = ("vertical_hop", "horizontal_hop", "disc_collision", "any_wall")
@@ -36,9 +40,10 @@ def by_dynamics(rows):
     }
 
 
-def by_monte_carlo(volumes, areas):
+def by_monte_carlo(volumes, areas, components):
     """Return the same from rows of volume.csv and areas.csv: volume over area.
 
+    ``components`` is the number of velocity components minus the number of conserved momenta.
     The bias of an area by the thickness of its shell is known exactly and subtracted. Errors of
     volume and area are added as if they were independent. They are not, because samples in a shell
     are free samples, too; therefore the error is slightly too large.
@@ -49,22 +54,23 @@ def by_monte_carlo(volumes, areas):
         event, radius = row["quantity"].removesuffix("_area"), row["radius"]
         if event in times and radius in volume and row["stderr"] is not None and row["exact"]:
             free, area = volume[radius], row["estimate"] - row["bias"]
-            time = 1.5 * math.pi / DECLARED[event].ways * free["estimate"] / area
+            time = 2 / (DECLARED[event].ways * constant(components)) * free["estimate"] / area
             error = math.hypot(free["stderr"] / free["estimate"], row["stderr"] / area)
             times[event].append([radius, time, time * error])
     return times
 
 
-def points(tables):
+def points(tables, periodic=""):
     """Return {event: {"dynamics": …, "monte_carlo": …}} of the tables of a scene, {name: path}.
 
-    Values are as in ``by_dynamics``; a scene need not have every table.
+    Values are as in ``by_dynamics``; a scene need not have every table. The momentum along its
+    ``periodic`` axes is conserved.
     """
     volumes, areas, times = (
         table.read(tables[table.name()]) if table.name() in tables else []
         for table in (Volume, Areas, MeanTimes)
     )
-    dynamics, sampled = by_dynamics(times), by_monte_carlo(volumes, areas)
+    dynamics, sampled = by_dynamics(times), by_monte_carlo(volumes, areas, 4 - len(periodic))
     return {
         event: {"dynamics": dynamics[event], "monte_carlo": sampled[event]} for event in COUNTED
     }
@@ -99,14 +105,15 @@ def main():
     parser.add_argument("--seed", type=int, required=True, help="of the random numbers in the page")
     parser.add_argument("--output", type=Path, required=True, metavar="HTML")
     options = parser.parse_args()
-    given = json.loads(options.scenes)
-    scenes = [
-        {key: scene[key] for key in ("name", "width", "height")}
-        | {"points": points({t.stem: t for t in options.tables if t.parent.name == scene["name"]})}
-        for scene in given
-        if not scene["effects"]
-    ]
-    left_out = [scene["name"] for scene in given if scene["effects"]]
+    scenes, left_out = [], []
+    for scene in json.loads(options.scenes):
+        name, effects = scene["name"], scene["effects"]
+        if not effects.keys() <= SHOWN:
+            left_out.append(name)
+            continue
+        tables = {path.stem: path for path in options.tables if path.parent.name == name}
+        kept = {key: scene[key] for key in ("name", "width", "height")}
+        scenes.append(kept | effects | {"points": points(tables, effects.get("periodic", ""))})
     parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
     page = explorer(parts, data_of(scenes, options.seed), left_out)
     options.output.write_text(page, encoding="utf-8", newline="\n")
