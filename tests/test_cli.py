@@ -67,7 +67,8 @@ def test_the_table_holds_every_digit(monkeypatch, capsys):
         ([*BOX, "--radius", "0,2"], "not '0,2'; decimals follow a point, 0.2"),
         ([*BOX], "the following arguments are required: --radius"),
         ([*BOX, "--radius", "0.1", "--rad", "2"], "unrecognized arguments: --rad 2"),
-        ([*BOX, "--radius", "0.1", "--mass_ratio=2"], "--mass_ratio=2; names have dashes"),
+        ([*BOX, "--radius", "0.1", "--mass_ratio=2"], "=2; did you mean --mass-ratio?"),
+        ([*BOX, "--radius", "0.1", "--gravity", "1"], "--gravity 1; did you mean --field?"),
         (["--width", "1", "--height", "1e99", "--radius", "0.1"], "height must lie between"),
         ([*BOX, "--radius", "0.1", "--mass-ratio", "two"], "argument --mass-ratio: must be a num"),
     ],
@@ -274,6 +275,16 @@ def test_a_build_ends_with_verdict_and_report(tmp_path):
     assert passed.startswith(f"{tmp_path / 'check.passed'}, of 2")
     assert verdict == "  a: 3 comparisons passed"
     assert report == f"The report is {tmp_path / 'report.html'}"
+
+
+def test_a_build_ends_with_the_files_of_its_targets():
+    scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"mean_times": True}}
+    asked = load({"results": "r", "scenes": [scene, scene | {"name": "b"}]})
+    assert dict(build.files(asked, ["check", "pressure", "tails", "explorer"])) == {
+        "pressure": ["r/a/figures/pressure.pdf", "r/b/figures/pressure.pdf"],
+        "tails": ["r/tails.csv", "r/figures/tails.pdf"],
+        "explorer": ["r/explorer.html"],
+    }
 
 
 def test_a_build_that_fails_leaves_no_verdict_and_says_if_its_disk_is_full(tmp_path, monkeypatch):

@@ -540,7 +540,7 @@ def test_junk_is_refused_in_a_sentence(function, data):
 NO_NUMBERS = st.characters(exclude_categories=["N", "Cs"], exclude_characters="x\0")
 OPTIONS = {
     "exact": ("--width", "--radius", "--periodic", "--mass-ratio", "--field"),
-    "simulate": ("--error", "--budget", "--events", "--seed"),
+    "simulate": ("--error", "--duration", "--budget", "--events", "--seed"),
     "sample": ("--samples", "--quantities", "--shell", "--seed"),
     "trajectory": ("--duration", "--start", "--seed"),
 }

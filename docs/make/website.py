@@ -26,7 +26,7 @@ from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
 from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.box import Box
-from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES
 from twodiscs_paper.pipeline.documents import captions, explorer
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
 from twodiscs_paper.pipeline.jobs.study import read_tables
@@ -143,18 +143,19 @@ RESULTS = {
 }
 
 
-#: The one of a figure that takes a table of a build.
-BUILT = 'td.load("results/paper")["mean_times"]'
-
-
 def in_python(name):
     """Return the line of Python that draws a figure, None for those of studies."""
     if name in STUDY_FIGURES:
         return None
-    result = BUILT if name == "pressure" else RESULTS[ENTRIES[name].tables]
+    result = RESULTS[ENTRIES[name].tables]
     if name == "animation":
         return f'td.animate({result}, "animation.gif")'
     return f'td.plot({result}, figure="{name}")'
+
+
+def target(name):
+    """Return the target that builds a figure: its study, if it belongs to one, or its own name."""
+    return next((study.name for study in STUDIES.values() if name in study.figures), name)
 
 
 def picture(name):
@@ -190,10 +191,12 @@ def gallery(pictures):
         lines.append(f"## {entry.title}")
         if name in pictures:
             lines.append(f"![{entry.title}]({pictures[name]})")
+            if pictures[name].removesuffix(".png") in PANELS:
+                lines.append("This is one panel of the figure. The build draws all of them.")
         own = FEW_ROWS & {*entry.tables}
         caption = entry.caption(Shown(BOX)) if own else captions.caption(entry, EXPECTED, SCENE)
         lines.append(caption.replace("|", "\\|").replace("<", "&lt;"))
-        lines.append(f"```text\nsnakemake --cores 2 {name}\n```")
+        lines.append(f"```text\nsnakemake --cores 2 {target(name)}\n```")
         if line := in_python(name):
             lines.append(f"```python\n{line}\n```")
     return "\n\n".join(lines) + "\n"

@@ -10,7 +10,7 @@ import argcomplete
 
 import twodiscs
 from twodiscs.arguments import Parser, add_scene, number, run, scene_of, whole_number
-from twodiscs.model.checks import PRESETS, InputError, decimal_hint
+from twodiscs.model.checks import PRESETS, InputError, decimal_hint, did_you_mean
 from twodiscs.model.events import EVENTS
 from twodiscs.model.plugins import plugin
 
@@ -30,7 +30,8 @@ def _main():
     if options.command == "run" and not any(word.startswith("-") for word in rest):
         options.targets += rest  # argparse does not find targets behind an option
     elif rest:
-        hint = "; names have dashes" if any("_" in w for w in rest if w.startswith("--")) else ""
+        hint = did_you_mean(rest[0].strip("-").partition("=")[0], vars(options))
+        hint = hint.replace("mean ", "mean --").replace("_", "-")
         parser.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
     if options.command is None:
         parser.print_help()
@@ -64,9 +65,10 @@ def _parser():
     command("exact", _exact, "exact volume, areas and mean times of one scene")
     some = command("simulate", _simulate, "mean times by molecular dynamics, beside the exact ones")
     relative = some.add_argument(
-        "--error", type=error, default=1e-3, help=f"relative, or {', '.join(PRESETS)} (1e-3)"
+        "--error", type=error, help=f"relative, or {', '.join(PRESETS)} (1e-3)"
     )
     relative.completer = argcomplete.ChoicesCompleter(PRESETS)
+    some.add_argument("--duration", type=number, help="the time to simulate, instead of an error")
     some.add_argument("--budget", type=whole_number, default=2e9, help="events at most (2e9)")
     events = some.add_argument(
         "--events", nargs="+", metavar="EVENT", help=f"of {', '.join(EVENTS)} (all)"
@@ -183,6 +185,7 @@ def _simulate(scene, options):
         twodiscs.simulate(
             scene,
             options.error,
+            duration=options.duration,
             seed=options.seed,
             budget=options.budget,
             events=options.events,

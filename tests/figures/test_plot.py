@@ -72,6 +72,14 @@ def test_two_boxes_are_drawn_in_axes_of_the_user(tmp_path):
     assert names == [f"vertical hops, {panels.heading(Box.of(f[0].scene))[0]}" for f in (one, two)]
 
 
+def test_scans_of_one_box_are_one_plot_and_of_two_boxes_a_sentence():
+    one, two = scan(HOPS), scan(COLLISIONS)
+    names = td.plot([one, two]).axes[0].get_legend().get_texts()
+    assert [text.get_text() for text in names] == [name_of(HOPS), name_of(COLLISIONS)]
+    with pytest.raises(td.InputError, match="for several boxes call plot with the same ax for"):
+        td.plot([one, scan(HOPS, field=1.0)])
+
+
 def test_only_results_over_the_radius_are_drawn_in_axes_of_the_user():
     trajectory = td.trajectory(td.Scene(1.5, 1.0, 0.2), duration=2)
     with pytest.raises(td.InputError, match="result must be over the radius to be drawn in ax"):

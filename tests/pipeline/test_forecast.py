@@ -164,6 +164,13 @@ def test_durations_as_people_say_them():
     ]
 
 
+@pytest.mark.parametrize(("shared", "drawings"), [(["report"], 0), (["paper", "report"], 5)])
+def test_figures_are_those_of_the_build(quick, shared, drawings):
+    asked = load(CONFIGURATION | {"shared": shared, "scenes": CONFIGURATION["scenes"][:1]})
+    (row,) = of(forecast.rows(asked, 2), scene="a", stage="figures")
+    assert row["jobs"] == drawings + 4
+
+
 @pytest.mark.parametrize("cores", [0, -1, 1.5, True])
 def test_no_cores(quick, cores):
     with pytest.raises(ValueError, match="cores must be an integer"):
@@ -194,6 +201,6 @@ def test_a_point_in_shards_is_as_many_jobs(quick):
     (request,) = load({"shared": [], "shard_events": 1e8, "scenes": [block]}).scenes
     shards = cost.shards(request, "dynamics", 0.3)
     assert len(shards) > 3
-    (row,) = of(forecast.scene_rows(request, 4, forecast.starts()), radius=0.3)
+    (row,) = of(forecast.scene_rows(request, 0, 4, forecast.starts()), radius=0.3)
     assert row["jobs"] == len(shards) + 1
     assert row["startup"] == 0.25 * row["jobs"]

@@ -139,11 +139,15 @@ def _what(result):
     if isinstance(result, Box) or result is scene is not None:
         return result if isinstance(result, Box) else Box.of(scene), [], _drawings(), {}
     results = [*result] if isinstance(result, list | tuple | Scan) else [result]
+    results = [one for some in results for one in (some if isinstance(some, Scan) else [some])]
     for kind in (Measurements, Intervals):
         if results and all(isinstance(item, kind) for item in results):
             boxes = {Box.of(item.scene) for item in results}
             if len(boxes) > 1:
-                raise InputError("result must be of one box, with the same effects")
+                raise InputError(
+                    "result must be of one box, with the same effects; for several boxes call plot "
+                    "with the same ax for each"
+                )
             hops = sorted({item.hop for item in results if isinstance(item, Intervals)})
             if len(hops) > 1:
                 raise InputError(f"result must be of one kind of hop, not {' and '.join(hops)}")

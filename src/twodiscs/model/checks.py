@@ -192,7 +192,7 @@ def check_ascending(name, values):
 ALIASES = {
     "field": "gravity g acceleration",
     "discs": "n num n_discs num_discs disks n_particles particles",
-    "samples": "n num n_samples shots",
+    "samples": "n num n_samples shots steps",
     "number": "n num size n_starts n_intervals",
     "replicas": "n num n_replicas trajectories",
     "hops": "n num n_hops",

@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 from twodiscs.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.comparison.tables.cost import Forecast
-from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import check_integer
 from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.pipeline import cost
@@ -135,8 +134,11 @@ def summed(scene, stage, cores, rows):
     )  # fmt: skip
 
 
-def scene_rows(scene, cores, started):
-    """Return the rows of a ``SceneRequest``: every job, the stages and their total."""
+def scene_rows(scene, figures, cores, started):
+    """Return the rows of a ``SceneRequest``: every job, the stages and their total.
+
+    ``figures`` is the number of its figures that are built.
+    """
     jobs, sums = [], []
     for stage, keys in scene.keys.items():
         radii, near = thinned([*keys.values()])
@@ -148,9 +150,6 @@ def scene_rows(scene, cores, started):
             own.append(row(scene.name, stage, cores, number, *taken))
         jobs += own
         sums += [summed(scene.name, stage, cores, own)] if own else []
-    figures = sum(
-        entry.is_called(scene.quantities.names, scene.effects) for entry in FIGURES.values()
-    )
     for kind, number in (("tables", len(scene.tables)), ("figures", figures)):
         sums.append(row(scene.name, kind, cores, number, startup=number * started[kind]))
     return [*jobs, *sums, summed(scene.name, "total", cores, sums)]
@@ -164,7 +163,7 @@ def rows(configuration, cores):
     cores, started = check_integer("cores", cores), starts()
     forecast, sums = [], []
     for scene in configuration.scenes:
-        forecast += scene_rows(scene, cores, started)
+        forecast += scene_rows(scene, len(configuration.shown(scene.name)), cores, started)
         sums.append(forecast[-1])
     shared = [row("all", "compile", cores, 1, startup=COMPILATION)]
     for name in configuration.shared:

@@ -229,8 +229,8 @@ class Measurement:
     def __str__(self) -> str:
         _, value, error, exact, unit, z, number, status = self.cells()
         compared = f", exact {exact}" + (f", z = {z}" if z else "")
-        error = f" ± {error}" if error else ""
-        return f"{self.quantity} = {value}{error} {unit}{compared}, {number} counted, {status}"
+        error, unit = f" ± {error}" if error else "", f" {unit}" if unit else ""
+        return f"{self.quantity} = {value}{error}{unit}{compared}, {number} counted, {status}"
 
     __repr__ = __str__
 

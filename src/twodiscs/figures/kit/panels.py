@@ -14,6 +14,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter
 
 from twodiscs.figures.kit import drawing
@@ -346,7 +347,11 @@ def legend(axes, box, series, loc, single=None, more=()):
     for name, style in more:
         handles.append(Line2D([], [], **style))
         names.append(name)
-    axes.legend(handles, names, loc=loc, **CLEAR)
+    made = axes.legend(handles, names, loc=loc, **CLEAR)
+    if len(names) > 4:  # no place without a curve is large enough
+        made.set_zorder(7)
+        for text in made.get_texts():
+            text.set(fontsize=6.3, path_effects=[withStroke(linewidth=2, foreground="white")])
 
 
 #: The least ratio of the ends of a logarithmic ordinate: there is a tick or two within.

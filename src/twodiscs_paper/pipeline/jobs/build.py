@@ -154,10 +154,25 @@ def build(path, targets, cores=None, dry_run=False):
     if lines.INTERRUPTED.is_set():
         print("Interrupted. The same command goes on from here.")
     elif status == 0 and not dry_run:
-        print(closing(configuration.results), end="")
-        if "explorer" in targets:
-            print(f"The explorer is {Path(configuration.results, 'explorer.html').resolve()}")
+        made = dict(files(configuration, targets))
+        if not targets or {*targets} - {*made, "forecast", "benchmark"}:
+            print(closing(configuration.results), end="")
+        for name, paths in made.items():
+            print(f"{name}: {', '.join(paths)}")
     return status
+
+
+def files(configuration, targets):
+    """Yield (target, paths) of the figures, studies and the explorer among ``targets``."""
+    for name in targets:
+        if name == "explorer":
+            yield name, [f"{configuration.results}/explorer.html"]
+        elif name in STUDIES:
+            made = configuration.study(name)
+            yield name, [path if isinstance(path, str) else path[0] for path in made]
+        elif name in FIGURES:
+            drawn = (configuration.figures(scene.name) for scene in configuration.scenes)
+            yield name, [figures[name][0] for figures in drawn if name in figures]
 
 
 def closing(results):
