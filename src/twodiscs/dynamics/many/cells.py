@@ -33,7 +33,11 @@ from twodiscs.dynamics.many.lockstep import (
     N,
     nearest,
     new_kicks,
+    new_spins,
     redraw,
+    rub,
+    rub_walls,
+    take_spins,
 )
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many.cells import (
@@ -45,7 +49,7 @@ from twodiscs.sampling.many.cells import (
     leave,
     new_places,
 )
-from twodiscs.sampling.many.initial import draw_states
+from twodiscs.sampling.many.initial import draw_states, spins_in
 from twodiscs.sampling.streams import open_stream
 
 #: The class of the entries of a log that a kick makes, one for each disc.
@@ -53,13 +57,13 @@ KICK = N
 
 
 class Motion(NamedTuple):
-    """The state of the discs between events, arrays (N,) except the last two.
+    """The state of the discs between events, arrays (N,) except ``tree`` and ``places``.
 
     A disc was at (x, y) at its ``time``. At ``contact`` it meets its ``partner``, unless the
     partner's number of ``events`` differs from ``seen``, the number at the search. At ``border`` a
     disc leaves its cell, along y if ``upwards``. ``tree`` has the time of disc i in the i-th node
     of its last half. Any other node has the earlier time of the two nodes below, and node 1 the
-    first of all times.
+    first of all times. ``s`` are the spins of rough discs, (N, 1), or None.
     """
 
     x: np.ndarray
@@ -75,14 +79,15 @@ class Motion(NamedTuple):
     events: np.ndarray
     tree: np.ndarray
     places: Places
+    s: np.ndarray | None = None
 
 
 class Log(NamedTuple):
     """The events in a stretch of time, ``size[0]`` entries.
 
     An entry has its time after ``origin[0]``'s zero, its class, and its two discs, the same one
-    twice at a wall. Its ``states`` (n, 2, 4) are x, y, u and v of both right after an event; hops
-    have none. On a ring x goes on beyond the cell.
+    twice at a wall. Its ``states`` (n, 2, 4 or 5) are x, y, u, v and maybe s of both right after an
+    event; hops have none. On a ring x goes on beyond the cell.
     """
 
     times: np.ndarray
@@ -93,8 +98,8 @@ class Log(NamedTuple):
     origin: np.ndarray
 
 
-def new_log(discs, entries):
-    """Return an empty ``Log`` for about a number of ``entries``.
+def new_log(discs, entries, components=4):
+    """Return an empty ``Log`` for about a number of ``entries``, with ``components`` of a disc.
 
     When it is full, each pair of discs may still have a hop of each kind to enter, and each disc a
     kick.
@@ -102,7 +107,7 @@ def new_log(discs, entries):
     entries += discs * discs
     return Log(
         np.empty(entries), np.empty(entries, np.int64), np.empty((entries, 2), np.int64),
-        np.empty((entries, 2, 4)), np.zeros(1, np.int64), np.zeros(1),
+        np.empty((entries, 2, components)), np.zeros(1, np.int64), np.zeros(1),
     )  # fmt: skip
 
 
@@ -129,6 +134,13 @@ def note_event(time, kind, i, j, motion, laps, ring, log):
     for k, disc in enumerate((i, j)):
         states[k, 0], states[k, 1] = beyond(motion.x[disc], laps[disc], ring), motion.y[disc]
         states[k, 2], states[k, 3] = motion.u[disc], motion.v[disc]
+        note_spin(states, k, disc, motion.s)
+
+
+@optional(lambda states, k, disc, s: None)
+def note_spin(states, k, disc, s):
+    """Enter the spin of a ``disc``."""
+    states[k, 4] = s[disc, 0]
 
 
 @optional(lambda x, laps, ring: x)
@@ -144,8 +156,8 @@ def go_on(time, log):
 
 
 @compiled
-def new_motion(discs, grid):
-    """Return an empty ``Motion`` for a number of ``discs``."""
+def new_motion(discs, grid, rough=None):
+    """Return an empty ``Motion`` for a number of ``discs``, smooth or ``rough``."""
     leaves = 1
     while leaves < discs:
         leaves *= 2
@@ -153,7 +165,7 @@ def new_motion(discs, grid):
         np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs), np.zeros(discs),
         np.zeros(discs), np.zeros(discs), np.zeros(discs, np.bool_),
         np.zeros(discs, np.int64), np.zeros(discs, np.int64), np.zeros(discs, np.int64),
-        np.full(2 * leaves, NEVER), new_places(discs, grid),
+        np.full(2 * leaves, NEVER), new_places(discs, grid), new_spins(1, discs, rough),
     )  # fmt: skip
 
 
@@ -287,6 +299,29 @@ def collide(i, j, motion, law):
     motion.v[i] -= exchange * dy
     motion.u[j] += exchange * dx
     motion.v[j] += exchange * dy
+    rub_pair(i, j, dx, dy, motion, law.rough)
+
+
+@optional(lambda i, j, dx, dy, motion, rough: None)
+def rub_pair(i, j, dx, dy, motion, rough):
+    """Reverse the velocity of the surfaces of two discs against each other."""
+    meets = dx * dx + dy * dy > VANISHING
+    u, v, s = motion.u, motion.v, motion.s
+    change_u, change_v, change_s = rub(
+        dx, dy, u[i] - u[j], v[i] - v[j], s[i, 0] + s[j, 0], meets, rough
+    )
+    u[i] += change_u
+    v[i] += change_v
+    u[j] -= change_u
+    v[j] -= change_v
+    s[i, 0] += change_s
+    s[j, 0] += change_s
+
+
+@optional(lambda i, upwards, motion, rough: None)
+def rub_wall(i, upwards, motion, rough):
+    """Reverse the velocity of a disc's surface along a wall of y, if ``upwards``, or of x."""
+    rub_walls(motion.u, motion.v, i, not upwards, upwards, motion.s[:, 0], rough)
 
 
 @optional(lambda i, column, columns, motion, laps, ring: column)
@@ -306,7 +341,7 @@ def is_wall(ahead, columns, ring):
 
 @compiled
 def start_from(states, replica, motion, grid, law):
-    """Begin with a column of ``states`` (4N, replicas)."""
+    """Begin with a column of ``states`` (rows, replicas)."""
     discs = motion.x.size
     motion.places.head[:] = -1
     motion.events[:] = 0
@@ -316,6 +351,7 @@ def start_from(states, replica, motion, grid, law):
         motion.time[i] = 0.0
         column, row = interval_of(motion.x[i], grid.x), interval_of(motion.y[i], grid.y)
         enter(i, column, row, motion.places, grid)
+    take_spins(states, replica, 0, motion.s)
     look_for_all(motion, grid, law)
 
 
@@ -326,6 +362,13 @@ def look_for_all(motion, grid, law):
         look_around(i, 0.0, motion, grid, law)
         find_border(i, motion, grid)
         enlist(i, motion)
+
+
+@optional(lambda spins, replica, s: None)
+def give_spins(spins, replica, s):
+    """Copy the spins of a motion to the column ``replica`` of ``spins``."""
+    for i in range(s.shape[0]):
+        spins[i, replica] = s[i, 0]
 
 
 @optional(lambda time, lane, kicks: False)
@@ -339,7 +382,8 @@ def is_kicked(time, lane, kicks):
 def kick_discs(motion, laps, grid, law, log, lane, kicks):
     """Draw the velocities of all discs anew, at the time 0 that all have come to."""
     discs = motion.x.size
-    redraw(motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1)), 0, lane, law, kicks)
+    u, v = motion.u.reshape((discs, 1)), motion.v.reshape((discs, 1))
+    redraw(u, v, motion.s, 0, lane, law, kicks)
     look_for_all(motion, grid, law)
     for i in range(discs):
         note_event(0.0, KICK, i, i, motion, laps, law.ring, log)
@@ -395,6 +439,7 @@ def follow(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, h
                 else:
                     x = grid.x[columns if step > 0 else 0]
                 put(i, x, y, now, motion, counts, log, hops, hops_x)
+                rub_wall(i, upwards, motion, law.rough)
                 if upwards:
                     motion.v[i] = -motion.v[i]
                     counts[ABOVE] += 1
@@ -448,9 +493,9 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
     where hops in y or in x are not counted.
     """
     discs = initial.discs
-    states, laps = np.zeros((4 * discs, replicas)), np.zeros(discs)
-    motion, count = new_motion(discs, grid), np.zeros(N, np.int64)
-    kicks = new_kicks(1, discs, law.friction)
+    states, laps = np.zeros((initial.rows, replicas)), np.zeros(discs)
+    motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
+    kicks = new_kicks(1, discs, law.rough, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     for block in range(first, stop):
         draw_states(open_stream(seed, block), initial, states)
@@ -468,13 +513,14 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
 
 @compiled
 def advance_all(states, laps, time, epoch, law, grid, kicks):
-    """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
+    """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
     columns, None without friction.
     """
     discs, replicas = laps.shape
-    motion, counts, rounds = new_motion(discs, grid), np.zeros(N, np.int64), np.zeros(discs)
+    motion, rounds = new_motion(discs, grid, law.rough), np.zeros(discs)
+    counts, spins = np.zeros(N, np.int64), spins_in(states, discs, law.rough)
     for replica in range(replicas):
         rounds[:] = 0.0
         start_from(states, replica, motion, grid, law)
@@ -486,3 +532,4 @@ def advance_all(states, laps, time, epoch, law, grid, kicks):
             states[2 * discs + i, replica] = motion.u[i]
             states[3 * discs + i, replica] = motion.v[i]
             laps[i, replica] += rounds[i]
+        give_spins(spins, replica, motion.s)

@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, RETURNS
 from twodiscs.dynamics.kicks import open_all
 from twodiscs.dynamics.many import cells, lockstep
-from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid
+from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, rows_of
 from twodiscs.sampling.streams import open_stream
 
 #: Entries of a log before it is read.
@@ -35,7 +35,7 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
 
 
 def advance_scene(scene, states, laps, time, kicks):
-    """Advance the columns of ``states`` (4N, replicas), as ``advance_states`` does."""
+    """Advance the columns of ``states`` (rows, replicas), as ``advance_states`` does."""
     law, grid = lockstep.law_of(scene), large_grid(scene)
     if grid is None:
         return lockstep.advance_states(states, laps, time, law, kicks)
@@ -44,7 +44,8 @@ def advance_scene(scene, states, laps, time, kicks):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
-    kicks = lockstep.new_kicks(number, scene.discs, scene.friction or None)
+    law = lockstep.law_of(scene)
+    kicks = lockstep.new_kicks(number, scene.discs, law.rough, law.friction)
     if kicks is not None:
         open_all(np.uint64(seed), block * number, kicks)
     return kicks
@@ -59,12 +60,13 @@ class Followed:
     def __init__(self, scene, counted):
         self.scene, self.law, self.grid = scene, lockstep.law_of(scene), large_grid(scene)
         self.epoch, self.laps = lockstep.epoch_of(scene), np.zeros(scene.discs)
-        self.motion = cells.new_motion(scene.discs, self.grid)
-        self.log, self.counts = cells.new_log(scene.discs, ENTRIES), np.zeros(lockstep.N, np.int64)
+        self.motion = cells.new_motion(scene.discs, self.grid, self.law.rough)
+        self.log = cells.new_log(scene.discs, ENTRIES, rows_of(scene) // scene.discs)
+        self.counts = np.zeros(lockstep.N, np.int64)
         self.hops = [True if hop in counted else None for hop in ("vertical_hop", "horizontal_hop")]
 
     def start(self, state, seed, replica=0):
-        """Begin with a ``state``, a column of 4N numbers, and the kicks of its stream."""
+        """Begin with a ``state``, a column of numbers, and the kicks of its stream."""
         self.kicks = kicks_of(self.scene, 1, seed, replica)
         self.log.origin[0] = self.laps[:] = 0.0
         cells.start_from(state, 0, self.motion, self.grid, self.law)
@@ -87,7 +89,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, window, bins, sums, 
             scene, hop, seed, first, stop, chains, window, bins, sums, going
         )
     (width, wide), path, initial = bins, Followed(scene, (hop,)), initial_of(scene)
-    totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((4 * scene.discs, 1))
+    totals, state = np.zeros((2, (stop - first) * chains)), np.zeros((initial.rows, 1))
     for chain in range(totals.shape[1]):
         if chain % chains == 0:
             stream = open_stream(np.uint64(seed), first + chain // chains)

@@ -9,6 +9,8 @@ The inner loops are over lanes, and become vector instructions. An event costs N
 On a ring of x two images of a disc count, the nearest one and the next on the other side. A flight
 ends after half the circumference over the largest relative speed, √2, and the search begins again.
 A third image is therefore never reached.
+
+Rough discs have spins s, an array (N, lanes) like the velocities; for smooth discs it is None.
 """
 
 import math
@@ -25,6 +27,8 @@ from twodiscs.dynamics.law import (
     VANISHING,
     contact_quotient,
     crosses,
+    divided,
+    rough_wall_collision,
     wall_quotient,
 )
 from twodiscs.model.events import SHELLS, by_kind
@@ -36,6 +40,10 @@ from twodiscs.sampling.many.initial import (
     draw_velocities,
     initial_of,
     method,
+    put_spins,
+    spin_of,
+    spins_in,
+    velocity_memory,
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import methods
@@ -67,10 +75,11 @@ PARTS = by_kind(
 
 
 class ManyLaw(NamedTuple):
-    """The constants of the motion: half-ranges of the centres, σ, the ring, the rate of kicks.
+    """The constants of the motion: half-ranges of the centres, σ, and those of effects.
 
-    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. Between
-    walls ``ring`` is None, and so is ``friction`` without kicks.
+    ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. ``rough``
+    is that of ``law.Law``, and √(1/κ). ``friction`` is the rate of kicks. Each of them is None
+    without the effect.
     """
 
     half_x: float | None
@@ -78,26 +87,30 @@ class ManyLaw(NamedTuple):
     sigma: float
     ring: tuple | None = None
     friction: float | None = None
+    rough: tuple | None = None
 
 
 def law_of(scene):
     """Return the ``ManyLaw`` of a ``Scene``."""
-    half_y, sigma = scene.range_y / 2, scene.contact_distance
+    half_x, ring, rough = scene.range_x / 2, None, None
     if scene.periodic:
-        half = scene.width / 2
+        half_x, half = None, scene.width / 2
         ring = scene.width, half, half / math.sqrt(2)
-        return ManyLaw(None, half_y, sigma, ring, scene.friction or None)
-    return ManyLaw(scene.range_x / 2, half_y, sigma, None, scene.friction or None)
+    if scene.moment_of_inertia is not None:
+        rough = *divided(1.0, scene.moment_of_inertia, 1.0), spin_of(scene)
+    return ManyLaw(
+        half_x, scene.range_y / 2, scene.contact_distance, ring, scene.friction or None, rough
+    )
 
 
-@optional(lambda lanes, discs, friction: None)
-def new_kicks(lanes, discs, friction):
+@optional(lambda lanes, discs, rough, friction: None)
+def new_kicks(lanes, discs, rough, friction):
     """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
 
     The working memory of a draw has the form that ``draw_velocities`` takes.
     """
     streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
-    waits, cuts, velocities = np.full(lanes, NEVER), np.zeros(discs - 1), np.zeros((2, discs))
+    waits, (velocities, cuts) = np.full(lanes, NEVER), velocity_memory(discs, rough)
     return Kicks(friction, waits, streams, stream, cuts, velocities)
 
 
@@ -107,27 +120,106 @@ def drift(u, l, ring):
     return np.sum(u[:, l]) / u.shape[0]
 
 
+@optional(lambda u, l, ring, rough: drift(u, l, ring))
+def conserved_drift(u, l, ring, rough):
+    """Return ``drift``, or 0 for rough discs, whose walls take momentum."""
+    return 0.0
+
+
+@optional(lambda rough: None)
+def spin_scale(rough):
+    """Return √(1/κ) of rough discs, or None."""
+    return rough[2]
+
+
 @compiled
-def redraw(u, v, l, lane, law, kicks):
+def redraw(u, v, spins, l, lane, law, kicks):
     """Draw the velocities in column ``l`` of ``u`` and ``v`` anew, in a kick of a ``lane``.
 
-    They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum.
+    They are uniform on the sphere of the energy 1/2 and, along a ring, of the same momentum. The
+    ``spins`` of rough discs are drawn with them.
     """
-    discs, mean = u.shape[0], drift(u, l, law.ring)
-    draw_velocities(kicks.streams[lane], kicks.velocity, kicks.direction, law.ring)
+    discs, mean = u.shape[0], conserved_drift(u, l, law.ring, law.rough)
+    draw_velocities(
+        kicks.streams[lane], kicks.velocity, kicks.direction, law.ring, spin_scale(law.rough)
+    )  # fmt: skip
+    put_spins(kicks.velocity, spins, l, law.rough)
     scale = math.sqrt(max(1.0 - discs * mean * mean, 0.0))
     for i in range(discs):
         u[i, l], v[i, l] = mean + scale * kicks.velocity[0, i], scale * kicks.velocity[1, i]
     renew_kicks(lane, kicks)
 
 
-@optional(lambda u, v, times, law, kicks: None)
-def kick_lanes(u, v, times, law, kicks):
+@optional(lambda u, v, spins, times, law, kicks: None)
+def kick_lanes(u, v, spins, times, law, kicks):
     """Kick the lanes whose kick is due after flights of ``times`` (lanes,)."""
     for l in range(times.size):
         kicks.waits[l] -= times[l]
         if kicks.waits[l] <= 0.0:
-            redraw(u, v, l, l, law, kicks)
+            redraw(u, v, spins, l, l, law, kicks)
+
+
+# Rough discs: without them nothing is compiled ----------------------------------------------------
+
+
+@optional(lambda lanes, discs, rough: None)
+def new_spins(lanes, discs, rough):
+    """Return an array (N, lanes) for spins."""
+    return np.zeros((discs, lanes))
+
+
+@optional(lambda states, k, l, spins: None)
+def take_spins(states, k, l, spins):
+    """Copy the spins in column ``k`` of ``states`` (5N, …) to column ``l`` of ``spins``."""
+    for i in range(spins.shape[0]):
+        spins[i, l] = states[4 * spins.shape[0] + i, k]
+
+
+@optional(lambda i, spins: None)
+def row(i, spins):
+    """Return the spins of disc ``i``."""
+    return spins[i]
+
+
+@inlined
+def rub(dx, dy, du, dv, spin, meets, rough):
+    """Return the changes (of u and v of the first disc, of both spins) of discs that meet.
+
+    (dx, dy) and (du, dv) are the first minus the second, ``spin`` is the sum. The law is that of
+    ``law.rough_collision``. The impulse along the line of centres changes nothing here.
+    """
+    distance = math.sqrt(dx * dx + dy * dy)
+    slip = (dx * dv - dy * du) / distance - spin
+    push = slip * rough[0] / distance if meets else 0.0
+    return dy * push, -dx * push, slip * rough[1] if meets else 0.0
+
+
+@optional(lambda u, v, other_u, other_v, l, dx, dy, meets, s, other_s, rough: None)
+def rub_discs(u, v, other_u, other_v, l, dx, dy, meets, s, other_s, rough):
+    """Reverse the velocity of the surfaces of two discs against each other in a lane ``l``."""
+    change_u, change_v, change_s = rub(
+        dx, dy, u[l] - other_u[l], v[l] - other_v[l], s[l] + other_s[l], meets, rough
+    )
+    u[l] += change_u
+    v[l] += change_v
+    other_u[l] -= change_u
+    other_v[l] -= change_v
+    s[l] += change_s
+    other_s[l] += change_s
+
+
+@optional(lambda u, v, l, on_x, on_y, s, rough: None)
+def rub_walls(u, v, l, on_x, on_y, s, rough):
+    """Reverse the velocity of a disc's surface along a wall, in a lane ``l``, before it rebounds.
+
+    ``on_x`` and ``on_y`` say whether it is on a wall of x or y.
+    """
+    u[l], v[l], s[l] = rough_wall_collision(
+        u[l], v[l], s[l], u[l], v[l], on_x, on_y, rough[0], rough[1]
+    )
+
+
+# One event ----------------------------------------------------------------------------------------
 
 
 @optional(lambda gap, speed, code, sooner_gap, sooner_speed, number, half: (gap, speed, code))
@@ -230,8 +322,11 @@ def find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks=None):
 
 
 @compiled
-def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x):
-    """Advance every lane by its event and count it in ``counts`` (n, lanes), doubles."""
+def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x, spins=None):
+    """Advance every lane by its event and count it in ``counts`` (n, lanes), doubles.
+
+    Rough discs have ``spins``.
+    """
     discs, lanes = x.shape
     pairs = 1.0 + 2.0 * discs
     hops, across, hits, beside, above = counts[0], counts[1], counts[2], counts[3], counts[4]
@@ -240,12 +335,13 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
         hits[l] += 1.0 if codes[l] >= pairs else 0.0
     for i in range(discs):
         xi, yi, ui, vi, oxi, oyi = x[i], y[i], u[i], v[i], old_x[i], old_y[i]
-        number = 1.0 + 2.0 * i
+        si, number = row(i, spins), 1.0 + 2.0 * i
         for l in range(lanes):
             on_x, on_y = codes[l] == number, codes[l] == number + 1.0
             oxi[l], oyi[l] = xi[l], yi[l]
             xi[l] = nearest(on_wall(xi[l] + ui[l] * times[l], on_x, law.half_x), law.ring)
             yi[l] = on_wall(yi[l] + vi[l] * times[l], on_y, law.half_y)
+            rub_walls(ui, vi, l, on_x, on_y, si, law.rough)
             ui[l] = -ui[l] if on_x else ui[l]
             vi[l] = -vi[l] if on_y else vi[l]
             beside[l] += 1.0 if on_x else 0.0
@@ -253,8 +349,10 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
     number = pairs
     for i in range(discs):
         xi, yi, ui, vi, oxi, oyi = x[i], y[i], u[i], v[i], old_x[i], old_y[i]
+        si = row(i, spins)
         for j in range(i):
             xj, yj, uj, vj, oxj, oyj = x[j], y[j], u[j], v[j], old_x[j], old_y[j]
+            sj = row(j, spins)
             for l in range(lanes):
                 dx, dy = xi[l] - xj[l], yi[l] - yj[l]
                 hops[l] += 1.0 if crosses(oyi[l] - oyj[l], dy) else 0.0
@@ -263,11 +361,13 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
                 dx = nearest(dx, law.ring)
                 square = dx * dx + dy * dy
                 exchange = (dx * (ui[l] - uj[l]) + dy * (vi[l] - vj[l])) / square
-                exchange = exchange if (codes[l] == number) & (square > VANISHING) else 0.0
+                meets = (codes[l] == number) & (square > VANISHING)
+                exchange = exchange if meets else 0.0
                 ui[l] -= exchange * dx
                 vi[l] -= exchange * dy
                 uj[l] += exchange * dx
                 vj[l] += exchange * dy
+                rub_discs(ui, vi, uj, vj, l, dx, dy, meets, si, sj, law.rough)
             number += 1.0
 
 
@@ -281,11 +381,11 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
     x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    states = np.zeros((4 * discs, replicas))
+    states, spins = np.zeros((initial.rows, replicas)), new_spins(lanes, discs, law.rough)
     remaining, times = np.zeros(lanes), np.zeros(lanes)
     codes, speeds = np.zeros(lanes), np.zeros(lanes)
     counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
-    kicks = new_kicks(lanes, discs, law.friction)
+    kicks = new_kicks(lanes, discs, law.rough, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
     block, used, running = first, replicas, 0
@@ -310,6 +410,7 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
                 for i in range(discs):
                     x[i, l], y[i, l] = states[i, used], states[discs + i, used]
                     u[i, l], v[i, l] = states[2 * discs + i, used], states[3 * discs + i, used]
+                take_spins(states, used, l, spins)
                 open_kicks(l, seed, (block - 1) * replicas + used, kicks)
                 remaining[l] = duration
                 busy[l] = True
@@ -319,8 +420,10 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
             return sums, products
         for _ in range(PASSES):
             find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
-            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x)
-            kick_lanes(u, v, times, law, kicks)
+            advance(
+                x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops_x, spins
+            )  # fmt: skip
+            kick_lanes(u, v, spins, times, law, kicks)
 
 
 @optional(lambda laps, x, u, times, ring: None)
@@ -343,7 +446,7 @@ def of_lanes(first, stop, kicks):
 
 @compiled
 def advance_states(states, laps, time, law, kicks, lanes=LANES):
-    """Advance the columns of ``states`` (4N, replicas) by a ``time`` > 0.
+    """Advance the columns of ``states`` (rows, replicas) by a ``time`` > 0.
 
     On a ring the rounds of discs are added to ``laps`` (N, replicas). ``kicks`` are those of the
     columns, None without friction.
@@ -353,7 +456,8 @@ def advance_states(states, laps, time, law, kicks, lanes=LANES):
         stop = min(first + lanes, replicas)
         some = states[:, first:stop].copy()
         x, y = some[:discs], some[discs : 2 * discs]
-        u, v = some[2 * discs : 3 * discs], some[3 * discs :]
+        u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
+        spins = spins_in(some, discs, law.rough)
         old_x, old_y, rounds = np.zeros_like(x), np.zeros_like(y), np.zeros_like(x)
         remaining, times = np.full(stop - first, time), np.zeros(stop - first)
         codes, speeds = np.zeros(stop - first), np.zeros(stop - first)
@@ -361,8 +465,8 @@ def advance_states(states, laps, time, law, kicks, lanes=LANES):
         while np.max(remaining) > 0.0:
             find_events(x, y, u, v, remaining, times, codes, speeds, law, some_kicks)
             count_laps(rounds, x, u, times, law.ring)
-            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None)
-            kick_lanes(u, v, times, law, some_kicks)
+            advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None, spins)
+            kick_lanes(u, v, spins, times, law, some_kicks)
         states[:, first:stop] = some
         laps[:, first:stop] += rounds
 
@@ -399,19 +503,20 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
     Returns their total time and number, (2, replicas of all blocks) doubles.
     """
     discs, width, wide = initial.discs, bins[0], bins[1]
-    states, totals = np.zeros((4 * discs, replicas)), np.zeros((2, (stop - first) * replicas))
+    states, totals = np.zeros((initial.rows, replicas)), np.zeros((2, (stop - first) * replicas))
     when, per_width = np.zeros(discs * (discs - 1) // 2), 1.0 / width
     for block in range(first, stop):
         draw_states(open_stream(seed, block), initial, states)
         for start in range(0, replicas, LANES):
             some = states[:, start : start + LANES].copy()
             x, y = some[:discs], some[discs : 2 * discs]
-            u, v = some[2 * discs : 3 * discs], some[3 * discs :]
+            u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
+            spins = spins_in(some, discs, law.rough)
             lanes, own = some.shape[1], totals[:, (block - first) * replicas + start :]
             old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
             endless, times = np.full(lanes, np.inf), np.zeros(lanes)
             codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-            kicks = new_kicks(lanes, discs, law.friction)
+            kicks = new_kicks(lanes, discs, law.rough, law.friction)
             for l in range(lanes):
                 open_kicks(l, seed, block * replicas + start + l, kicks)
             # The time of the last hop, negative before the first one, and the time since then.
@@ -423,8 +528,10 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
                 busy = False
                 for _ in range(PASSES):
                     find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
-                    advance(x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x)
-                    kick_lanes(u, v, times, law, kicks)
+                    advance(
+                        x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x, spins
+                    )  # fmt: skip
+                    kick_lanes(u, v, spins, times, law, kicks)
                     for l in range(lanes):
                         at = 0.0
                         if hits[hop, l] > seen[l]:

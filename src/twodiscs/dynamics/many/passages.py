@@ -36,7 +36,16 @@ from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled, optional
 from twodiscs.sampling.many import measures
-from twodiscs.sampling.many.initial import LARGE, Initial, draw_velocities, initial_of, overlaps
+from twodiscs.sampling.many.initial import (
+    LARGE,
+    Initial,
+    draw_velocities,
+    initial_of,
+    overlaps,
+    put_spins,
+    spins_in,
+    velocity_memory,
+)
 from twodiscs.sampling.streams import open_stream, signed_uniform, uniform
 from twodiscs.theory.flux import constant
 from twodiscs.theory.many import methods
@@ -65,13 +74,14 @@ def pair_of(scene, hop):
 
 @compiled
 def draw_on_surface(state, pair, states, most):
-    """Fill the columns of ``states`` (4N, number); return (accepted, proposals of centres).
+    """Fill the columns of ``states`` (rows, number); return (accepted, proposals of centres).
 
     It stops before the last column after ``most`` proposals.
     """
     initial, proposals = pair.initial, 0
-    n, ring = initial.discs, initial.ring
-    centres, velocities, cuts = np.empty((2, n)), np.empty((2, n)), np.empty(n - 1)
+    n, ring, spin = initial.discs, initial.ring, initial.spin
+    centres, (velocities, cuts) = np.empty((2, n)), velocity_memory(n, spin)
+    spins = spins_in(states, n, spin)
     for k in range(states.shape[1]):
         i = 0
         while i < n:
@@ -91,9 +101,10 @@ def draw_on_surface(state, pair, states, most):
                 centres[0, i], centres[1, i] = x, y
                 i = 0 if overlaps(centres, i, i, x, y, initial) else i + 1
         while True:
-            draw_velocities(state, velocities, cuts, ring)
+            draw_velocities(state, velocities, cuts, ring, spin)
             if math.sqrt(2.0) * uniform(state) < abs(velocities[0, 0] - velocities[0, 1]):
                 break
+        put_spins(velocities, spins, k, spin)
         for i in range(n):
             states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
             states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
@@ -107,15 +118,15 @@ def is_short(change, ring):
 
 
 @compiled
-def follow(states, remaining, gap, net, hops, law, kicks):
-    """Follow the columns of ``states`` (4N, lanes) for the times ``remaining`` (lanes,).
+def follow(n, states, remaining, gap, net, hops, law, kicks):
+    """Follow ``n`` discs, columns of ``states`` (rows, lanes), for the times ``remaining``.
 
     Σ s_k of the hops of discs 1 and 2 is added to ``net``, their number to ``hops``. With a ``gap``
     (above 0) a lane goes on after each hop for this time, up to ``LARGEST`` hops. Returns the
     number of wall hits and collisions.
     """
-    n, lanes = states.shape[0] // 4, remaining.size
-    x, y, u, v = states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n :]
+    lanes, spins = remaining.size, spins_in(states, n, law.rough)
+    x, y, u, v = states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n]
     old_x, old_y, counts = np.zeros((n, lanes)), np.zeros((n, lanes)), np.zeros((N, lanes))
     times, codes, speeds = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     rising = np.zeros(lanes)
@@ -123,8 +134,8 @@ def follow(states, remaining, gap, net, hops, law, kicks):
         for l in range(lanes):
             rising[l] = u[0, l] - u[1, l]
         find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
-        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None)
-        kick_lanes(u, v, times, law, kicks)
+        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, None, spins)
+        kick_lanes(u, v, spins, times, law, kicks)
         for l in range(lanes):
             apart = nearest(old_x[0, l] - old_x[1, l], law.ring)
             end = nearest(x[0, l] - x[1, l], law.ring)
@@ -138,15 +149,15 @@ def follow(states, remaining, gap, net, hops, law, kicks):
 
 
 @compiled
-def begin(states, side, net, hops):
-    """Return a copy of ``states``, with reversed velocities if ``side`` is 1.
+def begin(n, states, side, net, hops):
+    """Return a copy of ``states`` of ``n`` discs, with reversed velocities if ``side`` is 1.
 
     Zero counts as positive, so a hop will be counted for a falling pair at time 0: ``net`` and
     ``hops`` begin below zero.
     """
-    n, now = states.shape[0] // 4, states.copy()
+    now = states.copy()
     for l in range(states.shape[1]):
-        for i in range(2 * n, 4 * n):
+        for i in range(2 * n, states.shape[0]):
             now[i, l] = -now[i, l] if side == 1 else now[i, l]
         falls = now[2 * n, l] < now[2 * n + 1, l]
         net[l], hops[l] = 1.0 if falls else 0.0, -1.0 if falls else 0.0
@@ -162,14 +173,14 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
     The other of the two arrays is overwritten and has no meaning.
     """
     discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
-    states, steps = np.zeros((4 * discs, REPLICAS)), np.zeros(REPLICAS)
+    states, steps = np.zeros((pair.initial.rows, REPLICAS)), np.zeros(REPLICAS)
     net, hops = np.zeros(REPLICAS), np.zeros(REPLICAS)
-    kicks = new_kicks(REPLICAS, discs, law.friction)
+    kicks = new_kicks(REPLICAS, discs, law.rough, law.friction)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
         own, size = sums[block - first], np.ones(REPLICAS)
         for side in range(sides):
-            now = begin(states, side, net, hops)
+            now = begin(discs, states, side, net, hops)
             for l in range(REPLICAS):
                 if side == 0:
                     open_kicks(l, seed, block * REPLICAS + l, kicks)
@@ -178,7 +189,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
             for k in range(times.size):
                 for l in range(REPLICAS):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
-                events += follow(now, steps, gap, net, hops, law, kicks)
+                events += follow(discs, now, steps, gap, net, hops, law, kicks)
                 for l in range(REPLICAS):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])
@@ -236,8 +247,9 @@ def require_coefficient(scene, hop):
 @lru_cache(maxsize=64)
 def surface_fraction(scene, hop):
     """Return (accepted, proposals) of states on the surface of a ``hop``, from the stream 0."""
-    states = np.zeros((4 * scene.discs, STATES))
-    return draw_on_surface(open_stream(np.uint64(0), 0), pair_of(scene, hop), states, PROPOSALS)
+    pair = pair_of(scene, hop)
+    states = np.zeros((pair.initial.rows, STATES))
+    return draw_on_surface(open_stream(np.uint64(0), 0), pair, states, PROPOSALS)
 
 
 def neighbours(scene, hop):

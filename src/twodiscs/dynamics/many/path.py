@@ -67,13 +67,14 @@ def usual_duration(scene):
 def events_of(scene, state, duration, seed=0):
     """Yield (time, event, first, second, state) of more than two discs.
 
-    ``state`` has 4N numbers, as a column of ``starts.states``; see ``trajectory.events_of``.
+    ``state`` is a column of ``starts.states``; see ``trajectory.events_of``.
     """
     if large_grid(scene) is not None:
         yield from _logged(scene, np.array(state), duration, seed)
         return
     n, law, time, kicks = scene.discs, law_of(scene), 0.0, kicks_of(scene, 1, seed)
-    x, y, u, v = (np.array(part)[:, None] for part in np.reshape(state, (4, n)))
+    x, y, u, v, *s = (np.array(part)[:, None] for part in np.reshape(state, (-1, n)))
+    spins = s[0] if s else None
     ring = law.ring[0] if law.ring else None
     # The distance of centres beyond the cell in which the kernel keeps them.
     beyond = ring * np.round(x / ring) if ring else np.zeros_like(x)
@@ -83,16 +84,16 @@ def events_of(scene, state, duration, seed=0):
     pairs = [(j, i) for i in range(n) for j in range(i)]
     along = ((n, "vertical_hop"), (0, "horizontal_hop"))
     along = [(start, hop) for start, hop in along if hop in scene.events]
-    yield time, "start", None, None, np.ravel([x + beyond, y, u, v])
+    yield time, "start", None, None, np.ravel([x + beyond, y, u, v, *s])
     while True:
-        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v])
+        before, speed = np.ravel([x + beyond, y]), np.ravel([u, v, *s])
         is_kick = before_kick(remaining[0], 0, kicks) < remaining[0]
         find_events(x, y, u, v, remaining, times, codes, speeds, law, kicks)
         flight, code = float(times[0]), int(codes[0])
-        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True)
-        kick(u, v, times, law, kicks)
+        advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, True, spins)
+        kick(u, v, spins, times, law, kicks)
         if ring:
-            beyond = ring * np.round(((before + flight * speed)[:n, None] - x) / ring)
+            beyond = ring * np.round(((before + flight * speed[: 2 * n])[:n, None] - x) / ring)
         after, hops = np.ravel([x + beyond, y]), []
         for start, name in along:
             for i, j in pairs:
@@ -101,9 +102,9 @@ def events_of(scene, state, duration, seed=0):
                 if crosses(apart, after[a] - after[b]):
                     hops.append((crossing_time(apart, speed[a] - speed[b]), name, i, j))
         for until, name, i, j in sorted(hops):
-            then = before + until * speed
+            then = before + until * speed[: 2 * n]
             yield time + until, name, i + 1, j + 1, np.concatenate([then, speed])
-        time, now = time + flight, np.ravel([x + beyond, y, u, v])
+        time, now = time + flight, np.ravel([x + beyond, y, u, v, *s])
         if code == int(END_OF_TIME) and is_kick:
             yield time, "kick", None, None, now
         elif code == int(END_OF_TIME):
@@ -118,9 +119,9 @@ def events_of(scene, state, duration, seed=0):
 
 
 @compiled
-def kick(u, v, times, law, kicks):
+def kick(u, v, spins, times, law, kicks):
     """Kick the lanes whose kick is due, see ``kick_lanes``."""
-    kick_lanes(u, v, times, law, kicks)
+    kick_lanes(u, v, spins, times, law, kicks)
 
 
 def _logged(scene, state, duration, seed):
@@ -132,7 +133,7 @@ def _logged(scene, state, duration, seed):
     path.start(inside[:, None], seed)
     path.laps[:] = rounds
     # The last known place of each disc, and its time.
-    at, since = np.reshape(state, (4, scene.discs)).copy(), np.zeros(scene.discs)
+    at, since = np.reshape(state, (-1, scene.discs)).copy(), np.zeros(scene.discs)
     names = {VERTICAL: "vertical_hop", HORIZONTAL: "horizontal_hop"}
     names |= {COLLISIONS: "disc_collision", KICK: "kick"}
     yield 0.0, "start", None, None, state
@@ -152,12 +153,12 @@ def _logged(scene, state, duration, seed):
 
 
 def _then(at, lag):
-    """Return the state, 4N numbers, of discs that were ``at`` (4, N) places ``lag`` (N,) ago."""
-    return np.concatenate([np.ravel(at[:2] + at[2:] * lag), at[2], at[3]])
+    """Return the state of discs that were ``at`` (4 or 5, N) places ``lag`` (N,) ago."""
+    return np.concatenate([np.ravel(at[:2] + at[2:4] * lag), *at[2:]])
 
 
 def state_of(scene, start):
-    """Return ``start`` as an array of 4N numbers, checked as in ``state_of``."""
+    """Return ``start`` as an array of numbers, checked as in ``state_of``."""
     names, n = components(scene), scene.discs
     try:
         state = np.array([float(value) for value in start])
@@ -185,6 +186,7 @@ def state_of(scene, start):
             f"start must have the discs apart, with {scene.contact_distance!r} or more between "
             f"their centres, not {float(apart)!r}"
         )
-    if abs((energy := float(velocities @ velocities) / 2) - ENERGY) > ROUNDING:
+    weights = np.repeat([1.0, scene.moment_of_inertia or 1.0], [2 * n, velocities.size - 2 * n])
+    if abs((energy := float(weights @ velocities**2) / 2) - ENERGY) > ROUNDING:
         raise InputError(f"start must have a total energy of {ENERGY}, not {energy!r}")
     return state

@@ -1,4 +1,4 @@
-"""The geometry of N equal, smooth discs in the plane, between walls or on a ring along x.
+"""The geometry of N equal discs in the plane, between walls or on a ring along x.
 
 Functions have the same names as in ``families.plain`` and ``families.effects``.
 """
@@ -14,6 +14,9 @@ __all__ = [
     "require_followable",
 ]  # fmt: skip
 
+#: The effects of more than two discs.
+POSSIBLE = ("periodic", "moment_of_inertia", "friction")
+
 #: The most decimal digits before or after the point of the volume of the prism: a double can then
 #: represent it.
 MOST_DIGITS = 150
@@ -21,10 +24,10 @@ MOST_DIGITS = 150
 
 def check(scene):
     """Raise ``InputError`` for an invalid ``Scene``: effects, or a radius that does not fit."""
-    if other := [name for name in scene.effects if name not in ("periodic", "friction")]:
+    if other := [name for name in scene.effects if name not in POSSIBLE]:
         raise InputError(
-            f"{other[0]} must be left out with {scene.discs} discs, because more than two are "
-            f"equal and smooth discs in the plane, not {scene.effects[other[0]]!r}"
+            f"{other[0]} must be left out with {scene.discs} discs, because more than two can have "
+            f"no effects except {', '.join(POSSIBLE)}, not {scene.effects[other[0]]!r}"
         )
     if scene.periodic not in ("", "x"):
         raise InputError(

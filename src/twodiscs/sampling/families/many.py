@@ -8,8 +8,9 @@ __all__ = ["components", "plan", "proposals_per_event", "require_free_fraction",
 
 
 def components(scene):
-    """Return the names of the components of a state: x1 … xN, then y, u and v of all discs."""
-    return tuple(f"{name}{disc}" for name in "xyuv" for disc in range(1, scene.discs + 1))
+    """Return the names of the components of a state: x1 … xN, then y, u, v and maybe s of all."""
+    names = "xyuv" if scene.moment_of_inertia is None else "xyuvs"
+    return tuple(f"{name}{disc}" for name in names for disc in range(1, scene.discs + 1))
 
 
 def require_free_fraction(scene):

@@ -1,5 +1,8 @@
 """States of the invariant measure for N discs: velocities on a sphere, centres in three ways.
 
+A state is a column of x of all discs, then y, u and v, of rough discs also their spins s, as the
+speeds rω of their surfaces.
+
 * ``rejection``: N centres are drawn; after an overlap all are drawn again. Exact. The acceptance is
   V/(AB)^N, and the method is used if it is at least ``LEAST``.
 * ``channel``: in an ordered channel heights have the density (A − S)₊^N, S = Σ d. A Markov chain
@@ -86,6 +89,8 @@ class Initial(NamedTuple):
     ring: float | None
     cells: Cells | None
     chain: Chain | None
+    rows: int  # of a state
+    spin: float | None  # √(m r²/I) of rough discs, None if smooth
 
 
 @lru_cache(maxsize=1024)
@@ -110,7 +115,18 @@ def initial_of(scene, by=None):
         scene.width if scene.periodic else None,
         _cells(scene) if by == "channel" else None,
         _chain(scene) if by == "chain" or scene.discs > MOST_REJECTED else None,
+        rows_of(scene), spin_of(scene),
     )  # fmt: skip
+
+
+def rows_of(scene):
+    """Return the number of components of a state of a ``Scene``."""
+    return (4 if scene.moment_of_inertia is None else 5) * scene.discs
+
+
+def spin_of(scene):
+    """Return √(m r²/I) of the rough discs of a ``Scene``, None if they are smooth."""
+    return None if scene.moment_of_inertia is None else 1 / math.sqrt(scene.moment_of_inertia)
 
 
 def _chain(scene):
@@ -227,12 +243,50 @@ def keep_still(velocities, ring):
         velocities[1, i] *= scale
 
 
+@optional(lambda discs, spin: (np.empty((2, discs)), np.empty(discs - 1)))
+def velocity_memory(discs, spin):
+    """Return arrays (velocities, cuts) for ``draw_velocities``."""
+    return np.empty((2, 2 * discs)), np.empty(2 * discs - 1)
+
+
+@optional(lambda velocities, ring, spin: keep_still(velocities, ring))
+def keep_spins(velocities, ring, spin):
+    """Scale ``velocities`` and spins of rough discs, (2, 2N), to the energy 1/2.
+
+    Columns from N on have a spin in their first row; the second row is not used.
+    """
+    n, total = velocities.shape[1] // 2, 0.0
+    for i in range(n):
+        total += velocities[0, i] * velocities[0, i] + velocities[1, i] * velocities[1, i]
+        total += velocities[0, n + i] * velocities[0, n + i]
+    scale = 1.0 / math.sqrt(total)
+    for i in range(n):
+        velocities[0, i] *= scale
+        velocities[1, i] *= scale
+        velocities[0, n + i] *= scale * spin
+
+
+@optional(lambda velocities, spins, l, spin: None)
+def put_spins(velocities, spins, l, spin):
+    """Put the spins of rough discs into column ``l`` of ``spins`` (N, …), unless it is None."""
+    for i in range(spins.shape[0]):
+        spins[i, l] = velocities[0, spins.shape[0] + i]
+
+
+@optional(lambda states, discs, spin: None)
+def spins_in(states, discs, spin):
+    """Return the spins in ``states`` (5N, …), None for smooth discs."""
+    return states[4 * discs :]
+
+
 @compiled
-def draw_velocities(state, velocities, cuts, ring):
+def draw_velocities(state, velocities, cuts, ring, spin=None):
     """Fill ``velocities`` (2, N) uniformly on the unit sphere, on a ring with no momentum along x.
 
     The energies of N discs in the plane are uniform on their simplex: they are the spacings of
-    N − 1 sorted uniform numbers (``cuts``). All directions have the same probability.
+    N − 1 sorted uniform numbers (``cuts``). All directions have the same probability. Rough discs
+    are drawn as 2N discs, half of whose components are not used (``keep_spins``); their walls take
+    momentum along a ring.
     """
     n = velocities.shape[1]
     for i in range(n - 1):
@@ -247,7 +301,7 @@ def draw_velocities(state, velocities, cuts, ring):
                 break
         scale = math.sqrt((high - low) / square)
         velocities[0, i], velocities[1, i] = p * scale, q * scale
-    keep_still(velocities, ring)
+    keep_spins(velocities, ring, spin)
 
 
 # Centres -----------------------------------------------------------------------------------------
@@ -383,21 +437,22 @@ def draw_centres(state, initial, centres, cells):
 
 @compiled
 def draw_states(state, initial, states):
-    """Fill ``states`` (4N, number): x of all discs, then y, u and v."""
-    n = initial.discs
-    centres, velocities, cuts = np.empty((2, n)), np.empty((2, n)), np.empty(n - 1)
+    """Fill ``states`` (rows, number): x of all discs, then y, u, v and maybe s."""
+    n, centres = initial.discs, np.empty((2, initial.discs))
+    velocities, cuts = velocity_memory(n, initial.spin)
+    spins = spins_in(states, n, initial.spin)
     for k in range(states.shape[1]):
         draw_centres(state, initial, centres, initial.cells)
-        draw_velocities(state, velocities, cuts, initial.ring)
+        draw_velocities(state, velocities, cuts, initial.ring, initial.spin)
+        put_spins(velocities, spins, k, initial.spin)
         for i in range(n):
             states[i, k], states[n + i, k] = centres[0, i], centres[1, i]
             states[2 * n + i, k], states[3 * n + i, k] = velocities[0, i], velocities[1, i]
 
 
 @compiled
-def exchange_labels(state, states):
-    """Permute the discs in each column of ``states`` (4N, number) randomly."""
-    n = states.shape[0] // 4
+def exchange_labels(state, states, n):
+    """Permute the ``n`` discs in each column of ``states`` (rows, number) randomly."""
     for k in range(states.shape[1]):
         for i in range(n - 1, 0, -1):
             j = np.int64(next_bits(state) % np.uint64(i + 1))
@@ -414,7 +469,7 @@ def labelled(scene, number, seed, block=0, progress=None):
     repeatedly with the number of drawn states (None: as before), and ``number``.
     """
     filled, initial, exchanged = (
-        np.zeros((4 * scene.discs, number)),
+        np.zeros((rows_of(scene), number)),
         initial_of(scene),
         method(scene),
     )
@@ -424,10 +479,10 @@ def labelled(scene, number, seed, block=0, progress=None):
 
     def fill(first, stop):
         nonlocal seconds
-        begin, some = monotonic(), np.zeros((4 * scene.discs, stop - first))
+        begin, some = monotonic(), np.zeros((initial.rows, stop - first))
         draw_states(stream, initial, some)
         if exchanged != "rejection":
-            exchange_labels(labels, some)
+            exchange_labels(labels, some, scene.discs)
         filled[:, first:stop] = some
         seconds = monotonic() - begin
         return stop
@@ -446,10 +501,10 @@ def labelled(scene, number, seed, block=0, progress=None):
 
 
 def states(scene, number, seed, block=0, by=None):
-    """Return ``number`` states of the invariant measure of a ``Scene``, columns of (4N, number).
+    """Return ``number`` states of the invariant measure of a ``Scene``, columns of (rows, number).
 
     They are the first states of the stream of ``seed`` for ``block``.
     """
-    states = np.zeros((4 * scene.discs, number))
+    states = np.zeros((rows_of(scene), number))
     draw_states(open_stream(np.uint64(seed), block), initial_of(scene, by), states)
     return states

@@ -1,7 +1,8 @@
 """Rates of N discs from volume and areas of configuration space, and relations for every N.
 
-With D components of velocity (2N, minus 1 if a momentum is conserved) uniform on a sphere at total
-energy 1/2, and c_D of ``flux.constant``, all events of a class together have the rates
+With D components of velocity uniform on a sphere at total energy 1/2, and c_D of ``flux.constant``,
+all events of a class together have the rates below. D is 2N, minus 1 if a momentum is conserved; it
+is 3N with the spins of rough discs.
 
     collisions     −(c_D/√2) ∂lnV/∂σ
     walls of x     c_D ∂lnV/∂A                              walls of y likewise
@@ -73,7 +74,7 @@ def virial_weights(scene):
     """
     if scene.periodic:
         raise InputError("scene must have walls along x for the virial theorem, but x is periodic")
-    c = scene.velocity_components * constant(scene.velocity_components)
+    c = 2 * scene.discs * constant(scene.velocity_components)
     return {
         "disc_collision": -math.sqrt(2) * scene.contact_distance / c,
         "right_wall": scene.range_x / c,
