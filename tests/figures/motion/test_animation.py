@@ -285,9 +285,12 @@ def test_the_numbers_of_small_discs_keep_clear_of_the_heading(width):
 # Effects and other files --------------------------------------------------------------------------
 
 
-def test_marks_of_rough_discs_turn_with_them():
+@pytest.mark.parametrize(
+    ("kind", "discs"), [(animation.Stage, 2), (animation.StageOfMany, 3)], ids=["two", "three"]
+)
+def test_marks_of_rough_discs_turn_with_them(kind, discs):
     """Angles against the times between rows; the sign by what walls do to spin and velocity."""
-    scene = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5)
+    scene = td.Scene(1.5, 1.0, 0.2, moment_of_inertia=0.5, discs=discs)
     path = td.trajectory(scene, 200, seed=1)
     for wall in ("wall_y1", "wall_y2"):
         disc = wall[-1]
@@ -299,10 +302,10 @@ def test_marks_of_rough_discs_turn_with_them():
         assert len(hits) > 20
         assert np.allclose(u[hits] + surface, -(u[hits - 1] + before), atol=1e-9)
     with style.context():
-        stage = animation.Stage(Box.of(scene), 0.2, path.to_dict("records"))
+        stage = kind(Box.of(scene), 0.2, path.to_dict("records"))
     for time in stage.times[::20]:
         stage.show(time)
-        for disc in (1, 2):
+        for disc in range(1, discs + 1):
             (x1, x2), (y1, y2) = stage.moving[f"spin {disc}"].get_data()
             after = np.append(path["time"].to_numpy()[1:], np.inf)
             elapsed = np.clip(np.minimum(after, time) - path["time"], 0, None)

@@ -214,8 +214,7 @@ class Stage:
             artists |= self._circles(disc, self.scene.radii[disc - 1], face, edge)
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
-            if f"angle{disc}" in self.rows:
-                (artists[f"spin {disc}"],) = self.box.plot([], [], color=BLACK, lw=1.5)
+            artists |= self._mark(disc)
             (artists[f"centre {disc}"],) = self.box.plot([], [], "o", color=edge, ms=3.5, mew=0)
             artists[f"number {disc}"] = drawing.label(
                 self.box, f"{disc}", (0, 0), (-BESIDE, BESIDE), color=edge, fontsize=11
@@ -243,8 +242,14 @@ class Stage:
             for image in images
         }
 
+    def _mark(self, disc):
+        """Return the mark of a rough disc, nothing for a smooth one."""
+        if f"angle{disc}" not in self.rows:
+            return {}
+        return {f"spin {disc}": self.box.plot([], [], color=BLACK, lw=1.5)[0]}
+
     def _show_disc(self, disc, edge, past, time):
-        """Move a disc, its trace over the times ``past`` and its number; return its place."""
+        """Move a disc, its mark, trace over the times ``past`` and number; return its place."""
         moving = self.moving
         places = self.folded(self.places(disc, past))
         segments = np.stack([places[:-1], places[1:]], axis=1)
@@ -260,6 +265,11 @@ class Stage:
             image[column] -= np.copysign(self.sides[axis], image[column])
             moving[f"disc {disc} {axis}"].center = image
         moving[f"number {disc}"].xy = places[-1]
+        if f"angle{disc}" in self.rows:
+            angle = np.interp(time, self.rows["time"], self.rows[f"angle{disc}"])
+            ends = self.scene.radii[disc - 1] * np.array([MARK, 1.0])
+            x, y = places[-1]
+            moving[f"spin {disc}"].set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
         return places[-1]
 
     def show(self, time):
@@ -269,11 +279,6 @@ class Stage:
         for disc, (_, edge) in enumerate(drawing.DISCS, 1):
             place = self._show_disc(disc, edge, past, time)
             moving[f"centre {disc}"].set_data(*place[:, None])
-            if f"angle{disc}" in self.rows:
-                angle = np.interp(time, self.rows["time"], self.rows[f"angle{disc}"])
-                ends = self.scene.radii[disc - 1] * np.array([MARK, 1.0])
-                x, y = place
-                moving[f"spin {disc}"].set_data(x + ends * np.cos(angle), y + ends * np.sin(angle))
             above = (self.of.height / 2 - place[1]) / drawing.points(self.box)
             moving[f"number {disc}"].xyann = (-BESIDE, min(BESIDE, above - HALF))
         since = time - self.centre if self.hop else -1
@@ -322,6 +327,7 @@ class StageOfMany(Stage):
             artists |= self._circles(disc, self.scene.radius, face, colour)
         for disc in range(1, self.of.discs + 1):
             artists[f"trace {disc}"] = self.box.add_collection(LineCollection([], linewidths=1.3))
+            artists |= self._mark(disc)
             artists[f"number {disc}"] = drawing.label(
                 self.box, f"{disc}", (0, 0), (0, 0), ha="center", va="center", fontsize=9
             )
@@ -409,7 +415,7 @@ def caption(shown):
         text += "Beneath, positions go on beyond the box. "
     if shown.has("depth"):
         text += "Balls are drawn as viewed along z, the nearer one in front. "
-    if shown.has("moment_of_inertia"):
+    if "moment_of_inertia" in shown.effects:
         text += "The spin of rough discs is not shown."
     return text
 

@@ -26,8 +26,8 @@ def check(scene):
     """Raise ``InputError`` for an invalid ``Scene``: effects, or a radius that does not fit."""
     if other := [name for name in scene.effects if name not in POSSIBLE]:
         raise InputError(
-            f"{other[0]} must be left out with {scene.discs} discs, because more than two can have "
-            f"no effects except {', '.join(POSSIBLE)}, not {scene.effects[other[0]]!r}"
+            f"{other[0]} must be left out with {scene.discs} discs, because more than two discs "
+            f"have no effects except {', '.join(POSSIBLE)}, not {scene.effects[other[0]]!r}"
         )
     if scene.periodic not in ("", "x"):
         raise InputError(
