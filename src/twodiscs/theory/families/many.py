@@ -1,5 +1,9 @@
 """The exact theory of more than two discs, as far as it is known."""
 
+from dataclasses import replace
+
+from twodiscs.model.events import DECLARED
+from twodiscs.model.family import of_family
 from twodiscs.theory.many.methods import event_rates, volume_and_areas
 
 __all__ = ["areas", "least_free_fraction", "rate", "replicas_needed", "volume", "work_per_event"]
@@ -30,5 +34,16 @@ def work_per_event(scene, event_rate):
 
 
 def replicas_needed(scene, event, error):
-    """Return 0: smooth discs have no bursts of events."""
-    return 0.0
+    """Return the number of initial states for the bursts of rough discs, an estimate; else 0.
+
+    It is that of two of the discs in the same box, divided by the number of pairs. Any pair of N
+    discs may begin in a neck, and the other discs only shorten its bursts. Each disc is in N − 1
+    pairs, whose bursts at the walls add up.
+    """
+    if scene.moment_of_inertia is None:
+        return 0.0
+    pair, others = replace(scene, discs=2), scene.discs - 1
+    if DECLARED[event].kind in ("wall", "walls"):
+        error /= others
+    needed = of_family(pair, "theory", "replicas_needed")(pair, event, error)
+    return needed / (scene.discs * others / 2)
