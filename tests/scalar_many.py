@@ -39,10 +39,26 @@ def time_to_contact(dx, dy, du, dv, sigma):
 
 
 @compiled
-def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length):
+def impulse(gx, gy, nx, ny, spin, kappa, normal):
+    """Return (J_x, J_y, change of the spin) on a rough disc of mass 1 with the outward normal −n.
+
+    Its surface has the velocity g + (``spin``) against what it meets: another disc (``normal`` is
+    1) or a wall (2). J reverses this velocity, and its torque about the centre turns the disc.
+    """
+    gx, gy = gx + spin * ny, gy - spin * nx
+    along = gx * nx + gy * ny
+    tangential = normal * kappa / (1 + kappa)
+    jx = -normal * along * nx - tangential * (gx - along * nx)
+    jy = -normal * along * ny - tangential * (gy - along * ny)
+    return jx, jy, -(nx * jy - ny * jx) / kappa
+
+
+@compiled
+def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length, s, kappa):
     """Return the counts (batches, kinds) of a trajectory, after a tenth of it; changes the state.
 
-    ``ring`` is the circumference along x, or 0 between walls.
+    ``ring`` is the circumference along x, or 0 between walls. ``s`` are the speeds of the surfaces
+    of rough discs with the moment of inertia ``kappa`` m r², which is 0 for smooth discs.
     """
     n = x.size
     counts = np.zeros((batches, KINDS), np.int64)
@@ -83,7 +99,25 @@ def run(x, y, u, v, half_x, half_y, sigma, ring, batches, length):
             x[i] += best * u[i]
             y[i] += best * v[i]
         now += best
-        if kind == 3:
+        if kappa > 0 and 2 <= kind <= 4:
+            if kind == 2:
+                dx, dy = x[first] - x[second] + shift, y[first] - y[second]
+                distance = math.sqrt(dx * dx + dy * dy)
+                jx, jy, turn = impulse(
+                    u[first] - u[second], v[first] - v[second], dx / distance, dy / distance,
+                    s[first] + s[second], kappa, 1.0,
+                )  # fmt: skip
+                u[second] -= jx
+                v[second] -= jy
+                s[second] += turn
+            else:
+                nx = -math.copysign(1.0, x[first]) if kind == 3 else 0.0
+                ny = -math.copysign(1.0, y[first]) if kind == 4 else 0.0
+                jx, jy, turn = impulse(u[first], v[first], nx, ny, s[first], kappa, 2.0)
+            u[first] += jx
+            v[first] += jy
+            s[first] += turn
+        elif kind == 3:
             u[first] = -u[first]
         elif kind == 4:
             v[first] = -v[first]
@@ -111,13 +145,16 @@ def rates(scene, events, seed, batches=50):
     rng = np.random.default_rng(seed)
     x, y = np.array(arrangement(scene)).T.copy()
     u, v = rng.standard_normal((2, scene.discs))
-    if scene.periodic:
+    kappa, s = scene.moment_of_inertia or 0.0, np.zeros(scene.discs)
+    if kappa:
+        s = rng.standard_normal(scene.discs) / math.sqrt(kappa)
+    elif scene.periodic:
         u -= u.mean()
-    scale = math.sqrt(np.sum(u * u + v * v))
-    u, v = u / scale, v / scale
+    scale = math.sqrt(np.sum(u * u + v * v + kappa * s * s))
+    u, v, s = u / scale, v / scale, s / scale
     ring = scene.width if scene.periodic else 0.0
     box = scene.range_x / 2, scene.range_y / 2, scene.contact_distance, ring
-    trial = run(x, y, u, v, *box, 1, 4.0)
+    trial = run(x, y, u, v, *box, 1, 4.0, s, kappa)
     length = 4.0 * events / max(1, int(trial[0, 2:].sum())) / batches
-    counts = run(x, y, u, v, *box, batches, length) / length
+    counts = run(x, y, u, v, *box, batches, length, s, kappa) / length
     return counts.mean(axis=0), counts.std(axis=0, ddof=1) / math.sqrt(batches)

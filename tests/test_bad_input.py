@@ -342,6 +342,10 @@ SCENES = [
     ({"discs": True}, "discs must be an integer of at least 2, not True"),
     ({"discs": 3, "field": 1.0}, "field must be left out with 3 discs"),
     ({"discs": 3, "depth": 1.0}, "depth must be left out with 3 discs"),
+    (
+        {"discs": 3, "moment_of_inertia": 0.5, "periodic": "xy"},
+        "moment_of_inertia must be left out in a box without walls",
+    ),
     ({"discs": 3, "periodic": "xy"}, "periodic must be left out or x for more than two discs"),
     ({"discs": 3, "periodic": "y"}, "periodic must be left out or x for more than two discs"),
     ({"discs": 3, "radius": 0.31}, "radius 0.31 does not fit: 3 discs in a box of 1.5 × 1.0"),

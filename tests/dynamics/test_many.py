@@ -49,6 +49,8 @@ EXACT = {
     "eight in a channel": Scene(3.5, 0.6, 0.18, discs=8),
     "eight, dense": Scene(2.4, 0.6, 0.18, discs=8),
     "four, upright": Scene(0.6, 1.6, 0.18, discs=4),
+    "three, rough": Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.5),
+    "eight, rough, in a channel": Scene(3.5, 0.6, 0.18, discs=8, moment_of_inertia=0.2),
 }
 
 
@@ -71,6 +73,10 @@ OTHERS = {
     "four on a ring": Scene(1.5, 1.0, 0.15, discs=4, periodic="x"),
     "three on a narrow ring": Scene(1.5, 0.6, 0.18, discs=3, periodic="x"),
     "two on a ring": Scene(1.5, 1.0, 0.2, discs=2, periodic="x"),
+    "five, rough": Scene(1.5, 1.0, 0.17, discs=5, moment_of_inertia=0.3),
+    "four rough ones on a ring": Scene(
+        1.5, 1.0, 0.15, discs=4, periodic="x", moment_of_inertia=0.5
+    ),
 }
 
 
@@ -90,7 +96,16 @@ SCALAR = {
     name: scene
     for name, scene in (EXACT | OTHERS).items()
     if name
-    in ("three, dense", "eight in a channel", "four", "five, dense", "eight", "four on a ring")
+    in (
+        "three, dense",
+        "eight in a channel",
+        "four",
+        "five, dense",
+        "eight",
+        "four on a ring",
+        "five, rough",
+        "four rough ones on a ring",
+    )
 }
 
 
@@ -167,7 +182,7 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
-scenes += [Scene(1.5, 1.0, 0.2, discs=6)]
+scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 found = hashlib.sha256()
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
     counts = kernels.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
@@ -192,7 +207,7 @@ def test_the_bits_do_not_depend_on_the_processor(tmp_path):
 
 
 def test_lanes_and_shards_do_not_matter():
-    for scene in (EXACT["three"], EXACT["four in a channel"], OTHERS["five, dense"]):
+    for scene in (EXACT["three, rough"], EXACT["four in a channel"], OTHERS["five, dense"]):
         whole = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100)
         other = kernels.run_blocks(scene, 7, 0, 3, 8.0, replicas=100, lanes=5)
         parts = [kernels.run_blocks(scene, 7, a, b, 8.0, replicas=100) for a, b in ((0, 1), (1, 3))]

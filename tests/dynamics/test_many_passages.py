@@ -33,10 +33,18 @@ def same_sizes(counts, other):
         five(values[0].mean(), values[1].mean(), math.hypot(*errors))
 
 
-@pytest.mark.parametrize(("hop", "friction"), [(HOP, 0.0), (HOP, 20.0), ("vertical_hop", 0.0)])
-def test_two_discs_among_no_others_are_two_discs(hop, friction):
+@pytest.mark.parametrize(
+    ("hop", "effects"),
+    [
+        (HOP, {}),
+        (HOP, {"friction": 20.0}),
+        ("vertical_hop", {}),
+        (HOP, {"moment_of_inertia": 0.5, "friction": 1.0}),
+    ],
+)
+def test_two_discs_among_no_others_are_two_discs(hop, effects):
     sides = (1.5, 1.0) if hop == HOP else (1.0, 1.5)
-    scene = Scene(*sides, 0.246, friction=friction)
+    scene = Scene(*sides, 0.246, **effects)
     counts, events = passages.cluster_sizes(scene, hop, 6.0, 128, 11)
     other, due = of_two.cluster_sizes(scene, hop, 6.0, 128, 12)
     same_sizes(counts, np.repeat(np.arange(other.size), other))
@@ -69,10 +77,12 @@ def test_correlations_are_those_of_another_program():
     assert 5 * found.stderr < min(found.value, 1 - found.value)
 
 
-def test_the_past_is_as_the_future():
+@pytest.mark.parametrize("inertia", [None, 0.3])
+def test_the_past_is_as_the_future(inertia):
     """As many hops come within a gap before a hop as after it."""
-    scene = Scene(3.0, 1.0, 0.22, discs=4)
-    pair, states = passages.pair_of(scene, HOP), np.zeros((16, 2**13))
+    scene = Scene(3.0, 1.0, 0.22, discs=4, moment_of_inertia=inertia)
+    pair = passages.pair_of(scene, HOP)
+    states = np.zeros((pair.initial.rows, 2**13))
     passages.draw_on_surface(passages.open_stream(np.uint64(1), 0), pair, states, -1)
     found = []
     for side in (0, 1):
