@@ -168,6 +168,12 @@ def new_spins(lanes, discs, rough):
     return np.zeros((discs, lanes))
 
 
+@optional(lambda states, rough: states.shape[0] // 4)
+def discs_in(states, rough):
+    """Return the number of discs in ``states``."""
+    return states.shape[0] // 5
+
+
 @optional(lambda states, k, l, spins: None)
 def take_spins(states, k, l, spins):
     """Copy the spins in column ``k`` of ``states`` (5N, …) to column ``l`` of ``spins``."""

@@ -25,6 +25,7 @@ from twodiscs.dynamics.many.lockstep import (
     ManyLaw,
     N,
     advance,
+    discs_in,
     find_events,
     kick_lanes,
     law_of,
@@ -118,14 +119,15 @@ def is_short(change, ring):
 
 
 @compiled
-def follow(n, states, remaining, gap, net, hops, law, kicks):
-    """Follow ``n`` discs, columns of ``states`` (rows, lanes), for the times ``remaining``.
+def follow(states, remaining, gap, net, hops, law, kicks):
+    """Follow the columns of ``states`` (rows, lanes) for the times ``remaining`` (lanes,).
 
     Σ s_k of the hops of discs 1 and 2 is added to ``net``, their number to ``hops``. With a ``gap``
     (above 0) a lane goes on after each hop for this time, up to ``LARGEST`` hops. Returns the
     number of wall hits and collisions.
     """
-    lanes, spins = remaining.size, spins_in(states, n, law.rough)
+    n, lanes = discs_in(states, law.rough), remaining.size
+    spins = spins_in(states, n, law.rough)
     x, y, u, v = states[:n], states[n : 2 * n], states[2 * n : 3 * n], states[3 * n : 4 * n]
     old_x, old_y, counts = np.zeros((n, lanes)), np.zeros((n, lanes)), np.zeros((N, lanes))
     times, codes, speeds = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -189,7 +191,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
             for k in range(times.size):
                 for l in range(REPLICAS):
                     steps[l] = times[k] - (times[k - 1] if k > 0 else 0.0)
-                events += follow(discs, now, steps, gap, net, hops, law, kicks)
+                events += follow(now, steps, gap, net, hops, law, kicks)
                 for l in range(REPLICAS):
                     falls = states[2 * discs, l] < states[2 * discs + 1, l]
                     n, m = np.int64(-net[l] if falls else net[l]), np.int64(hops[l])

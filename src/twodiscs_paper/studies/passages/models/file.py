@@ -12,7 +12,8 @@ correlation C(q, t), and S is the relative variance of the number of discs in a 
 on a ring of the length L. Smooth discs conserve momentum. Their density moves as sound of the speed
 c, and ⟨x²⟩ = kT ℓ/(m c) t (1 − c t/L) without the part of C that does not move, the heat. Kicks
 that draw all velocities anew at a rate γ damp the sound at constant temperature: C″ + γ C′ +
-(kT/(m S)) q² C = 0. On a long ring ⟨x²⟩ becomes F √t, with F = 2 ℓ √(S kT/(π m γ)).
+(kT/(m S)) q² C = 0. On a long ring ⟨x²⟩ becomes F √t, with F = 2 ℓ √(S kT/(π m γ)). Rough walls
+take the momentum of rough discs, so they too have F √t, with an F that is not known here.
 """
 
 import math
@@ -24,7 +25,16 @@ import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES
 from twodiscs.dynamics.many import kernels
-from twodiscs.dynamics.many.lockstep import N, advance, find_events, law_of, nearest
+from twodiscs.dynamics.many.lockstep import (
+    N,
+    advance,
+    discs_in,
+    find_events,
+    law_of,
+    nearest,
+    new_spins,
+    take_spins,
+)
 from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
@@ -35,13 +45,14 @@ from twodiscs.theory.many.rates import rates
 
 @compiled
 def follow(states, lanes, times, law, squares, crossings):
-    """Follow initial ``states`` (4 N, replicas) on a ring to the ascending ``times``.
+    """Follow initial ``states`` (rows, replicas) on a ring to the ascending ``times``.
 
     Fills ``squares`` (replicas, times) with the mean over the discs of the squared displacement
     along x, and ``crossings`` (replicas) with the number of hops of all pairs up to the last time.
     ``replicas`` is a multiple of ``lanes``.
     """
-    discs, replicas = states.shape[0] // 4, states.shape[1]
+    discs, replicas = discs_in(states, law.rough), states.shape[1]
+    spins = new_spins(lanes, discs, law.rough)
     x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
@@ -55,6 +66,8 @@ def follow(states, lanes, times, law, squares, crossings):
                 x[i, l], y[i, l] = states[i, first + l], states[discs + i, first + l]
                 u[i, l] = states[2 * discs + i, first + l]
                 v[i, l] = states[3 * discs + i, first + l]
+        for l in range(lanes):
+            take_spins(states, first + l, l, spins)
         before = 0.0
         for k in range(times.size):
             remaining[:] = times[k] - before
@@ -70,7 +83,9 @@ def follow(states, lanes, times, law, squares, crossings):
                             level[l] += 1.0 if (apart > 0.0) != (then > 0.0) else 0.0
                     for l in range(lanes):
                         moved[i, l] += u[i, l] * flight[l]
-                advance(x, y, u, v, old_x, old_y, remaining, flight, codes, counts, law, None)
+                advance(
+                    x, y, u, v, old_x, old_y, remaining, flight, codes, counts, law, None, spins
+                )  # fmt: skip
             for l in range(lanes):
                 total = 0.0
                 for i in range(discs):
