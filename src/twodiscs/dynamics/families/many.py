@@ -34,8 +34,8 @@ PASSAGES = "twodiscs.dynamics.many.passages"
 INTERVAL_SUMS = 3
 
 #: The time that a pair of discs adds to an event, over the time of an event of the plain ensemble.
-#: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long.
-PAIR = 0.8
+#: Events of 3, 4 and 8 discs take 3.7, 5.9 and 22 times as long. Pairs of rough discs take longer.
+PAIR, ROUGH_PAIR = 0.8, 1.3
 
 #: The same for ``LARGE`` numbers of discs: the time of an event, and the time that each disc adds.
 TOUCHED, COMPARED = 50.0, 0.25
@@ -90,7 +90,8 @@ def cost_ratio(scene):
     """Return the time of an event over the time of an event of the plain ensemble."""
     if scene.discs >= LARGE:
         return TOUCHED + COMPARED * scene.discs
-    return 1 + PAIR * scene.discs * (scene.discs - 1) / 2
+    pair = PAIR if scene.moment_of_inertia is None else ROUGH_PAIR
+    return 1 + pair * scene.discs * (scene.discs - 1) / 2
 
 
 interval_cost = cost_ratio
