@@ -435,8 +435,8 @@ def intervals(
     Raises
     ------
     InputError
-        For a blocked hop, for rough discs, and for more than two discs if it is not known whether
-        they can hop.
+        For a blocked hop, for rough discs without friction, and for more than two discs if it is
+        not known whether they can hop.
 
     Examples
     --------
@@ -544,7 +544,8 @@ def starts(
     structured array, shape (number,)
         Fields x1, y1, x2, y2 are the centres, from the centre of the box; u1, v1, u2, v2 are the
         velocities, which vx1, vy1, vx2, vy2 give, too. Balls also have z1, z2, w1, w2 (vz1, vz2),
-        and rough discs s1, s2, the speeds of their surfaces. N discs have x1 … xN, then y, u and v.
+        and rough discs s1, s2, the speeds of their surfaces. N discs have x1 … xN, then y, u, v
+        and, if they are rough, s.
 
     Raises
     ------

@@ -46,10 +46,11 @@ REGIMES = ("all-hops", "vertical-hops", "horizontal-hops", "no-hops")
 class Scene:
     """Hard discs in a box, two of them by default, in which disc 1 has mass 1.
 
-    The total energy is 1/2. Each effect is absent by default. More than two discs are equal and
-    smooth, in the plane. They can have ``friction`` and ``periodic`` "x": the box is then a ring
-    along x, with a total momentum of 0 along it. A collision or a hop is then of any
-    pair. A hit of the right or the top wall is of one disc, averaged over all initial conditions.
+    The total energy is 1/2. Each effect is absent by default. More than two discs are equal, in the
+    plane. They can have ``friction``, ``moment_of_inertia`` and ``periodic`` "x": the box is then a
+    ring along x, and smooth discs have a total momentum of 0 along it. A collision or a hop is then
+    of any pair. A hit of the right or the top wall is of one disc, averaged over all initial
+    conditions.
 
     Parameters
     ----------

@@ -171,8 +171,8 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
 
     They are the first states of the stream of ``seed`` for ``block``, integers ≥ 0, in an array of
     ``COMPONENTS`` rows. ``order`` chooses the ergodic component of a plain scene (see
-    ``draw_configuration``). For N > 2 discs there are 4N rows, in the order of ``components``.
-    ``progress``, if given, is called repeatedly with the number of drawn states, and ``number``.
+    ``draw_configuration``). N > 2 discs have the rows of ``components``. ``progress``, if given, is
+    called repeatedly with the number of drawn states, and ``number``.
     """
     require_room(scene)
     draw = of_family(scene, "sampling", "states")
