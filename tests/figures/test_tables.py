@@ -158,13 +158,19 @@ def _long_files(rows):
         # Blocked, and at the farthest distance where discs pass.
         moved = [
             row for row in of(rows, quantity="displacement")
-            if bool(row["friction"]) == is_kicked and (row["distance"] < 0 or row["distance"] > 0.1)
+            if row["moment_of_inertia"] is None and bool(row["friction"]) == is_kicked
+            and (row["distance"] < 0 or row["distance"] > 0.1)
         ]  # fmt: skip
         due = [
             (row["time"] / math.sqrt(2 * row["discs"] - 1), row["estimate"], row["stderr"])
             for row in moved
         ]
         yield "diffusion", "moved", *look, due
+    due = [
+        (row["time"] / math.sqrt(3 * row["discs"]), row["estimate"], row["stderr"])
+        for row in of(rows, quantity="displacement", moment_of_inertia=0.5)
+    ]
+    yield "diffusion", "moved", *diffusion.ROUGH_FILE, due
     kicked = [row for row in order if row["friction"]]
     for look, row in zip(diffusion.OPEN, kicked, strict=True):
         where = {"distance": row["distance"], "friction": row["friction"]}

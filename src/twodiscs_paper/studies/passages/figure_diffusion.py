@@ -36,8 +36,8 @@ WIDTH, RING, RESIDUALS, LATTICE, GAP, TOP = 7.0, 1.9, 0.8, 1.15, 0.42, 0.22
 #: Short files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
 
-#: Long files, smooth and with friction.
-SMOOTH_FILE, KICKED_FILE = (GREEN, "^"), (PURPLE, "v")
+#: Long files: smooth discs, smooth discs with friction, rough discs.
+SMOOTH_FILE, KICKED_FILE, ROUGH_FILE = (GREEN, "^"), (PURPLE, "v"), (VERMILLION, "s")
 
 #: Looks of distances in a collapse.
 OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
@@ -104,8 +104,9 @@ def caption(shown):
     lattice, whose neighbours swap with the probability p. (d) Mean square displacement of a tagged
     disc in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8). Units are
     ℓ² and the thermal speed. Black lines are theory of the blocked files at long times, without a
-    free parameter: sound, until it has gone around half of the ring, and damped sound. Grey lines
-    add what hops do to the file of places, as the order of the discs has it. (e) Files with
+    free parameter: sound, until it has gone around half of the ring, and damped sound. Rough discs
+    (I = 1/2, blocked) lose their momentum to the walls, too, but have no such line. Grey lines add
+    what hops do to the file of places, as the order of the discs has it. (e) Files with
     friction: displacements in units of F√t×, at times over t× = (F/2D)², where single file and hops
     contribute equally. The line is √u + u with u = t/t×. Error bars are one standard error.
     """
@@ -147,9 +148,17 @@ def _ring(axes, rows):
 LONG = ("displacement", "file", "order")
 
 
+def _scene(row):
+    """Return the ``Scene`` of a ``row`` of a long file, without its friction."""
+    return Scene(
+        row["width"], row["height"], row["radius"], discs=row["discs"], periodic="x",
+        moment_of_inertia=row["moment_of_inertia"],
+    )  # fmt: skip
+
+
 def _thermal(row):
     """Return the thermal speed over h of the discs of a ``row`` on a ring."""
-    return 1 / math.sqrt(2 * row["discs"] - 1) / row["height"]
+    return file.thermal_speed(_scene(row)) / row["height"]
 
 
 def _of(rows, quantity, **wanted):
@@ -168,25 +177,24 @@ def _moved(axes, rows):
     for distance in shown:
         here = select(rows, distance=distance)
         blocked = distance < 0
-        for friction in dict.fromkeys(row["friction"] for row in here):
-            own = select(here, friction=friction)
-            look = SMOOTH_FILE if friction is None else KICKED_FILE
-            kind = "smooth" if friction is None else "friction"
+        kinds = dict.fromkeys((row["friction"], row["moment_of_inertia"]) for row in here)
+        for friction, inertia in kinds:
+            own = select(here, friction=friction, moment_of_inertia=inertia)
+            look, kind = (SMOOTH_FILE, "smooth") if friction is None else (KICKED_FILE, "friction")
+            if inertia is not None:
+                look, kind = ROUGH_FILE, "rough"
             x, y, error = _of(own, "displacement")
             name = f"{kind}, {'blocked' if blocked else 'open'}"
             points(axes, x, y, error, look, name, blocked)
-            if blocked:
-                scene = Scene(
-                    own[0]["width"], own[0]["height"], own[0]["radius"], discs=own[0]["discs"],
-                    periodic="x",
-                )  # fmt: skip
+            if blocked and inertia is None:
+                scene = _scene(own[0])
                 time = np.geomspace(x[0], x[-1], 120)
                 due = np.array([file.law(scene, friction, t / _thermal(own[0])) for t in time])
                 # Sound that has gone around half of the ring brings the discs back.
                 rises = np.append(np.diff(due) > 0, True).cumprod() > 0
                 time, due = time[rises], due[rises]
                 axes.plot(time, due, color=BLACK, lw=0.8, zorder=5)
-            else:
+            elif not blocked:
                 _, place, _ = _of(own, "file")
                 _, walk, _ = _of(own, "order")
                 axes.plot(x, place + walk, color=GREY, lw=0.8, zorder=2)

@@ -368,8 +368,10 @@ def one_file(name, box, discs, events, seed):
         yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
 
 
-def one_long_file(name, box, radius, friction, known, seed):
+def one_long_file(name, box, radius, friction, known, seed, inertia=None):
     """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
+
+    Rough discs have an ``inertia`` and no law, because their F is not known.
 
     If ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
     file of smooth discs has rows of the ``density`` and of the ``rate`` of hops, which do not
@@ -377,13 +379,16 @@ def one_long_file(name, box, radius, friction, known, seed):
     """
     limit, per_disc = box.height / 4, box.width / 2
     is_open = radius < limit
-    scene = Scene(per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x")
+    scene = Scene(
+        per_disc * LONG_FILE, box.height, radius, discs=LONG_FILE, periodic="x",
+        moment_of_inertia=inertia,
+    )  # fmt: skip
     unit = box.height / file.thermal_speed(scene)
     rate = None if friction is None else friction / unit
     start = {
         "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
         "event": "horizontal_hop", "discs": scene.discs, "radius": radius,
-        "distance": 1 - radius / limit, "friction": rate,
+        "distance": 1 - radius / limit, "moment_of_inertia": inertia, "friction": rate,
     }  # fmt: skip
 
     def stream(what):
@@ -408,7 +413,7 @@ def one_long_file(name, box, radius, friction, known, seed):
             yield make_row("density", "states", variance)
 
     def law(lag):
-        if rate is None and variance:
+        if inertia or (rate is None and variance):
             return None
         return file.law(scene, rate, lag * STEP * unit, variance and variance.value)
 
@@ -508,9 +513,9 @@ def in_file(name, box, events, seed):
 
 
 def in_long_file(name, box, blocked, seed):
-    """Yield the rows of long files on a ring, smooth and with kicks.
+    """Yield the rows of long files on a ring, smooth, with kicks and rough.
 
-    One is blocked, at the radius ``blocked``; the others are open.
+    One is blocked, at the radius ``blocked``, also of rough discs; the others are open.
     """
     for radius in (blocked, *(radius_at(box.height / 4, n) for n in OPEN)):
         found = {}
@@ -520,6 +525,7 @@ def in_long_file(name, box, blocked, seed):
                     parts = (row[part] for part in ("estimate", "stderr", "replicas"))
                     found[row["quantity"]] = Estimate(*parts)
                 yield row
+    yield from one_long_file(name, box, blocked, None, {}, seed, ONE_INERTIA)
 
 
 #: The parts of passages.csv, and those of them whose work does not depend on the number of events.
@@ -574,6 +580,8 @@ def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=No
         for radius in (blocked, *radii(OPEN)):
             yield row("single_file", "states", radius, LONG_FILE)
             yield from [row("displacement", "states", radius, LONG_FILE)] * 2 * len(LAGS)
+        rough = row("displacement", "states", blocked, LONG_FILE, ONE_INERTIA)
+        yield from [rough] * len(LAGS)
     elif part == "on_lattice":
         for what in ("single_file", *["diffusion"] * len(SWAPS)):
             yield row(what, "lattice", None, None, event="swap")
