@@ -483,14 +483,15 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     assert {"4 smooth discs", "24 with friction"} <= {*names}
     # Displacements in units of ℓ², at times in units of h and the thermal speed.
     shown = {one.get_label(): one.lines[0].get_data() for one in moved.containers}
-    for friction, distance, name in (
-        (None, -0.12, "smooth, blocked"),
-        (1, 1 / 8, "friction, open"),
+    for friction, inertia, components, distance, name in (
+        (None, None, 47, -0.12, "smooth, blocked"),
+        (1, None, 47, 1 / 8, "friction, open"),
+        (None, 0.5, 72, -0.12, "rough, blocked"),
     ):
         due = [
-            (row["time"] / math.sqrt(2 * 24 - 1), row["estimate"]) for row in rows
+            (row["time"] / math.sqrt(components), row["estimate"]) for row in rows
             if row["quantity"] == "displacement" and (row["friction"] is None) == (friction is None)
-            and row["distance"] == pytest.approx(distance)
+            and row["moment_of_inertia"] == inertia and row["distance"] == pytest.approx(distance)
         ]  # fmt: skip
         np.testing.assert_allclose(shown[name], np.transpose(due))
     (files,) = collapse_of_files.containers

@@ -392,7 +392,8 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
     }  # fmt: skip
 
     def stream(what):
-        return seed_of(scene, "horizontal_hop", name, seed, f"long file {friction} {what}")
+        kind = friction if inertia is None else f"rough {inertia}"
+        return seed_of(scene, "horizontal_hop", name, seed, f"long file {kind} {what}")
 
     def make_row(quantity, method, estimate, lag=None, **more):
         time = None if lag is None else lag * STEP * unit
