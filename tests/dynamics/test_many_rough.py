@@ -6,7 +6,7 @@ comparisons allow five standard errors.
 
 import math
 from dataclasses import replace
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 import pytest
@@ -36,7 +36,8 @@ def surface_velocity(u, v, s, normal):
 @pytest.mark.parametrize("scene", [BOX, replace(BOX, periodic="x"), RING], ids=repr)
 def test_surfaces_reverse_their_velocities(scene):
     """All of it, at discs and at walls. Energy stays, and so does momentum at discs."""
-    rows = [*path.events_of(scene, initial.states(scene, 1, 2)[:, 0], 16.0)]
+    # Not all rows: another law may gain energy without end.
+    rows = [*islice(path.events_of(scene, initial.states(scene, 1, 2)[:, 0], 16.0), 2000)]
     seen = set()
     for (_, _, _, _, before), (_, name, first, second, now) in pairwise(rows):
         x, y, *_ = now.reshape(5, -1)
