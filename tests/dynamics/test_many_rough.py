@@ -33,7 +33,11 @@ def surface_velocity(u, v, s, normal):
     return np.array([u - s * normal[1], v + s * normal[0]])
 
 
-@pytest.mark.parametrize("scene", [BOX, replace(BOX, periodic="x"), RING], ids=repr)
+@pytest.mark.parametrize(
+    "scene",
+    [BOX, pytest.param(replace(BOX, periodic="x"), marks=pytest.mark.slow), RING],
+    ids=repr,
+)
 def test_surfaces_reverse_their_velocities(scene):
     """All of it, at discs and at walls. Energy stays, and so does momentum at discs."""
     # Not all rows: another law may gain energy without end.
@@ -100,8 +104,15 @@ def test_reversed_discs_come_back(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize("scene", [replace(BOX, discs=5, radius=0.1), RING], ids=repr)
-@pytest.mark.parametrize("friction", [0.0, 2.0])
+@pytest.mark.parametrize(
+    ("scene", "friction"),
+    [
+        (replace(BOX, discs=5, radius=0.1), 0.0),
+        pytest.param(replace(BOX, discs=5, radius=0.1), 2.0, marks=pytest.mark.slow),
+        (RING, 0.0),
+        (RING, 2.0),
+    ],
+)
 def test_velocities_and_spins_are_on_a_sphere(scene, friction):
     """At the start and later, also after kicks: two moments of each, and their pairs."""
     scene, replicas = replace(scene, friction=friction), 2048 if scene is not RING else 512

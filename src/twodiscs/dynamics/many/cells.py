@@ -497,13 +497,14 @@ def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, gri
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
     kicks = new_kicks(1, discs, law.rough, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
+    lane = np.int64(0)  # for a literal 0 numba would compile ``follow`` once more
     for block in range(first, stop):
         draw_states(open_stream(seed, block), initial, states)
         for replica in range(replicas):
             count[:] = 0
             start_from(states, replica, motion, grid, law)
-            open_kicks(0, seed, block * replicas + replica, kicks)
-            follow(duration, epoch, motion, laps, grid, law, count, 0, kicks, None, hops, hops_x)
+            open_kicks(lane, seed, block * replicas + replica, kicks)
+            follow(duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x)
             for e in range(N):
                 sums[e] += count[e]
                 for f in range(e, N):
