@@ -278,7 +278,7 @@ def test_a_trajectory_is_that_of_another_program(name):
     for state in starts.states(scene, 20, 11).T:
         frame = td.trajectory(scene, start=state, duration=1.1 * duration)
         parts = [np.array(part) for part in state.reshape(4, n)]
-        scalar_many.run(*parts, *box, 1, duration)
+        scalar_many.run(*parts, *box, 1, duration, np.zeros(n), 0.0)
         at_end = frame.states_at(1.1 * duration)[0]
         for row, part in zip("xyuv", parts, strict=True):
             found = np.array([at_end[f"{row}{disc}"] for disc in range(1, n + 1)])
