@@ -71,6 +71,10 @@ BORDER = [
 ]
 
 
+#: Its kernels take seconds to compile.
+ROUGH_TOO = pytest.param(BORDER[4], marks=pytest.mark.slow)
+
+
 @pytest.mark.parametrize("scene", BORDER[:4], ids=repr)
 def test_both_kernels_have_the_same_rates(scene):
     """Five sigma on every class."""
@@ -142,7 +146,7 @@ def test_the_virial_theorem_holds_for_many_discs():
 
 
 @pytest.mark.parametrize(
-    "scene", [BORDER[0], *BORDER[3:], Scene(48.0, 1.0, 0.1, discs=64)], ids=repr
+    "scene", [BORDER[0], BORDER[3], ROUGH_TOO, Scene(48.0, 1.0, 0.1, discs=64)], ids=repr
 )
 def test_advanced_states_are_those_of_the_other_kernel(scene):
     """After some events of each disc, and there and back again; rounds of a ring as well."""
@@ -160,7 +164,7 @@ def test_advanced_states_are_those_of_the_other_kernel(scene):
     assert states == pytest.approx(start, abs=1e-7 * scene.width)
 
 
-@pytest.mark.parametrize("scene", [BORDER[0], *BORDER[3:]], ids=repr)
+@pytest.mark.parametrize("scene", [BORDER[0], BORDER[3], ROUGH_TOO], ids=repr)
 def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
     """In the same order, hops as well, before roundings have grown; also past a full log."""
     state = initial.states(scene, 1, 1)[:, 0]

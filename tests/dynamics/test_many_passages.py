@@ -39,7 +39,8 @@ def same_sizes(counts, other):
         (HOP, {}),
         (HOP, {"friction": 20.0}),
         ("vertical_hop", {}),
-        (HOP, {"moment_of_inertia": 0.5, "friction": 1.0}),
+        (HOP, {"moment_of_inertia": 0.5}),
+        pytest.param(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}, marks=pytest.mark.slow),
     ],
 )
 def test_two_discs_among_no_others_are_two_discs(hop, effects):

@@ -50,10 +50,10 @@ NECKS = {
     ),
 }
 
-#: Each of them has another kernel, which takes seconds to compile. Two have no
-#: effect that none of the others has.
+#: Each of them has another kernel, which takes seconds to compile.
+SLOW = "balls", "channel", "tube", "falling"
 COUNTED = [
-    pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in ("balls", "channel") else [])
+    pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
     for name, neck in NECKS.items()
 ]
 at_places = pytest.mark.parametrize(("scene", "hop"), PLACES)
