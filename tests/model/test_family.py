@@ -7,6 +7,7 @@ from importlib import import_module
 import pytest
 
 from twodiscs.model import sources
+from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.family import FAMILIES, module_of, of_family
 from twodiscs.model.scene import Scene
@@ -87,6 +88,14 @@ def test_few_modules_ask_for_the_family_or_what_decides_it():
 def test_all_discs_have_a_radius_and_a_mass():
     assert (SCENES["many"].radii, SCENES["many"].masses) == ((0.15,) * 3, (1.0,) * 3)
     assert (SCENES["effects"].radii, SCENES["effects"].masses) == ((0.2, 0.2), (1.0, 2.0))
+
+
+def test_rough_discs_have_the_bursts_of_two_whatever_their_number():
+    """Their modules are imported by a computed name, so rules have to name both families."""
+    rough = {"moment_of_inertia": 0.5}
+    families = [Box(1.5, 1.0, rough, discs).families for discs in (2, 3)]
+    assert families == [("effects",), ("many", "effects")]
+    assert [Box(1.5, 1.0, {}, discs).families for discs in (2, 3)] == [("plain",), ("many",)]
 
 
 # An edit for one family ---------------------------------------------------------------------------

@@ -203,8 +203,8 @@ MOVING = [
     ((1.5, 1.0, 0.3), {"periodic": "x", "field": 3.0, "friction": 3.0}),
 ]
 
-#: Of a scene: the measured events of 1000 runs; the changes of some means of an ensemble by its
-#: motion, in standard errors; on one path the worst energy, momenta and places, and the kicks.
+#: A function of a scene. It returns the measured events of 1000 runs, the changes of some means of
+#: an ensemble by its motion, in standard errors, and the kicks and worst conserved value of a path.
 MOTION = """
 (([width, height, radius, effects]) => {
     const runs = new Runs(width, height, radius, 7, effects);

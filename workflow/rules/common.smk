@@ -143,9 +143,9 @@ def point_code(stage=None):
     def of_job(w):
         run = STAGES[stage or w.stage]
         others = tuple({*STAGES.values()} - {run})
-        family = family_modules(run.split(".")[1], SCENES[w.scene].box.family)
+        families = family_modules(run.split(".")[1], *SCENES[w.scene].box.families)
         others += ("twodiscs.points.estimates",)
-        return code("twodiscs_paper.pipeline.jobs.point", *family, without=others)
+        return code("twodiscs_paper.pipeline.jobs.point", *families, without=others)
 
     return of_job
 

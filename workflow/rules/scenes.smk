@@ -167,7 +167,7 @@ rule table:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             SCENE_TABLES[w.table].__module__,
-            *family_modules("theory", SCENES[w.scene].box.family),
+            *family_modules("theory", *SCENES[w.scene].box.families),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"

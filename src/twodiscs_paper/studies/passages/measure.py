@@ -371,9 +371,8 @@ def one_file(name, box, discs, events, seed):
 def one_long_file(name, box, radius, friction, known, seed, inertia=None):
     """Yield the rows of one long file, which is open at a ``radius`` below h/4, else blocked.
 
-    Rough discs have an ``inertia`` and no law, because their F is not known.
-
-    If ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
+    Rough discs have an ``inertia``, I/(m r²), and no law, because their F is not known. If
+    ``friction`` is not None, it is the rate of kicks. Squares of lengths are over ℓ². An open
     file of smooth discs has rows of the ``density`` and of the ``rate`` of hops, which do not
     depend on friction. With friction they are ``known``, {quantity: ``Estimate``}.
     """
