@@ -244,7 +244,10 @@ def optional(absent):
 
         chosen.__name__, chosen.__doc__ = present.__name__, present.__doc__
 
-        @overload(chosen, strict=False, jit_options=OPTIONS | {"forceinline": True})
+        # Only kernels call the function that is chosen: code for Python takes long to compile.
+        inner = OPTIONS | {"forceinline": True, "no_cpython_wrapper": True}
+
+        @overload(chosen, strict=False, jit_options=inner)
         def choose(*arguments):
             missing = isinstance(arguments[-1], types.NoneType | types.Omitted)
             return absent if missing else present
