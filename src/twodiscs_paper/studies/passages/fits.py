@@ -15,9 +15,8 @@ def fits(rows):
     """Yield the fitted powers of ``rows`` of passages.csv, as rows without their empty cells.
 
     The power is fitted to 1 − κ for smooth discs, and to κ for rough discs, both without friction.
-    A fit takes the last
-    ``LAST`` distances of a hop. A hop has no fit if it has fewer than two distances, or if a value
-    is not positive.
+    A fit takes the last ``LAST`` distances of a hop. A hop has no fit if it has fewer than two
+    distances, or if a value is not positive.
     """
     hops = {}
     for row in rows:
