@@ -356,7 +356,14 @@ def exact_of(*scenes):
     return Theory.rows(Box.of(scenes[0]), radii)
 
 
-@pytest.mark.parametrize("name", SCENES)
+#: Each compiles a kernel of its own.
+SLOW = ("unequal", "channel")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in SCENES],
+)
 def test_monte_carlo_becomes_rows_that_agree(name, tmp_path):
     scene = SCENES[name]
     quantities = ["volume", *(f"{event}_area" for event in scene.events)]

@@ -9,7 +9,7 @@ from effect_scenes import SCENES
 
 import twodiscs as td
 
-KINDS = {name: SCENES[name] for name in ("unequal", "field", "combination", "channel")}
+KINDS = {name: SCENES[name] for name in ("unequal", "combination", "channel")}
 KINDS |= {"plain": td.Scene(1.5, 1.0, 0.2), "three": td.Scene(1.5, 1.0, 0.15, discs=3)}
 
 

@@ -112,7 +112,9 @@ def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
 
 
 @pytest.mark.parametrize("rate", [0.5, 20.0])
-@pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])
+@pytest.mark.parametrize(
+    "scene", [PLAIN, pytest.param(ALL, marks=pytest.mark.slow)], ids=["plain", "all"]
+)
 def test_no_mean_time_changes(scene, rate):
     both = scene, replace(scene, friction=rate)
     assert both[1].family == "effects"

@@ -49,7 +49,9 @@ THREE = [
         *THREE,
         Scene(3.5, 0.6, 0.18, discs=8),
         Scene(7.0, 0.6, 0.18, discs=16),
-        Scene(7.0, 0.6, 0.18, discs=16, moment_of_inertia=0.5),
+        pytest.param(
+            Scene(7.0, 0.6, 0.18, discs=16, moment_of_inertia=0.5), marks=pytest.mark.slow
+        ),
     ],
     ids=repr,
 )
@@ -184,7 +186,11 @@ def test_a_trajectory_has_the_events_of_the_other_kernel(scene, monkeypatch):
 
 @pytest.mark.parametrize(
     ("scene", "hop"),
-    [(BORDER[0], "vertical_hop"), (BORDER[1], "horizontal_hop"), (BORDER[3], "vertical_hop")],
+    [
+        (BORDER[0], "vertical_hop"),
+        pytest.param(BORDER[1], "horizontal_hop", marks=pytest.mark.slow),
+        (BORDER[3], "vertical_hop"),
+    ],
     ids=repr,
 )
 def test_intervals_are_those_of_the_other_kernel(scene, hop, monkeypatch):

@@ -39,7 +39,7 @@ def same_sizes(counts, other):
         (HOP, {}),
         (HOP, {"friction": 20.0}),
         ("vertical_hop", {}),
-        (HOP, {"moment_of_inertia": 0.5}),
+        pytest.param(HOP, {"moment_of_inertia": 0.5}, marks=pytest.mark.slow),
         pytest.param(HOP, {"moment_of_inertia": 0.5, "friction": 1.0}, marks=pytest.mark.slow),
     ],
 )

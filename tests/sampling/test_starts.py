@@ -162,9 +162,17 @@ def test_starts_have_the_law_of_the_invariant_measure(scene):
         assert np.max(np.abs(np.corrcoef([a, *unit**2])[0, 1:])) <= 5 / math.sqrt(a.size)
 
 
-@pytest.mark.parametrize(
-    ("name", "hop"), [(n, axis) for n, s in STARTS.items() for axis in "xy" if axis in s.walled]
-)
+#: Their kernels take seconds to compile.
+SLOW = ("balls", "rough", "rough channel", "balls between plates")
+SURFACES = [
+    pytest.param(name, axis, marks=[pytest.mark.slow] if name in SLOW else [])
+    for name, scene in STARTS.items()
+    for axis in "xy"
+    if axis in scene.walled
+]
+
+
+@pytest.mark.parametrize(("name", "hop"), SURFACES)
 def test_starts_on_a_surface_have_the_law_of_the_flux(name, hop):
     scene = STARTS[name]
     found, spins = parts(scene, on_surface(scene, "xy".index(hop), 50_000))
