@@ -9,7 +9,7 @@ def _parameters(configuration):
     budget = configuration.main.event_budget
     return {
         "events": scaled(budget, 500, 10**5, 10**8),
-        "samples": scaled(budget, 2000, 10**4, 10**7),
+        "samples": scaled(budget, 4000, 10**4, 10**7),
         "seed": configuration.seed,
     }
 

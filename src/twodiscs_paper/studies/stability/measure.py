@@ -80,7 +80,7 @@ ROUNDINGS = 2.0**5
 SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 
 #: Independent repetitions of a measurement, each with as many replicas as share a stream.
-REPETITIONS = 1600
+REPETITIONS = 800
 
 
 def row(part, quantity, case, value, low=None, high=None, z=None, **more):
