@@ -141,7 +141,7 @@ def _ring(axes, rows):
     axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
     axes.axhline(1, **RANDOM_WALK)
     axes.set(xscale="log", ylim=(0, None), ylabel=r"diffusion $D/(\nu\,\ell^2)$")
-    axes.legend(loc="center left", bbox_to_anchor=(0, 0.45), fontsize=6.5)
+    axes.legend(loc="center left", bbox_to_anchor=(0, 0.4), ncols=2, fontsize=6.5)
 
 
 #: Quantities of long files over the time.

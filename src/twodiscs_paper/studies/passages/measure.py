@@ -497,7 +497,7 @@ def near_threshold(name, box, hop, inertias, events, seed):
 def on_ring(name, box, events, seed):
     """Yield the rows of two discs on a ring, smooth and rough."""
     for inertia in (None, ONE_INERTIA):
-        yield from one_ring(name, box, inertia, 3 * events, seed)
+        yield from one_ring(name, box, inertia, 6 * events, seed)
 
 
 def with_friction(name, box, events, seed):
