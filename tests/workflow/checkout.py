@@ -1,6 +1,7 @@
 """A checkout to build in: the repository's files with a configuration of six radii."""
 
 import atexit
+import gc
 import os
 import re
 import shutil
@@ -87,6 +88,7 @@ def forked(arguments, folder, sources):
         child = os.fork()
         if child == 0:
             status = 1
+            gc.freeze()  # or each collection reads, and so copies, all objects of the tests
             atexit._clear()  # what ends the tests is not for a copy of them
             try:
                 os.dup2(out.fileno(), 1)
