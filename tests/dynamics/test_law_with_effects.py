@@ -125,10 +125,7 @@ def test_reversed_velocities_lead_back(scene):
 
 
 #: Scenes whose events are counted, too; the kernel of a scene takes some seconds to compile.
-counted_scene = pytest.mark.parametrize(
-    "name",
-    ["unequal", pytest.param("field", marks=pytest.mark.slow), "combination", "nearly all"],
-)
+counted_scene = pytest.mark.parametrize("name", ["unequal", "field", "combination", "nearly all"])
 
 
 @counted_scene
