@@ -51,11 +51,20 @@ def accepted(state, prism, proposals):
     return count
 
 
-def test_proposals_in_a_neck_are_accepted_as_their_measure_says():
+@pytest.mark.parametrize(
+    ("scene", "hop", "within"),
+    [
+        (Scene(1.5, 1.0, 0.24, field=0.4), "horizontal_hop", 0.02),
+        # Wide necks: some proposals have the opposite order.
+        (Scene(1.5, 1.0, 0.1, mass_ratio=2.0), "horizontal_hop", 0.1),
+        (Scene(1.5, 1.0, 0.05, radius_ratio=2.0), "vertical_hop", 0.05),
+    ],
+    ids=["in a field", "wide", "unequal"],
+)
+def test_proposals_in_a_neck_are_accepted_as_their_measure_says(scene, hop, within):
     """In a field the energy of the lower places of a neck counts in the measure; at 5 sigma."""
-    scene, within, proposals = Scene(1.5, 1.0, 0.24, field=0.4), 0.02, 200_000
-    prism = prism_of(scene, "horizontal_hop", within)
-    assert prism.neck.most < 0.7
-    expected = weighted.volume_near(scene, "horizontal_hop", within) / proposed_measure(prism)
+    proposals, prism = 200_000, prism_of(scene, hop, within)
+    assert prism.neck.most < 0.7 or not scene.field
+    expected = weighted.volume_near(scene, hop, within) / proposed_measure(prism)
     found = accepted(open_stream(np.uint64(1), 0), prism, proposals) / proposals
     assert abs(found - expected) < 5 * math.sqrt(expected * (1 - expected) / proposals)

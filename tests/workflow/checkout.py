@@ -43,7 +43,7 @@ rule mine:
 
 #: (File below studies, its text, its text in a checkout). The tests of a study measure; a build
 #: takes the rows of the default configuration. Of the parts of a table it makes two. Repetitions
-#: do not follow from the budget of a scene.
+#: do not follow from the budget of a scene. The kernel in single precision compiles for seconds.
 QUICKER = (
     (
         "passages/table.py",
@@ -71,6 +71,14 @@ QUICKER = (
         "cls.read('paper/expected/stability.csv')",
     ),
     ("accuracy_cost/measure.py", "REPETITIONS = 16", "REPETITIONS = 4"),
+    (
+        "accuracy_cost/precision.py",
+        "    sums, gained, squared = kernel(dtype)(",
+        "    from twodiscs.dynamics.counting import EVENTS, run_blocks as usual\n\n"
+        "    sums, _ = usual(scene, EVENTS, seed, first, stop, duration)\n"
+        "    return sums, 1e-7, 1e-7\n"
+        "    sums, gained, squared = kernel(dtype)(",
+    ),
 )
 
 #: For a module whose files are in a separate folder.
