@@ -28,14 +28,19 @@ def on_surface(n, w, h, r, ring):
                     dx -= w * round(dx / w)
                 apart &= math.hypot(dx, y[i] - y[j]) >= 2 * r
     u, v = np.random.standard_normal(n), np.random.standard_normal(n)
-    if ring:
-        u -= u.mean()
+    mean = u.mean() if ring else 0.0
+    for i in range(n):
+        u[i] -= mean
     # (u1 − u2)/√2 is a normal variable; with the flux its size has the law of Rayleigh.
     change = math.sqrt(-2 * math.log(1 - np.random.rand())) - abs(u[0] - u[1]) / math.sqrt(2)
     change *= math.copysign(1 / math.sqrt(2), u[0] - u[1])
     u[0], u[1] = u[0] + change, u[1] - change
-    norm = math.sqrt(np.sum(u * u + v * v))
-    return x, y, u / norm, v / norm
+    norm = 0.0
+    for i in range(n):
+        norm += u[i] ** 2 + v[i] ** 2
+    for i in range(n):
+        u[i], v[i] = u[i] / math.sqrt(norm), v[i] / math.sqrt(norm)
+    return x, y, u, v
 
 
 @numba.njit
@@ -77,8 +82,9 @@ def follow(x, y, u, v, w, h, r, ring, duration, gap):
         # The pair starts at x1 = x2: it cannot come back before an event.
         first = False
         clock += best
-        x += u * best
-        y += v * best
+        for i in range(n):
+            x[i] += u[i] * best
+            y[i] += v[i] * best
         if kind == 1:
             u[one] = -u[one]
         elif kind == 2:

@@ -49,7 +49,7 @@ def drawn_again(inertia, ring):
 
 
 @numba.njit
-def follow(state, w, h, r, inertia, ring, times, found, gap, wait=math.inf, mean=1.0, equal=False):
+def follow(state, w, h, r, inertia, ring, times, found, gap, wait, mean, equal):
     """Follow a state from x1 = x2; fill ``found`` with 1 + 2 Σ s_0 s_k at ``times``.
 
     With a ``gap`` and no times, return instead how many hops come after the first one, each within
@@ -155,15 +155,17 @@ def replicas(seed, number, w, h, r, inertia, ring, times):
     np.random.seed(seed)
     found = np.zeros((number, times.size))
     for i in range(number):
-        follow(on_surface(w, h, r, inertia, ring), w, h, r, inertia, ring, times, found[i], 0.0)
+        state, free = on_surface(w, h, r, inertia, ring), math.inf
+        follow(state, w, h, r, inertia, ring, times, found[i], 0.0, free, free, False)
     return found
 
 
 @numba.njit
-def clusters(seed, number, w, h, r, inertia, gap, mean=math.inf, equal=False):
+def clusters(seed, number, w, h, r, inertia, gap, mean, equal):
     """Return the sizes of the clusters in a box of ``number`` hops, to both sides in time.
 
-    Velocities are drawn anew after times of this ``mean``, as in ``follow``.
+    Velocities are drawn anew after times of this ``mean``, as in ``follow``, never if it is
+    infinite.
     """
     np.random.seed(seed)
     sizes, none = np.ones(number), np.zeros(0)

@@ -137,6 +137,7 @@ def test_pressure_of_64_128_and_256_discs_in_a_box(packing):
     assert compare("boxes", value, error, packing) < 0.01
 
 
+@pytest.mark.slow
 def test_rates_of_256_discs_in_a_channel_are_exact():
     """By the transfer operator: five sigma on each class."""
     scene, replicas = Scene(130.0, 0.6, 0.18, discs=256), 32

@@ -34,6 +34,14 @@ ALL = Scene(
 )
 
 
+#: In the fast tests spins, a field and a ring with kicks are those of one scene.
+NAMED = SCENES | {"all": ALL}
+#: A scene without effects, and one that takes long to compile.
+BOTH = pytest.mark.parametrize(
+    "scene", [PLAIN, pytest.param(ALL, marks=pytest.mark.slow)], ids=["plain", "all"]
+)
+
+
 def slow(*names):
     """Return the names as parameters of slow tests: each compiles kicks of its own."""
     return [pytest.param(name, marks=pytest.mark.slow) for name in names]
@@ -65,10 +73,12 @@ def momenta_and_energy(scene, state):
     return momenta, energy
 
 
-@pytest.mark.parametrize("name", ["friction", *slow("torus", "field", "rough"), "combination"])
+@pytest.mark.parametrize(
+    "name", ["friction", "all", *slow("torus", "field", "rough", "combination")]
+)
 def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
     """The momentum along a periodic axis stays what it is, 0 in the ensemble and not 0 here."""
-    scene = replace(SCENES[name], friction=1.0)
+    scene = replace(NAMED[name], friction=1.0)
     start = states(scene, 1, 5)[: len(components(scene)), 0]
     start[components(scene).index("u1")] += 0.3
     found = np.array(kick_again(tuple(start), 50, np.uint64(1), law_of(scene)))
@@ -85,10 +95,10 @@ def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
         assert np.all(same) if axis in scene.conserved else not np.any(same)
 
 
-@pytest.mark.parametrize("name", ["friction", *slow("torus", "rough"), "combination"])
+@pytest.mark.parametrize("name", ["friction", "all", *slow("torus", "rough", "combination")])
 def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
     """Components scaled by √mass, along conserved axes the relative one, by √(reduced mass)."""
-    scene = replace(SCENES[name], friction=1.0)
+    scene = replace(NAMED[name], friction=1.0)
     start = states(scene, 1, 5)[: len(components(scene)), 0]
     found = np.array(kick_again(tuple(start), 20_000, np.uint64(2), law_of(scene)))
     of, (m1, m2), rows = dict(zip(components(scene), found, strict=True)), scene.masses, []
@@ -98,7 +108,8 @@ def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
         else:
             rows += [math.sqrt(m1) * of[f"{v}1"], math.sqrt(m2) * of[f"{v}2"]]
     if scene.moment_of_inertia:
-        rows += [math.sqrt(scene.moment_of_inertia) * of[f"s{disc}"] for disc in (1, 2)]
+        inertia = scene.moment_of_inertia
+        rows += [math.sqrt(inertia * m) * of[f"s{i}"] for i, m in ((1, m1), (2, m2))]
     unit = np.array(rows) / np.sqrt(np.sum(np.square(rows), axis=0))
     d, n = unit.shape
     assert d == scene.velocity_components
@@ -112,9 +123,7 @@ def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
 
 
 @pytest.mark.parametrize("rate", [0.5, 20.0])
-@pytest.mark.parametrize(
-    "scene", [PLAIN, pytest.param(ALL, marks=pytest.mark.slow)], ids=["plain", "all"]
-)
+@BOTH
 def test_no_mean_time_changes(scene, rate):
     both = scene, replace(scene, friction=rate)
     assert both[1].family == "effects"
@@ -136,16 +145,17 @@ def test_rare_hops_have_their_exact_rate():
         assert found.relative_stderr < 0.025
 
 
-def test_intervals_have_their_exact_mean():
+@BOTH
+def test_intervals_have_their_exact_mean(scene):
     """Rough discs have none without friction, because they are not ergodic."""
-    for scene in (PLAIN, ALL):
-        hop, scene = "vertical_hop", replace(scene, friction=2.0)
-        found = td.intervals(scene, hop, 2**16, seed=3).mean
-        assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
+    hop, scene = "vertical_hop", replace(scene, friction=2.0)
+    found = td.intervals(scene, hop, 2**16, seed=3).mean
+    assert abs(found.value - exact.mean_times(scene)[hop]) <= 5 * found.stderr
 
 
-def test_bits_do_not_depend_on_shards_or_lanes():
-    scene = replace(ALL, friction=2.0)
+@BOTH
+def test_bits_do_not_depend_on_shards_or_lanes(scene):
+    scene = replace(scene, friction=2.0)
 
     def counts(first, stop, lanes=64):
         return counting.run_blocks(scene, EVENTS, 3, first, stop, 8.0, replicas=100, lanes=lanes)
@@ -179,7 +189,7 @@ def test_states_of_two_blocks_are_kicked_as_those_of_one_that_is_twice_as_large(
     assert len({*whole}) == 8
 
 
-@pytest.mark.parametrize("scene", [PLAIN, ALL], ids=["plain", "all"])
+@BOTH
 def test_a_trajectory_has_the_kicks_of_the_ensemble(scene):
     """It has the same events as a replica of the ensemble, and kicks at random times."""
     scene, time = replace(scene, friction=4.0), 256.0

@@ -125,7 +125,10 @@ def test_reversed_velocities_lead_back(scene):
 
 
 #: Scenes whose events are counted, too; the kernel of a scene takes some seconds to compile.
-counted_scene = pytest.mark.parametrize("name", ["unequal", "field", "combination", "nearly all"])
+counted_scene = pytest.mark.parametrize(
+    "name",
+    [pytest.param("unequal", marks=pytest.mark.slow), "field", "combination", "nearly all"],
+)
 
 
 @counted_scene

@@ -46,7 +46,9 @@ THREE = [
 @pytest.mark.parametrize(
     "scene",
     [
-        *THREE,
+        THREE[0],
+        pytest.param(THREE[1], marks=pytest.mark.slow),
+        THREE[2],
         Scene(3.5, 0.6, 0.18, discs=8),
         Scene(7.0, 0.6, 0.18, discs=16),
         pytest.param(
@@ -92,7 +94,7 @@ def test_both_kernels_have_the_same_rates(scene):
     assert np.all(np.abs(found - other) <= 5 * np.hypot(errors, spread)), (found, other)
 
 
-@pytest.mark.parametrize("scene", BORDER, ids=repr)
+@pytest.mark.parametrize("scene", [*BORDER[:4], ROUGH_TOO], ids=repr)
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, many.replica_duration(scene, 2 * scene.discs)

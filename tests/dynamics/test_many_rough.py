@@ -35,7 +35,7 @@ def surface_velocity(u, v, s, normal):
 
 @pytest.mark.parametrize(
     "scene",
-    [BOX, pytest.param(replace(BOX, periodic="x"), marks=pytest.mark.slow), RING],
+    [BOX, *(pytest.param(s, marks=pytest.mark.slow) for s in (replace(BOX, periodic="x"), RING))],
     ids=repr,
 )
 def test_surfaces_reverse_their_velocities(scene):

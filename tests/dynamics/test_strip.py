@@ -56,6 +56,11 @@ COUNTED = [
     pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
     for name, neck in NECKS.items()
 ]
+#: Those without the ones whose draws are many or take long to compile.
+DRAWN = [
+    pytest.param(*neck, id=name, marks=[] if name in ("field", "channel") else [pytest.mark.slow])
+    for name, neck in NECKS.items()
+]
 at_places = pytest.mark.parametrize(("scene", "hop"), PLACES)
 
 
@@ -152,7 +157,7 @@ def test_the_share_is_that_of_draws_from_everywhere(scene, hop):
         assert abs(inside - n * share) <= 5 * math.sqrt(n * share * (1 - share))
 
 
-@pytest.mark.parametrize(("scene", "hop"), [(PAPER, "horizontal_hop"), *NECKS.values()])
+@pytest.mark.parametrize(("scene", "hop"), [(PAPER, "horizontal_hop"), *DRAWN])
 def test_starts_in_a_strip_are_those_from_everywhere_that_are_in_it(scene, hop):
     """First two moments of every coordinate and its square, five sigma of both."""
     k = "xy".index(AXIS[hop])

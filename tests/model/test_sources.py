@@ -253,6 +253,7 @@ def all_modules():
     return [".".join(name) for name in sources.modules()]
 
 
+@pytest.mark.slow
 def test_no_comment_of_this_package_is_taken_for_code(tmp_path, place):
     """A second method: here the tokenizer finds the comments, there it is the syntax tree."""
     before = sources.fingerprint(*all_modules())

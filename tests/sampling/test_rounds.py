@@ -160,7 +160,11 @@ def test_what_is_kept_is_not_done_again():
 TARGET = {"horizontal_hop": 0.01, "top_wall": 0.01, "any_wall": 0.003}
 
 
-@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), (UNEQUAL, 0.15)])
+#: Its kernels take seconds to compile.
+UNEQUAL_TOO = pytest.param(UNEQUAL, 0.15, marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.24), UNEQUAL_TOO])
 def test_counts_in_pieces_are_those_of_their_blocks_and_reach_what_is_asked(box, radius):
     """This holds for rare hops, too, which are counted from separate starts."""
     scene = box.scene(radius)
@@ -210,7 +214,7 @@ def test_samples_in_pieces_are_those_of_one_process(box, radius):
     assert found[0] == montecarlo.SamplingRun(scene, quantities, 3 * 2**20, 0.02, 5).run()
 
 
-@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), (UNEQUAL, 0.15)])
+@pytest.mark.parametrize(("box", "radius"), [(PAPER, 0.1), UNEQUAL_TOO])
 def test_intervals_in_pieces_are_those_of_one_process(box, radius):
     run = intervals.IntervalRun(box.scene(radius), "vertical_hop", 200_000, 5)
     assert run.parts["all"].planned == 4

@@ -147,6 +147,7 @@ def test_what_only_looks_changes_nothing_and_lint_is_clean_and_every_rule_says_w
     assert [line for line in listed if "(" not in line] == []
 
 
+@pytest.mark.slow
 def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     rocrate = pytest.importorskip(
         "rocrate.rocrate", reason="rocrate, of the extra workflow, is not installed"
@@ -163,6 +164,7 @@ def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
     assert built.jobs("crate") == []
 
 
+@pytest.mark.slow
 def test_the_explorer_is_made_when_asked_for(built):
     assert "explorer.html" not in built.results()
     built.snakemake("--cores", "1", "explorer")
