@@ -17,8 +17,8 @@ from scipy.special import betainc
 
 import twodiscs as td
 from twodiscs.dynamics import counting, trajectory
-from twodiscs.dynamics.ensemble import kicked, new_rows, put_state
-from twodiscs.dynamics.kicks import new_kicks, open_kicks
+from twodiscs.dynamics.ensemble import kicked, new_kicks, new_rows, put_state
+from twodiscs.dynamics.kicks import open_kicks
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
@@ -48,9 +48,9 @@ def slow(*names):
 
 
 @compiled
-def kick_again(state, number, seed, law):
+def kick_again(state, number, seed, law, kicks):
     """Return the states after each of a ``number`` of kicks, one a column."""
-    kicks, rows = new_kicks(1, law.friction), new_rows(number, law)
+    rows = new_rows(number, law)
     open_kicks(0, seed, 0, kicks)
     for i in range(number):
         state = kicked(state, 0, kicks.waits[0], law, kicks)
@@ -81,7 +81,8 @@ def test_a_kick_keeps_places_energy_and_conserved_momenta(name):
     scene = replace(NAMED[name], friction=1.0)
     start = states(scene, 1, 5)[: len(components(scene)), 0]
     start[components(scene).index("u1")] += 0.3
-    found = np.array(kick_again(tuple(start), 50, np.uint64(1), law_of(scene)))
+    given = np.uint64(1), law_of(scene), new_kicks(scene, 1)
+    found = np.array(kick_again(tuple(start), 50, *given))
     names = components(scene)
     for row, name, value in zip(found, names, start, strict=True):
         if name[0] in "xyz":
@@ -100,7 +101,8 @@ def test_velocities_after_a_kick_are_uniform_on_the_sphere(name):
     """Components scaled by √mass, along conserved axes the relative one, by √(reduced mass)."""
     scene = replace(NAMED[name], friction=1.0)
     start = states(scene, 1, 5)[: len(components(scene)), 0]
-    found = np.array(kick_again(tuple(start), 20_000, np.uint64(2), law_of(scene)))
+    given = np.uint64(2), law_of(scene), new_kicks(scene, 1)
+    found = np.array(kick_again(tuple(start), 20_000, *given))
     of, (m1, m2), rows = dict(zip(components(scene), found, strict=True)), scene.masses, []
     for axis, v in zip(scene.axes, "uvw", strict=False):
         if axis in scene.conserved:
@@ -168,14 +170,14 @@ def test_bits_do_not_depend_on_shards_or_lanes(scene):
 
 def test_lanes_without_a_replica_are_not_kicked():
     """A lane that never began has no time to its next kick: a kick in it would never end."""
-    kicks = new_kicks(3, law_of(replace(PLAIN, friction=2.0)).friction)
+    kicks = new_kicks(replace(PLAIN, friction=2.0), 3)
     open_kicks(1, np.uint64(3), 0, kicks)
     assert np.isfinite(kicks.waits).tolist() == [False, True, False]
 
 
 def test_kicks_have_other_random_numbers_than_initial_states():
     """The first kick does not come at the time that the stream of a block of states would give."""
-    kicks, seed = new_kicks(1, law_of(replace(PLAIN, friction=2.0)).friction), np.uint64(3)
+    kicks, seed = new_kicks(replace(PLAIN, friction=2.0), 1), np.uint64(3)
     for replica in range(4):
         open_kicks(0, seed, replica, kicks)
         assert kicks.waits[0] != exponential(open_stream(seed, replica)) / 2.0

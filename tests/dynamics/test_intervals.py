@@ -64,7 +64,7 @@ def test_hop_chains_do_not_depend_on_lanes():
         sums = np.zeros((2, 67), np.int64)
         totals = returns.record_returns(
             np.uint64(1), 0, 2, 64, lanes, 16, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
-            sums, np.ones(1, np.bool_),
+            sums, np.ones(1, np.bool_), None,
         )  # fmt: skip
         results.append((totals, sums))
     for few, more in zip(*results, strict=True):
@@ -80,7 +80,7 @@ def test_squares_are_those_of_the_counts_of_each_chain():
         sums = np.zeros((2, 66 + edges.size), np.int64)
         returns.record_returns(
             np.uint64(3), first, stop, 1, 4, 32, law_of(PAPER), *origins(PAPER), None, 0.25, wide,
-            sums, np.ones(1, np.bool_),
+            sums, np.ones(1, np.bool_), None,
         )  # fmt: skip
         found.append(sums)
     chains = np.array([counts for counts, _ in found[:-1]])

@@ -25,7 +25,7 @@ def counts_of(scene, seed, replicas, events, epochs=7.3):
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     sums, products = many_cells.count_blocks(
         np.uint64(seed), 0, 1, replicas, duration, duration / epochs, many.law_of(scene),
-        initial.initial_of(scene), grid_of(scene), True, hops_x,
+        initial.initial_of(scene), grid_of(scene), True, hops_x, None,
     )  # fmt: skip
     return sums, products, duration
 
@@ -88,7 +88,7 @@ def test_both_kernels_have_the_same_rates(scene):
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     sums, products = many.count_blocks(
         np.uint64(3), 0, 1, replicas, 64, duration, scene.discs, many.law_of(scene),
-        initial.initial_of(scene), hops_x,
+        initial.initial_of(scene), hops_x, None,
     )  # fmt: skip
     other, spread = means(sums, products, duration, replicas)
     assert np.all(np.abs(found - other) <= 5 * np.hypot(errors, spread)), (found, other)
@@ -101,10 +101,20 @@ def test_a_few_events_are_the_same_ones(scene):
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     given = many.law_of(scene), initial.initial_of(scene)
     one = many_cells.count_blocks(
-        np.uint64(4), 0, 1, replicas, duration, duration / 3, *given, grid_of(scene), True, hops_x
+        np.uint64(4),
+        0,
+        1,
+        replicas,
+        duration,
+        duration / 3,
+        *given,
+        grid_of(scene),
+        True,
+        hops_x,
+        None,
     )
     other = many.count_blocks(
-        np.uint64(4), 0, 1, replicas, 64, duration, scene.discs, *given, hops_x
+        np.uint64(4), 0, 1, replicas, 64, duration, scene.discs, *given, hops_x, None
     )
     assert one[0].sum() > 10 * replicas
     for some, same in zip(one, other, strict=True):

@@ -73,6 +73,7 @@ def test_the_past_is_as_the_future():
             none,
             np.uint64(5),
             0,
+            None,
         )
         found.append(by_time(sums))
     for future, past in zip(*found, strict=True):

@@ -14,8 +14,8 @@ import math
 
 import numpy as np
 
-from twodiscs.dynamics.kicks import before_kick
-from twodiscs.dynamics.law import first_event, meeting, redrawn
+from twodiscs.dynamics.kicks import before_kick, idle_kicks
+from twodiscs.dynamics.law import first_event, friction_of, meeting, redrawn
 from twodiscs.sampling.jit import inlined, optional
 from twodiscs.sampling.streams import exponential
 
@@ -120,6 +120,16 @@ def find_events(rows, remaining, times, codes, law, kicks=None):
         )
 
 
+def new_kicks(scene, lanes):
+    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
+
+    A lane that never begins has no kick.
+    """
+    if not scene.friction:
+        return None
+    return idle_kicks(lanes, scene.friction, np.zeros(6), np.zeros(8), friction_of(scene))
+
+
 @optional(lambda state, i, time, law, kicks: state)
 def kicked(state, i, time, law, kicks):
     """Return the ``state`` of lane ``i`` after a flight of ``time``, kicked if that is due."""
@@ -129,7 +139,7 @@ def kicked(state, i, time, law, kicks):
         stream = kicks.stream
         for k in range(4):
             stream[k] = kicks.streams[i, k]
-        state = redrawn(state, stream, kicks.direction, kicks.velocity, law.friction)
+        state = redrawn(state, stream, kicks.direction, kicks.velocity, kicks.friction)
         kicks.waits[i] = exponential(stream) / kicks.rate
         for k in range(4):
             kicks.streams[i, k] = stream[k]

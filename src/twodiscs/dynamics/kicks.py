@@ -8,7 +8,7 @@ its past and in its future are independent.
 A kick ends a flight, as the end of time does. Each replica has its own stream of random numbers,
 keyed by its number, so bits do not depend on lanes, processors or shards. The seeds of jobs are
 below 2⁶³, and the seeds of kicks above. Without friction the kicks are None, and nothing is
-compiled.
+compiled. The law of the motion knows nothing of them.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,8 @@ SEED = np.uint64(1 << 63)
 class Kicks(NamedTuple):
     """The rate of kicks, and for each lane the time to the next one and its stream.
 
-    ``stream``, ``direction`` and ``velocity`` are working memory.
+    ``stream``, ``direction`` and ``velocity`` are working memory; ``friction`` is what a draw for
+    two discs needs.
     """
 
     rate: float
@@ -34,17 +35,16 @@ class Kicks(NamedTuple):
     stream: np.ndarray
     direction: np.ndarray
     velocity: np.ndarray
+    friction: tuple | None = None
 
 
-@optional(lambda lanes, friction: None)
-def new_kicks(lanes, friction):
-    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
+def idle_kicks(lanes, rate, *memory):
+    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; until then none comes.
 
-    ``friction`` has a ``rate``. A lane that never begins has no kick.
+    ``memory`` is what follows ``stream``.
     """
-    streams = np.zeros((lanes, 4), np.uint64)
-    stream, waits = np.zeros(4, np.uint64), np.full(lanes, np.inf)
-    return Kicks(friction.rate, waits, streams, stream, np.zeros(6), np.zeros(8))
+    streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
+    return Kicks(rate, np.full(lanes, np.inf), streams, stream, *memory)
 
 
 @optional(lambda i, seed, replica, kicks: None)

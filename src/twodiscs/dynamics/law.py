@@ -40,9 +40,8 @@ NEVER = math.inf
 
 
 class Friction(NamedTuple):
-    """The rate of kicks, masses m, moments of inertia κm (0 if smooth), and the draw of a kick."""
+    """What a kick needs: masses m, moments of inertia κm (0 if smooth), and the draw."""
 
-    rate: float
     masses: tuple
     inertias: tuple
     prism: PrismSampler
@@ -70,7 +69,6 @@ class Law(NamedTuple):
     gravity: float | None = None
     weights: tuple | None = None  # 2 m2/M, 2 m1/M of unequal masses
     rough: tuple | None = None  # κ/(1 + κ), 1/(1 + κ) with κ = I/(m r²)
-    friction: Friction | None = None  # see ``kicks``
 
 
 def divided(whole, first, second):
@@ -111,15 +109,15 @@ def law_of(scene):
         gravity=scene.field or None,
         weights=None if m1 == m2 else divided(2.0, m2, m1),
         rough=None if inertia is None else divided(1.0, inertia, 1.0),
-        friction=_friction_of(scene) if scene.friction else None,
         **walls,
         **wraps,
     )
 
 
-def _friction_of(scene):
+def friction_of(scene):
+    """Return the ``Friction`` of a ``Scene``."""
     inertias = tuple((scene.moment_of_inertia or 0.0) * mass for mass in scene.masses)
-    return Friction(scene.friction, scene.masses, inertias, prism_of(scene))
+    return Friction(scene.masses, inertias, prism_of(scene))
 
 
 # Effects: an absent effect (None, the last argument) is compiled to nothing ----------------------

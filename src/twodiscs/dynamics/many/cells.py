@@ -32,7 +32,6 @@ from twodiscs.dynamics.many.lockstep import (
     VERTICAL,
     N,
     nearest,
-    new_kicks,
     new_spins,
     redraw,
     rub,
@@ -486,16 +485,17 @@ def follow(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, h
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, duration, epoch, law, initial, grid, hops, hops_x):
+def count_blocks(
+    seed, first, stop, replicas, duration, epoch, law, initial, grid, hops, hops_x, kicks
+):
     """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
 
     Returns (sums, products) as ``lockstep.count_blocks`` does. ``hops`` and ``hops_x`` are None
-    where hops in y or in x are not counted.
+    where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
     """
     discs = initial.discs
     states, laps = np.zeros((initial.rows, replicas)), np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
-    kicks = new_kicks(1, discs, law.rough, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     lane = np.int64(0)  # for a literal 0 numba would compile ``follow`` once more
     for block in range(first, stop):

@@ -26,11 +26,12 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
     initial, grid = initial_of(scene), large_grid(scene)
     if grid is None:
         return lockstep.count_blocks(
-            seed, first, stop, replicas, lanes, duration, scene.discs, law, initial, hops_x
-        )
+            seed, first, stop, replicas, lanes, duration, scene.discs, law, initial, hops_x,
+            lockstep.new_kicks(scene, lanes),
+        )  # fmt: skip
     return cells.count_blocks(
         seed, first, stop, replicas, duration, lockstep.epoch_of(scene), law, initial, grid,
-        True if hops else None, hops_x if hops else None,
+        True if hops else None, hops_x if hops else None, lockstep.new_kicks(scene, 1),
     )  # fmt: skip
 
 
@@ -44,8 +45,7 @@ def advance_scene(scene, states, laps, time, kicks):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
-    law = lockstep.law_of(scene)
-    kicks = lockstep.new_kicks(number, scene.discs, law.rough, law.friction)
+    kicks = lockstep.new_kicks(scene, number)
     if kicks is not None:
         open_all(np.uint64(seed), block * number, kicks)
     return kicks

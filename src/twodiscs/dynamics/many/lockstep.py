@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, PASSES, REPLICAS, nearest_power_of_two
-from twodiscs.dynamics.kicks import Kicks, before_kick, open_kicks, renew_kicks
+from twodiscs.dynamics.kicks import Kicks, before_kick, idle_kicks, open_kicks, renew_kicks
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     NEVER,
@@ -78,15 +78,13 @@ class ManyLaw(NamedTuple):
     """The constants of the motion: half-ranges of the centres, σ, and those of effects.
 
     ``ring`` is (circumference, half of it, the longest flight); ``half_x`` is None then. ``rough``
-    is that of ``law.Law``, and √(1/κ). ``friction`` is the rate of kicks. Each of them is None
-    without the effect.
+    is that of ``law.Law``, and √(1/κ). Both are None without the effect.
     """
 
     half_x: float | None
     half_y: float
     sigma: float
     ring: tuple | None = None
-    friction: float | None = None
     rough: tuple | None = None
 
 
@@ -98,20 +96,18 @@ def law_of(scene):
         ring = scene.width, half, half / math.sqrt(2)
     if scene.moment_of_inertia is not None:
         rough = *divided(1.0, scene.moment_of_inertia, 1.0), spin_of(scene)
-    return ManyLaw(
-        half_x, scene.range_y / 2, scene.contact_distance, ring, scene.friction or None, rough
-    )
+    return ManyLaw(half_x, scene.range_y / 2, scene.contact_distance, ring, rough)
 
 
-@optional(lambda lanes, discs, rough, friction: None)
-def new_kicks(lanes, discs, rough, friction):
+def new_kicks(scene, lanes):
     """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; None without friction.
 
     The working memory of a draw has the form that ``draw_velocities`` takes.
     """
-    streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
-    waits, (velocities, cuts) = np.full(lanes, NEVER), velocity_memory(discs, rough)
-    return Kicks(friction, waits, streams, stream, cuts, velocities)
+    if not scene.friction:
+        return None
+    velocities, cuts = velocity_memory(scene.discs, scene.moment_of_inertia)
+    return idle_kicks(lanes, scene.friction, cuts, velocities)
 
 
 @optional(lambda u, l, ring: 0.0)
@@ -378,11 +374,12 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initial, hops_x):
+def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initial, hops_x, kicks):
     """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
-    the order of ``SHELLS``. ``hops_x`` is None where hops in x are impossible.
+    the order of ``SHELLS``. ``hops_x`` is None where hops in x are impossible. ``kicks`` are those
+    of the lanes, None without friction.
     """
     x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
@@ -391,7 +388,6 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
     remaining, times = np.zeros(lanes), np.zeros(lanes)
     codes, speeds = np.zeros(lanes), np.zeros(lanes)
     counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
-    kicks = new_kicks(lanes, discs, law.rough, law.friction)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
     block, used, running = first, replicas, 0
@@ -446,7 +442,7 @@ def of_lanes(first, stop, kicks):
     """Return the ``Kicks`` of the lanes ``first`` … ``stop`` − 1, which share their memory."""
     waits, streams = kicks.waits[first:stop], kicks.streams[first:stop]
     return Kicks(
-        kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity
+        kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity, kicks.friction
     )  # fmt: skip
 
 
@@ -499,13 +495,16 @@ def hops_in_flight(before, after, l, time, when):
 
 
 @compiled
-def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, bins, sums, going):
+def record_intervals(
+    seed, first, stop, replicas, window, law, initial, hops_x, bins, sums, going, kicks
+):
     """Record the intervals between hops of any pair in the blocks ``first`` … ``stop`` − 1.
 
     The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. Each
     replica starts in the invariant measure; all intervals that begin within a ``window`` of time
     are followed to their end. ``bins`` are (width, wide) of ``returns.record_returns``. A replica
     has n intervals, c of them in a bin. Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins; int64).
+    ``kicks`` are those of ``LANES`` lanes, None without friction.
     Returns their total time and number, (2, replicas of all blocks) doubles.
     """
     discs, width, wide = initial.discs, bins[0], bins[1]
@@ -522,7 +521,6 @@ def record_intervals(seed, first, stop, replicas, window, law, initial, hops_x, 
             old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
             endless, times = np.full(lanes, np.inf), np.zeros(lanes)
             codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-            kicks = new_kicks(lanes, discs, law.rough, law.friction)
             for l in range(lanes):
                 open_kicks(l, seed, block * replicas + start + l, kicks)
             # The time of the last hop, negative before the first one, and the time since then.
@@ -578,7 +576,7 @@ def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums,
     hops_x = True if event == "horizontal_hop" else None
     return record_intervals(
         np.uint64(seed), first, stop, replicas, window, law_of(scene), initial_of(scene), hops_x,
-        bins, sums, going,
+        bins, sums, going, new_kicks(scene, LANES),
     )  # fmt: skip
 
 

@@ -167,17 +167,17 @@ def begin(n, states, side, net, hops):
 
 
 @compiled
-def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
+def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes, kicks):
     """Follow the hops of blocks ``first`` … ``stop`` − 1; return the wall hits and collisions.
 
     Without a ``gap`` (0), ``sums`` gets the sums of ``two.passages.follow_hops`` at ``times``.
     With a gap, which is then the only time, ``sizes`` gets the numbers of clusters of each size.
-    The other of the two arrays is overwritten and has no meaning.
+    The other of the two arrays is overwritten and has no meaning. ``kicks`` are those of
+    ``REPLICAS`` lanes, None without friction.
     """
     discs, law, events, sides = pair.initial.discs, pair.law, 0, 2 if gap > 0.0 else 1
     states, steps = np.zeros((pair.initial.rows, REPLICAS)), np.zeros(REPLICAS)
     net, hops = np.zeros(REPLICAS), np.zeros(REPLICAS)
-    kicks = new_kicks(REPLICAS, discs, law.rough, law.friction)
     for block in range(first, stop):
         draw_on_surface(open_stream(seed, block), pair, states, -1)
         own, size = sums[block - first], np.ones(REPLICAS)
@@ -212,7 +212,7 @@ def follow_blocks(seed, first, stop, times, gap, pair, sums, sizes):
 def _followed(scene, hop, times, gap, blocks, seed, first):
     sums, sizes = np.zeros((blocks, SUMS, len(times)), np.int64), np.zeros(LARGEST + 1, np.int64)
     run = np.uint64(seed), first, first + blocks, np.array(times), gap, pair_of(scene, hop)
-    return sums, sizes, follow_blocks(*run, sums, sizes)
+    return sums, sizes, follow_blocks(*run, sums, sizes, new_kicks(scene, REPLICAS))
 
 
 def hop_sums(scene, hop, times, blocks, seed, first=0):

@@ -13,11 +13,12 @@ from twodiscs.dynamics.ensemble import (
     find_events,
     kick_lanes,
     nearest_power_of_two,
+    new_kicks,
     new_rows,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import new_kicks, open_kicks
+from twodiscs.dynamics.kicks import open_kicks
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -153,22 +154,22 @@ def unpack(packed, more, counts, lane):
 @compiled
 def count_blocks(
     seed, first, stop, replicas, lanes, duration, law, draw, prism, order, identical, hops, walls,
-    rest,
+    rest, kicks,
 ):  # fmt: skip
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``duration`` and add their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
     the order of EVENTS. Starts come from ``draw`` in an ``order`` as in ``draw_configuration``, or
     from ``prism`` unless it is None. ``identical`` discs, ``hops``, ``walls`` and ``rest`` (the
-    hits of all walls need a counter) are True or None. Nothing is compiled for None.
+    hits of all walls need a counter) are True or None. ``kicks`` are those of the lanes, None
+    without friction. Nothing is compiled for None.
     """
     rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, more = np.zeros(lanes), np.zeros(lanes)
     counts, replica_counts = np.zeros((N, lanes), np.int64), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
-    busy, kicks = np.zeros(lanes, np.bool_), new_kicks(lanes, law.friction)
-    block, used, running, looks = first, replicas, 0, 0
+    busy, block, used, running, looks = np.zeros(lanes, np.bool_), first, replicas, 0, 0
     tracked = hops, walls, rest, True
 
     while True:
@@ -267,7 +268,7 @@ def run_blocks(
     rest = None if walls and complete else True
     return count_blocks(
         np.uint64(seed), first, stop, replicas, lanes, duration, law_of(scene), *origins(scene),
-        order, scene.identical or None, hops, walls, rest,
+        order, scene.identical or None, hops, walls, rest, new_kicks(scene, lanes),
     )  # fmt: skip
 
 

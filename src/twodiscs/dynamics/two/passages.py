@@ -41,11 +41,12 @@ from twodiscs.dynamics.ensemble import (
     across,
     find_events,
     kick_lanes,
+    new_kicks,
     new_rows,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import new_kicks, open_kicks, renew_kicks
+from twodiscs.dynamics.kicks import open_kicks, renew_kicks
 from twodiscs.dynamics.law import (
     END_OF_TIME,
     WRAP_X,
@@ -93,7 +94,9 @@ def draw_initial_states(seed, first, stop, prism, surface, states):
 
 
 @compiled
-def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes, seed, first):
+def follow_hops(
+    states, lanes, times, gap, law, hopping, horizontal, sums, sizes, seed, first, kicks
+):
     """Follow the hops from the ``states`` (``COMPONENTS``, replicas), along x or y.
 
     The hops are those along y, or along x if ``horizontal`` is True instead of None. If ``hopping``
@@ -102,8 +105,9 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
     ascending ``times`` are added to ``sums`` (blocks of replicas, ``SUMS``, times; int64), where
     n = Σ s_0 s_k is over the hops after time 0 and N their number. With a ``gap`` replicas are
     followed forwards and backwards, and the sizes of their clusters are counted in ``sizes``
-    (int64), the last of which takes all that are larger. Kicks come from the streams of ``seed``
-    (uint64), for replicas from the ``first`` on, and are independent in both directions of time.
+    (int64), the last of which takes all that are larger. The ``kicks`` of the lanes, None without
+    friction, come from the streams of ``seed`` (uint64), for replicas from the ``first`` on, and
+    are independent in both directions of time.
     Returns the number of wall and disc events.
     """
     rows, reverse = new_rows(lanes, law), np.zeros((COMPONENTS, lanes))
@@ -112,7 +116,6 @@ def follow_hops(states, lanes, times, gap, law, hopping, horizontal, sums, sizes
     replica, due, events = np.full(lanes, -1), np.zeros(lanes, np.int64), np.zeros(lanes)
     most = np.float64(sizes.size - 1) if gap > 0.0 else np.inf
     wrap = WRAP_Y if horizontal is None else WRAP_X
-    kicks = new_kicks(lanes, law.friction)
     total, per_block = states.shape[1], states.shape[1] // sums.shape[0]
     started, running = 0, 0
 
@@ -253,6 +256,7 @@ def _followed(scene, hop, blocks, seed, first, times, gap, sums, sizes, on_surfa
                 sizes,
                 np.uint64(seed),
                 (first + start) * REPLICAS,
+                new_kicks(scene, LANES),
             )
         )
     return events

@@ -9,10 +9,11 @@ from twodiscs.dynamics.ensemble import (
     across,
     kicked,
     nearest_power_of_two,
+    new_kicks,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import before_kick, new_kicks, open_all
+from twodiscs.dynamics.kicks import before_kick, open_all
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -133,7 +134,7 @@ def new_wraps(scene, number):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
-    kicks = new_kicks(number, law_of(scene).friction)
+    kicks = new_kicks(scene, number)
     if kicks is not None:
         open_all(np.uint64(seed), block * number, kicks)
     return kicks

@@ -9,11 +9,12 @@ from twodiscs.dynamics.ensemble import (
     across,
     find_events,
     kick_lanes,
+    new_kicks,
     new_rows,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import new_kicks, open_kicks
+from twodiscs.dynamics.kicks import open_kicks
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
@@ -40,6 +41,7 @@ def record_returns(
     wide,
     sums,
     going,
+    kicks,
 ):
     """Run the chains of blocks ``first`` … ``stop`` − 1 for ``returns`` hops each.
 
@@ -47,13 +49,14 @@ def record_returns(
     initial states come from ``prism`` or, if that is None, from ``draw``, which is for vertical
     hops only. With c intervals of a chain in a bin, Σ c and Σ c² over the chains are added to
     ``sums`` (2, bins; int64). There are bins of ``width`` from 0 on, one for longer intervals, and
-    wide bins; ``wide`` has the wide bin of each of the others. Returns the total time of each
+    wide bins; ``wide`` has the wide bin of each of the others. ``kicks`` are those of the lanes,
+    None without friction. Returns the total time of each
     chain, (stop − first) × ``chains`` doubles in order.
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    endless, kicks = np.full(lanes, np.inf), new_kicks(lanes, law.friction)
-    age, elapsed, left = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+    endless, left = np.full(lanes, np.inf), np.zeros(lanes)
+    age, elapsed = np.zeros(lanes), np.zeros(lanes)
     chain, finished, lane_of = (
         np.full(lanes, -1),
         np.zeros(lanes + 1),
@@ -124,6 +127,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums,
     return record_returns(
         np.uint64(seed), first, stop, chains, LANES, returns, law_of(scene), *origins(scene),
         True if hop == "horizontal_hop" else None, *bins, sums, going,
+        new_kicks(scene, LANES),
     )  # fmt: skip
 
 

@@ -26,11 +26,12 @@ from twodiscs.dynamics.ensemble import (
     REPLICAS,
     across,
     kick_lanes,
+    new_kicks,
     new_rows,
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import before_kick, new_kicks, open_kicks, renew_kicks
+from twodiscs.dynamics.kicks import before_kick, open_kicks, renew_kicks
 from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
 from twodiscs.model.events import AXIS, HOPS
 from twodiscs.model.family import of_family
@@ -179,7 +180,7 @@ def rare_hops(scene):
 
 @compiled
 def count_hops(
-    seed, first, stop, replicas, lanes, time, fastest, sizes, law, draw, prism, horizontal
+    seed, first, stop, replicas, lanes, time, fastest, sizes, law, draw, prism, horizontal, kicks
 ):
     """Follow the starts of blocks ``first`` … ``stop`` − 1 for a ``time`` to either side.
 
@@ -187,14 +188,14 @@ def count_hops(
     the size of a stratum in |Δ|, the size of one in |Δ̇| if all energy is kinetic, and the number m
     of the latter. Returns starts, Σ N and Σ N² by strata (3, ``PARTS``, m), and the wall and disc
     events, all int64. The hops are vertical ones, or horizontal ones if ``horizontal`` is True
-    instead of None.
+    instead of None. ``kicks`` are those of the lanes, None without friction.
     """
     rows, initial_states = new_rows(lanes, law), np.zeros((COMPONENTS, replicas))
     origin, legs = np.zeros((COMPONENTS, lanes)), np.zeros(lanes, np.int64)
     remaining, times, codes = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
     packed, near, slow = np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64)
-    sums, kicks = np.zeros((3, PARTS, sizes[2]), np.int64), new_kicks(lanes, law.friction)
-    block, used, running, events = first, replicas, 0, 0
+    sums, events = np.zeros((3, PARTS, sizes[2]), np.int64), 0
+    block, used, running = first, replicas, 0
 
     while True:
         for i in range(lanes):
@@ -269,7 +270,7 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
     horizontal = True if hop == "horizontal_hop" else None
     return count_hops(
         np.uint64(seed), first, stop, replicas, lanes, strip.time, strip.fastest, sizes,
-        law_of(scene), *origins(scene, hop, strip.within), horizontal,
+        law_of(scene), *origins(scene, hop, strip.within), horizontal, new_kicks(scene, lanes),
     )  # fmt: skip
 
 
