@@ -78,7 +78,6 @@ def test_both_kernels_count_the_same_events_between_kicks(monkeypatch):
     assert np.array_equal(one[1], other[1])
 
 
-@pytest.mark.slow
 def test_both_kernels_have_the_same_kicks(monkeypatch):
     """Rows and states are the same, before roundings have grown."""
     duration = many.replica_duration(CHANNEL, 160)

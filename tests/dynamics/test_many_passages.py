@@ -101,17 +101,21 @@ def test_the_past_is_as_the_future(inertia):
 
 
 def test_states_are_on_the_surface_without_overlap():
-    for scene in (Scene(3.0, 1.0, 0.2499, discs=4), Scene(3.0, 1.0, 0.2, discs=4, periodic="x")):
-        pair, states = passages.pair_of(scene, HOP), np.zeros((16, 500))
+    rough = Scene(3.0, 1.0, 0.22, discs=4, moment_of_inertia=0.3)
+    ring = Scene(3.0, 1.0, 0.2, discs=4, periodic="x")
+    for scene in (Scene(3.0, 1.0, 0.2499, discs=4), ring, rough):
+        pair = passages.pair_of(scene, HOP)
+        states = np.zeros((pair.initial.rows, 500))
         passages.draw_on_surface(passages.open_stream(np.uint64(1), 0), pair, states, -1)
-        x, y, u, v = states.reshape(4, 4, 500)
+        x, y, u, v, *s = states.reshape(-1, 4, 500)
         assert np.array_equal(x[0], x[1])
         dx = x[:, None] - x
         dx -= scene.width * np.round(dx / scene.width) if scene.periodic else 0.0
         apart = np.hypot(dx, y[:, None] - y)[np.triu_indices(4, 1)]
         assert apart.min() >= scene.contact_distance * (1 - 1e-15)
         assert np.abs(y).max() <= scene.range_y / 2
-        np.testing.assert_allclose((u**2 + v**2).sum(axis=0), 1.0, rtol=1e-13)
+        turning = scene.moment_of_inertia * s[0] ** 2 if s else 0.0
+        np.testing.assert_allclose((u**2 + v**2 + turning).sum(axis=0), 1.0, rtol=1e-13)
 
 
 @pytest.mark.parametrize(("periodic", "components"), [("", 4), ("x", 3)])
