@@ -34,7 +34,7 @@ ALL = Scene(
 )
 
 
-#: In the fast tests spins, a field and a ring with kicks are those of one scene.
+#: The fast tests have one scene with spins, a field and a ring.
 NAMED = SCENES | {"all": ALL}
 #: A scene without effects, and one that takes long to compile.
 BOTH = pytest.mark.parametrize(

@@ -101,18 +101,9 @@ def test_a_few_events_are_the_same_ones(scene):
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     given = many.law_of(scene), initial.initial_of(scene)
     one = many_cells.count_blocks(
-        np.uint64(4),
-        0,
-        1,
-        replicas,
-        duration,
-        duration / 3,
-        *given,
-        grid_of(scene),
-        True,
-        hops_x,
+        np.uint64(4), 0, 1, replicas, duration, duration / 3, *given, grid_of(scene), True, hops_x,
         None,
-    )
+    )  # fmt: skip
     other = many.count_blocks(
         np.uint64(4), 0, 1, replicas, 64, duration, scene.discs, *given, hops_x, None
     )

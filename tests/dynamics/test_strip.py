@@ -56,7 +56,7 @@ COUNTED = [
     pytest.param(*neck, id=name, marks=[pytest.mark.slow] if name in SLOW else [])
     for name, neck in NECKS.items()
 ]
-#: Those without the ones whose draws are many or take long to compile.
+#: The other necks need many draws, or a kernel that takes seconds to compile.
 DRAWN = [
     pytest.param(*neck, id=name, marks=[] if name in ("field", "channel") else [pytest.mark.slow])
     for name, neck in NECKS.items()

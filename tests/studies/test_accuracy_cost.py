@@ -106,15 +106,7 @@ def test_the_price_of_a_poisson_process():
     assert accuracy_cost.predicted_events(PAPER, "vertical_hop", 1e-2) == expected
 
 
-@pytest.mark.parametrize(
-    "method",
-    [
-        "by_lockstep",
-        "by_scalar",
-        pytest.param("by_single_precision", marks=pytest.mark.slow),
-        "by_steps",
-    ],
-)
+@pytest.mark.parametrize("method", ["by_lockstep", "by_scalar", "by_single_precision", "by_steps"])
 def test_engines_name_what_they_count(method):
     """Each mean time within a tenth of the exact one: an event taken for another one is far off."""
     run = getattr(accuracy_cost, method)

@@ -43,7 +43,8 @@ rule mine:
 
 #: (File below studies, its text, its text in a checkout). The tests of a study measure; a build
 #: takes the rows of the default configuration. Of the parts of a table it makes two. Repetitions
-#: do not follow from the budget of a scene. The kernel in single precision compiles for seconds.
+#: do not follow from the budget of a scene. The kernel in single precision compiles for seconds;
+#: the usual one counts in its place, and the two errors of the energy have no meaning.
 QUICKER = (
     (
         "passages/table.py",

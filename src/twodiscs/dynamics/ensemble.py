@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from twodiscs.dynamics.kicks import before_kick, idle_kicks
-from twodiscs.dynamics.law import first_event, friction_of, meeting, redrawn
+from twodiscs.dynamics.law import first_event, kick_sampler, meeting, redrawn
 from twodiscs.sampling.jit import inlined, optional
 from twodiscs.sampling.streams import exponential
 
@@ -127,7 +127,7 @@ def new_kicks(scene, lanes):
     """
     if not scene.friction:
         return None
-    return idle_kicks(lanes, scene.friction, np.zeros(6), np.zeros(8), friction_of(scene))
+    return idle_kicks(lanes, scene.friction, np.zeros(6), np.zeros(8), kick_sampler(scene))
 
 
 @optional(lambda state, i, time, law, kicks: state)
@@ -139,7 +139,7 @@ def kicked(state, i, time, law, kicks):
         stream = kicks.stream
         for k in range(4):
             stream[k] = kicks.streams[i, k]
-        state = redrawn(state, stream, kicks.direction, kicks.velocity, kicks.friction)
+        state = redrawn(state, stream, kicks.direction, kicks.velocity, kicks.sampler)
         kicks.waits[i] = exponential(stream) / kicks.rate
         for k in range(4):
             kicks.streams[i, k] = stream[k]

@@ -8,7 +8,7 @@ its past and in its future are independent.
 A kick ends a flight, as the end of time does. Each replica has its own stream of random numbers,
 keyed by its number, so bits do not depend on lanes, processors or shards. The seeds of jobs are
 below 2⁶³, and the seeds of kicks above. Without friction the kicks are None, and nothing is
-compiled. The law of the motion knows nothing of them.
+compiled. The constants of the law are the same with and without friction.
 """
 
 from typing import NamedTuple
@@ -25,8 +25,8 @@ SEED = np.uint64(1 << 63)
 class Kicks(NamedTuple):
     """The rate of kicks, and for each lane the time to the next one and its stream.
 
-    ``stream``, ``direction`` and ``velocity`` are working memory; ``friction`` is what a draw for
-    two discs needs.
+    ``stream``, ``direction`` and ``velocity`` are working memory. ``sampler`` is the
+    ``law.KickSampler`` of two discs, None of more.
     """
 
     rate: float
@@ -35,16 +35,13 @@ class Kicks(NamedTuple):
     stream: np.ndarray
     direction: np.ndarray
     velocity: np.ndarray
-    friction: tuple | None = None
+    sampler: tuple | None = None
 
 
-def idle_kicks(lanes, rate, *memory):
-    """Return the ``Kicks`` of some ``lanes``, which ``open_kicks`` begins; until then none comes.
-
-    ``memory`` is what follows ``stream``.
-    """
+def idle_kicks(lanes, rate, direction, velocity, sampler=None):
+    """Return the ``Kicks`` of some ``lanes``. A lane has none before ``open_kicks`` begins them."""
     streams, stream = np.zeros((lanes, 4), np.uint64), np.zeros(4, np.uint64)
-    return Kicks(rate, np.full(lanes, np.inf), streams, stream, *memory)
+    return Kicks(rate, np.full(lanes, np.inf), streams, stream, direction, velocity, sampler)
 
 
 @optional(lambda i, seed, replica, kicks: None)
@@ -74,3 +71,10 @@ def open_all(seed, first, kicks):
     """Begin the kicks of the replicas from the ``first`` on, one a lane."""
     for i in range(kicks.waits.size):
         open_kicks(i, seed, first + i, kicks)
+
+
+def opened(kicks, seed, block):
+    """Return ``kicks`` (None stays None) with those of a ``block`` of as many states begun."""
+    if kicks is not None:
+        open_all(np.uint64(seed), block * kicks.waits.size, kicks)
+    return kicks

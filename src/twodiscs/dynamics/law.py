@@ -39,8 +39,8 @@ VANISHING = 1e-280
 NEVER = math.inf
 
 
-class Friction(NamedTuple):
-    """What a kick needs: masses m, moments of inertia κm (0 if smooth), and the draw."""
+class KickSampler(NamedTuple):
+    """A kick draws with these: masses m, moments of inertia κm (0 if smooth), and a sampler."""
 
     masses: tuple
     inertias: tuple
@@ -114,10 +114,10 @@ def law_of(scene):
     )
 
 
-def friction_of(scene):
-    """Return the ``Friction`` of a ``Scene``."""
+def kick_sampler(scene):
+    """Return the ``KickSampler`` of a ``Scene``."""
     inertias = tuple((scene.moment_of_inertia or 0.0) * mass for mass in scene.masses)
-    return Friction(scene.masses, inertias, prism_of(scene))
+    return KickSampler(scene.masses, inertias, prism_of(scene))
 
 
 # Effects: an absent effect (None, the last argument) is compiled to nothing ----------------------
@@ -299,20 +299,20 @@ def redrawn_spins(velocity, inertia):
 
 
 @inlined
-def redrawn(state, stream, direction, velocity, friction):
+def redrawn(state, stream, direction, velocity, sampler):
     """Return a ``state`` after a kick: its velocities and spins are drawn anew from a ``stream``.
 
     In velocities scaled by the roots of masses and moments of inertia, they are uniform on a
     sphere. Its points have the kinetic energy of this moment and the conserved momenta.
     ``direction`` (6) and ``velocity`` (8) are overwritten.
     """
-    prism, (m1, m2) = friction.prism, friction.masses
+    prism, (m1, m2) = sampler.prism, sampler.masses
     velocity[:] = 0.0
     velocity[0], velocity[1], velocity[4], velocity[5] = state[4], state[5], state[6], state[7]
     put_deep_velocities(state, velocity, prism.depth)
     put_spins(state, velocity, prism.inertia)
     s1, s2 = velocity[3], velocity[7]
-    square = friction.inertias[0] * s1 * s1 + friction.inertias[1] * s2 * s2
+    square = sampler.inertias[0] * s1 * s1 + sampler.inertias[1] * s2 * s2
     drift_x = drift_y = drift_z = 0.0
     for axis in range(3):
         p1, p2 = velocity[axis], velocity[axis + 4]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twodiscs.dynamics.ensemble import LANES, RETURNS
-from twodiscs.dynamics.kicks import open_all
+from twodiscs.dynamics.kicks import opened
 from twodiscs.dynamics.many import cells, lockstep
 from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, rows_of
 from twodiscs.sampling.streams import open_stream
@@ -45,10 +45,7 @@ def advance_scene(scene, states, laps, time, kicks):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
-    kicks = lockstep.new_kicks(scene, number)
-    if kicks is not None:
-        open_all(np.uint64(seed), block * number, kicks)
-    return kicks
+    return opened(lockstep.new_kicks(scene, number), seed, block)
 
 
 class Followed:

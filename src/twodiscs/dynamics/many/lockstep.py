@@ -442,7 +442,7 @@ def of_lanes(first, stop, kicks):
     """Return the ``Kicks`` of the lanes ``first`` … ``stop`` − 1, which share their memory."""
     waits, streams = kicks.waits[first:stop], kicks.streams[first:stop]
     return Kicks(
-        kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity, kicks.friction
+        kicks.rate, waits, streams, kicks.stream, kicks.direction, kicks.velocity, kicks.sampler
     )  # fmt: skip
 
 
@@ -504,8 +504,8 @@ def record_intervals(
     replica starts in the invariant measure; all intervals that begin within a ``window`` of time
     are followed to their end. ``bins`` are (width, wide) of ``returns.record_returns``. A replica
     has n intervals, c of them in a bin. Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins; int64).
-    ``kicks`` are those of ``LANES`` lanes, None without friction.
-    Returns their total time and number, (2, replicas of all blocks) doubles.
+    Returns their total time and number, (2, replicas of all blocks) doubles. ``kicks`` are those of
+    ``LANES`` lanes, None without friction.
     """
     discs, width, wide = initial.discs, bins[0], bins[1]
     states, totals = np.zeros((initial.rows, replicas)), np.zeros((2, (stop - first) * replicas))

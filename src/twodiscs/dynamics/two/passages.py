@@ -107,8 +107,7 @@ def follow_hops(
     followed forwards and backwards, and the sizes of their clusters are counted in ``sizes``
     (int64), the last of which takes all that are larger. The ``kicks`` of the lanes, None without
     friction, come from the streams of ``seed`` (uint64), for replicas from the ``first`` on, and
-    are independent in both directions of time.
-    Returns the number of wall and disc events.
+    are independent in both directions of time. Returns the number of wall and disc events.
     """
     rows, reverse = new_rows(lanes, law), np.zeros((COMPONENTS, lanes))
     flights, codes, remaining = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)

@@ -13,7 +13,7 @@ from twodiscs.dynamics.ensemble import (
     put_state,
     state_at,
 )
-from twodiscs.dynamics.kicks import before_kick, open_all
+from twodiscs.dynamics.kicks import before_kick, opened
 from twodiscs.dynamics.law import (
     DISC,
     END_OF_TIME,
@@ -134,10 +134,7 @@ def new_wraps(scene, number):
 
 def kicks_of(scene, number, seed, block=0):
     """Return the ``Kicks`` of ``number`` states, see ``trajectory.kicks_of``."""
-    kicks = new_kicks(scene, number)
-    if kicks is not None:
-        open_all(np.uint64(seed), block * number, kicks)
-    return kicks
+    return opened(new_kicks(scene, number), seed, block)
 
 
 def unwrap(scene, columns, wraps):

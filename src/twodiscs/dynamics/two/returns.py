@@ -50,8 +50,8 @@ def record_returns(
     hops only. With c intervals of a chain in a bin, Σ c and Σ c² over the chains are added to
     ``sums`` (2, bins; int64). There are bins of ``width`` from 0 on, one for longer intervals, and
     wide bins; ``wide`` has the wide bin of each of the others. ``kicks`` are those of the lanes,
-    None without friction. Returns the total time of each
-    chain, (stop − first) × ``chains`` doubles in order.
+    None without friction. Returns the total time of each chain, (stop − first) × ``chains`` doubles
+    in order.
     """
     rows, start = new_rows(lanes, law), np.zeros((COMPONENTS, 1))
     times, codes, intervals = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
@@ -126,8 +126,7 @@ def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums,
     """Record the intervals between hops as ``record_returns`` does; ``bins`` are (width, wide)."""
     return record_returns(
         np.uint64(seed), first, stop, chains, LANES, returns, law_of(scene), *origins(scene),
-        True if hop == "horizontal_hop" else None, *bins, sums, going,
-        new_kicks(scene, LANES),
+        True if hop == "horizontal_hop" else None, *bins, sums, going, new_kicks(scene, LANES),
     )  # fmt: skip
 
 
