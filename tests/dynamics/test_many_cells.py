@@ -23,9 +23,9 @@ def counts_of(scene, seed, replicas, events, epochs=7.3):
     """Return (sums, products, duration) of ``many_cells``, whose times begin anew some times."""
     duration = many.replica_duration(scene, events)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    sums, products = many_cells.count_blocks(
-        np.uint64(seed), 0, 1, replicas, duration, duration / epochs, many.law_of(scene),
-        initial.initial_of(scene), grid_of(scene), True, hops_x, None,
+    sums, products = many_cells.count_events(
+        initial.states(scene, replicas, seed), np.uint64(seed), 0, duration, duration / epochs,
+        many.law_of(scene), grid_of(scene), True, hops_x, None,
     )  # fmt: skip
     return sums, products, duration
 
@@ -86,9 +86,9 @@ def test_both_kernels_have_the_same_rates(scene):
     found, errors = means(*counts_of(scene, 2, replicas, 1024), replicas)
     duration = many.replica_duration(scene, 1024)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    sums, products = many.count_blocks(
-        np.uint64(3), 0, 1, replicas, 64, duration, scene.discs, many.law_of(scene),
-        initial.initial_of(scene), hops_x, None,
+    sums, products = many.count_events(
+        initial.states(scene, replicas, 3), np.uint64(3), 0, 64, duration, many.law_of(scene),
+        hops_x, None,
     )  # fmt: skip
     other, spread = means(sums, products, duration, replicas)
     assert np.all(np.abs(found - other) <= 5 * np.hypot(errors, spread)), (found, other)
@@ -99,14 +99,11 @@ def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, many.replica_duration(scene, 2 * scene.discs)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    given = many.law_of(scene), initial.initial_of(scene)
-    one = many_cells.count_blocks(
-        np.uint64(4), 0, 1, replicas, duration, duration / 3, *given, grid_of(scene), True, hops_x,
-        None,
-    )  # fmt: skip
-    other = many.count_blocks(
-        np.uint64(4), 0, 1, replicas, 64, duration, scene.discs, *given, hops_x, None
+    given, law = (initial.states(scene, replicas, 4), np.uint64(4), 0), many.law_of(scene)
+    one = many_cells.count_events(
+        *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None
     )
+    other = many.count_events(*given, 64, duration, law, hops_x, None)
     assert one[0].sum() > 10 * replicas
     for some, same in zip(one, other, strict=True):
         assert np.array_equal(some, same)

@@ -31,6 +31,7 @@ from twodiscs.dynamics.many.lockstep import (
     HORIZONTAL,
     VERTICAL,
     N,
+    discs_in,
     nearest,
     new_spins,
     redraw,
@@ -48,8 +49,7 @@ from twodiscs.sampling.many.cells import (
     leave,
     new_places,
 )
-from twodiscs.sampling.many.initial import draw_states, spins_in
-from twodiscs.sampling.streams import open_stream
+from twodiscs.sampling.many.initial import spins_in
 
 #: The class of the entries of a log that a kick makes, one for each disc.
 KICK = N
@@ -485,30 +485,26 @@ def follow(duration, epoch, motion, laps, grid, law, counts, lane, kicks, log, h
 
 
 @compiled
-def count_blocks(
-    seed, first, stop, replicas, duration, epoch, law, initial, grid, hops, hops_x, kicks
-):
-    """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
+def count_events(states, seed, first, duration, epoch, law, grid, hops, hops_x, kicks):
+    """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
-    Returns (sums, products) as ``lockstep.count_blocks`` does. ``hops`` and ``hops_x`` are None
+    Returns (sums, products) as ``lockstep.count_events`` does. ``hops`` and ``hops_x`` are None
     where hops in y or in x are not counted. ``kicks`` are those of one lane, None without friction.
     """
-    discs = initial.discs
-    states, laps = np.zeros((initial.rows, replicas)), np.zeros(discs)
+    discs = discs_in(states, law.rough)
+    laps = np.zeros(discs)
     motion, count = new_motion(discs, grid, law.rough), np.zeros(N, np.int64)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     lane = np.int64(0)  # for a literal 0 numba would compile ``follow`` once more
-    for block in range(first, stop):
-        draw_states(open_stream(seed, block), initial, states)
-        for replica in range(replicas):
-            count[:] = 0
-            start_from(states, replica, motion, grid, law)
-            open_kicks(lane, seed, block * replicas + replica, kicks)
-            follow(duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x)
-            for e in range(N):
-                sums[e] += count[e]
-                for f in range(e, N):
-                    products[e, f] += count[e] * count[f]
+    for replica in range(states.shape[1]):
+        count[:] = 0
+        start_from(states, replica, motion, grid, law)
+        open_kicks(lane, seed, first + replica, kicks)
+        follow(duration, epoch, motion, laps, grid, law, count, lane, kicks, None, hops, hops_x)
+        for e in range(N):
+            sums[e] += count[e]
+            for f in range(e, N):
+                products[e, f] += count[e] * count[f]
     return sums, products
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, RETURNS
 from twodiscs.dynamics.kicks import opened
 from twodiscs.dynamics.many import cells, lockstep
-from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, rows_of
+from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, rows_of, states
 from twodiscs.sampling.streams import open_stream
 
 #: Entries of a log before it is read.
@@ -16,22 +16,22 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
     """Count all classes of events of a ``Scene`` in the blocks ``first`` … ``stop`` − 1.
 
     A block is ``replicas`` states of the invariant measure from the stream ``seed``, each followed
-    for ``duration``. Returns (sums, products) as ``count_blocks`` does: integers, which depend on
+    for ``duration``. Returns (sums, products) as ``count_events`` does: integers, which depend on
     neither lanes nor shards. ``LARGE`` numbers of discs have the kernel ``many.cells``, which
     leaves out hops if ``hops`` is not True.
     """
     replicas = replicas or lockstep.replicas_of(scene)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    seed, law = np.uint64(seed), lockstep.law_of(scene)
-    initial, grid = initial_of(scene), large_grid(scene)
+    law, grid = lockstep.law_of(scene), large_grid(scene)
+    starts = np.hstack([states(scene, replicas, seed, block) for block in range(first, stop)])
+    replica = np.uint64(seed), first * replicas
     if grid is None:
-        return lockstep.count_blocks(
-            seed, first, stop, replicas, lanes, duration, scene.discs, law, initial, hops_x,
-            lockstep.new_kicks(scene, lanes),
-        )  # fmt: skip
-    return cells.count_blocks(
-        seed, first, stop, replicas, duration, lockstep.epoch_of(scene), law, initial, grid,
-        True if hops else None, hops_x if hops else None, lockstep.new_kicks(scene, 1),
+        return lockstep.count_events(
+            starts, *replica, lanes, duration, law, hops_x, lockstep.new_kicks(scene, lanes)
+        )
+    return cells.count_events(
+        starts, *replica, duration, lockstep.epoch_of(scene), law, grid, True if hops else None,
+        hops_x if hops else None, lockstep.new_kicks(scene, 1),
     )  # fmt: skip
 
 

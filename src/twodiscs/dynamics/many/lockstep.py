@@ -36,16 +36,14 @@ from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.initial import (
     LARGE,
-    draw_states,
     draw_velocities,
-    initial_of,
     method,
     put_spins,
     spin_of,
     spins_in,
+    states,
     velocity_memory,
 )
-from twodiscs.sampling.streams import open_stream
 from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import bulk_measures, rates
 
@@ -374,23 +372,25 @@ def advance(x, y, u, v, old_x, old_y, remaining, times, codes, counts, law, hops
 
 
 @compiled
-def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initial, hops_x, kicks):
-    """Follow the initial states of blocks ``first`` … ``stop`` − 1 and add up their counts.
+def count_events(states, seed, first, lanes, duration, law, hops_x, kicks):
+    """Follow the columns of ``states`` (rows, replicas) for a ``duration`` and add up their counts.
 
     Returns (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n) over all replicas, int64, in
     the order of ``SHELLS``. ``hops_x`` is None where hops in x are impossible. ``kicks`` are those
-    of the lanes, None without friction.
+    of the lanes, None without friction: the column k has the stream of ``seed`` for the replica
+    ``first`` + k.
     """
+    discs, replicas = discs_in(states, law.rough), states.shape[1]
     x, y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     u, v = np.zeros((discs, lanes)), np.zeros((discs, lanes))
     old_x, old_y = np.zeros((discs, lanes)), np.zeros((discs, lanes))
-    states, spins = np.zeros((initial.rows, replicas)), new_spins(lanes, discs, law.rough)
+    spins = new_spins(lanes, discs, law.rough)
     remaining, times = np.zeros(lanes), np.zeros(lanes)
     codes, speeds = np.zeros(lanes), np.zeros(lanes)
     counts, busy = np.zeros((N, lanes)), np.zeros(lanes, np.bool_)
     sums, products = np.zeros(N, np.int64), np.zeros((N, N), np.int64)
     count = np.zeros(N, np.int64)
-    block, used, running = first, replicas, 0
+    used, running = 0, 0
     while True:
         for l in range(lanes):
             if remaining[l] > 0.0:
@@ -405,15 +405,12 @@ def count_blocks(seed, first, stop, replicas, lanes, duration, discs, law, initi
                         products[e, f] += count[e] * count[f]
                 busy[l] = False
                 running -= 1
-            if used == replicas and block < stop:
-                draw_states(open_stream(seed, block), initial, states)
-                block, used = block + 1, 0
             if used < replicas:
                 for i in range(discs):
                     x[i, l], y[i, l] = states[i, used], states[discs + i, used]
                     u[i, l], v[i, l] = states[2 * discs + i, used], states[3 * discs + i, used]
                 take_spins(states, used, l, spins)
-                open_kicks(l, seed, (block - 1) * replicas + used, kicks)
+                open_kicks(l, seed, first + used, kicks)
                 remaining[l] = duration
                 busy[l] = True
                 running += 1
@@ -495,69 +492,65 @@ def hops_in_flight(before, after, l, time, when):
 
 
 @compiled
-def record_intervals(
-    seed, first, stop, replicas, window, law, initial, hops_x, bins, sums, going, kicks
-):
-    """Record the intervals between hops of any pair in the blocks ``first`` … ``stop`` − 1.
+def record_intervals(states, seed, first, window, law, hops_x, bins, sums, going, kicks):
+    """Record the intervals between hops of any pair, from the columns of ``states`` on.
 
-    The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. Each
-    replica starts in the invariant measure; all intervals that begin within a ``window`` of time
-    are followed to their end. ``bins`` are (width, wide) of ``returns.record_returns``. A replica
-    has n intervals, c of them in a bin. Σ c, Σ c² and Σ c n are added to ``sums`` (3, bins; int64).
-    Returns their total time and number, (2, replicas of all blocks) doubles. ``kicks`` are those of
-    ``LANES`` lanes, None without friction.
+    The hops are vertical ones, or horizontal ones if ``hops_x`` is True instead of None. All
+    intervals that begin within a ``window`` of time are followed to their end. ``bins`` are
+    (width, wide) of ``returns.record_returns``. A replica has n intervals, c of them in a bin. Σ c,
+    Σ c² and Σ c n are added to ``sums`` (3, bins; int64). Returns their total time and number,
+    (2, replicas) doubles. ``kicks`` are those of ``LANES`` lanes, with the streams of
+    ``count_events``.
     """
-    discs, width, wide = initial.discs, bins[0], bins[1]
-    states, totals = np.zeros((initial.rows, replicas)), np.zeros((2, (stop - first) * replicas))
-    when, per_width = np.zeros(discs * (discs - 1) // 2), 1.0 / width
-    for block in range(first, stop):
-        draw_states(open_stream(seed, block), initial, states)
-        for start in range(0, replicas, LANES):
-            some = states[:, start : start + LANES].copy()
-            x, y = some[:discs], some[discs : 2 * discs]
-            u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
-            spins = spins_in(some, discs, law.rough)
-            lanes, own = some.shape[1], totals[:, (block - first) * replicas + start :]
-            old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
-            endless, times = np.full(lanes, np.inf), np.zeros(lanes)
-            codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-            for l in range(lanes):
-                open_kicks(l, seed, block * replicas + start + l, kicks)
-            # The time of the last hop, negative before the first one, and the time since then.
-            elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
-            counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
-            vertical = VERTICAL, old_y, y
-            hop, before, after = vertical if hops_x is None else (HORIZONTAL, old_x, x)
-            while busy and going[0]:
-                busy = False
-                for _ in range(PASSES):
-                    find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
-                    advance(
-                        x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x, spins
-                    )  # fmt: skip
-                    kick_lanes(u, v, spins, times, law, kicks)
-                    for l in range(lanes):
-                        at = 0.0
-                        if hits[hop, l] > seen[l]:
-                            seen[l] = hits[hop, l]
-                            for k in range(hops_in_flight(before, after, l, times[l], when)):
-                                interval = age[l] + (when[k] - at)
-                                if 0.0 <= last[l] < window:
-                                    index = min(np.int64(interval * per_width), wide.size - 1)
-                                    counts[l, index] += 1
-                                    counts[l, wide[index]] += 1
-                                    own[0, l] += interval
-                                    own[1, l] += 1.0
-                                age[l], at = 0.0, when[k]
-                                last[l] = elapsed[l] + at
-                        age[l] += times[l] - at
-                        elapsed[l] += times[l]
-                        busy |= (elapsed[l] < window) | ((last[l] >= 0.0) & (last[l] < window))
-            for l in range(lanes):
-                for k in range(sums.shape[1]):
-                    sums[0, k] += counts[l, k]
-                    sums[1, k] += counts[l, k] * counts[l, k]
-                    sums[2, k] += counts[l, k] * np.int64(own[1, l])
+    discs, width, wide = discs_in(states, law.rough), bins[0], bins[1]
+    totals, per_width = np.zeros((2, states.shape[1])), 1.0 / width
+    when = np.zeros(discs * (discs - 1) // 2)
+    for start in range(0, states.shape[1], LANES):
+        some = states[:, start : start + LANES].copy()
+        x, y = some[:discs], some[discs : 2 * discs]
+        u, v = some[2 * discs : 3 * discs], some[3 * discs : 4 * discs]
+        spins = spins_in(some, discs, law.rough)
+        lanes, own = some.shape[1], totals[:, start:]
+        old_x, old_y, hits = np.zeros_like(x), np.zeros_like(y), np.zeros((N, lanes))
+        endless, times = np.full(lanes, np.inf), np.zeros(lanes)
+        codes, speeds, seen = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
+        for l in range(lanes):
+            open_kicks(l, seed, first + start + l, kicks)
+        # The time of the last hop, negative before the first one, and the time since then.
+        elapsed, last, age = np.zeros(lanes), np.full(lanes, -1.0), np.zeros(lanes)
+        counts, busy = np.zeros((lanes, sums.shape[1]), np.int64), True
+        vertical = VERTICAL, old_y, y
+        hop, before, after = vertical if hops_x is None else (HORIZONTAL, old_x, x)
+        while busy and going[0]:
+            busy = False
+            for _ in range(PASSES):
+                find_events(x, y, u, v, endless, times, codes, speeds, law, kicks)
+                advance(
+                    x, y, u, v, old_x, old_y, endless, times, codes, hits, law, hops_x, spins
+                )  # fmt: skip
+                kick_lanes(u, v, spins, times, law, kicks)
+                for l in range(lanes):
+                    at = 0.0
+                    if hits[hop, l] > seen[l]:
+                        seen[l] = hits[hop, l]
+                        for k in range(hops_in_flight(before, after, l, times[l], when)):
+                            interval = age[l] + (when[k] - at)
+                            if 0.0 <= last[l] < window:
+                                index = min(np.int64(interval * per_width), wide.size - 1)
+                                counts[l, index] += 1
+                                counts[l, wide[index]] += 1
+                                own[0, l] += interval
+                                own[1, l] += 1.0
+                            age[l], at = 0.0, when[k]
+                            last[l] = elapsed[l] + at
+                    age[l] += times[l] - at
+                    elapsed[l] += times[l]
+                    busy |= (elapsed[l] < window) | ((last[l] >= 0.0) & (last[l] < window))
+        for l in range(lanes):
+            for k in range(sums.shape[1]):
+                sums[0, k] += counts[l, k]
+                sums[1, k] += counts[l, k] * counts[l, k]
+                sums[2, k] += counts[l, k] * np.int64(own[1, l])
     return totals
 
 
@@ -573,11 +566,15 @@ def epoch_of(scene):
 
 def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums, going):
     """Record the intervals between hops of a ``Scene`` as ``record_intervals`` does."""
-    hops_x = True if event == "horizontal_hop" else None
-    return record_intervals(
-        np.uint64(seed), first, stop, replicas, window, law_of(scene), initial_of(scene), hops_x,
-        bins, sums, going, new_kicks(scene, LANES),
-    )  # fmt: skip
+    hops_x, kicks = True if event == "horizontal_hop" else None, new_kicks(scene, LANES)
+    given = window, law_of(scene), hops_x, bins, sums, going, kicks
+    totals = [
+        record_intervals(
+            states(scene, replicas, seed, block), np.uint64(seed), block * replicas, *given
+        )
+        for block in range(first, stop)
+    ]
+    return np.hstack(totals)
 
 
 def of_events(sums, products):

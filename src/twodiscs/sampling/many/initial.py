@@ -107,6 +107,7 @@ def method(scene):
     return "rejection" if measures.free_fraction(scene) >= LEAST else "chain"
 
 
+@lru_cache(maxsize=64)
 def initial_of(scene, by=None):
     """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named."""
     by = by or method(scene)
