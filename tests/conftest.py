@@ -1,10 +1,15 @@
-"""The settings of all tests: one thread for products of matrices, and the order of the files."""
+"""The settings of all tests: threads, garbage collection, and the order of the files."""
 
+import gc
 import os
 
 # Threads of OpenBLAS wait for each other by spinning: small products take ten times as long where
 # other processes have work for the cores. Only modules that are imported later use the setting.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Compiled functions and figures are millions of objects that stay. With the usual thresholds,
+# collections that read them take a tenth of the time.
+gc.set_threshold(100_000, 50, 1000)
 
 
 def pytest_collection_modifyitems(items):

@@ -22,7 +22,7 @@ from twodiscs.theory.many.rates import rates, virial_weights
 def counts_of(scene, seed, replicas, events, epochs=7.3):
     """Return (sums, products, duration) of ``many_cells``, whose times begin anew some times."""
     duration = many.replica_duration(scene, events)
-    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    hops_x = None if scene.periodic else True
     sums, products = many_cells.count_events(
         initial.states(scene, replicas, seed), np.uint64(seed), 0, duration, duration / epochs,
         many.law_of(scene), grid_of(scene), True, hops_x, None,
@@ -85,7 +85,7 @@ def test_both_kernels_have_the_same_rates(scene):
     replicas = 1024
     found, errors = means(*counts_of(scene, 2, replicas, 1024), replicas)
     duration = many.replica_duration(scene, 1024)
-    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    hops_x = None if scene.periodic else True
     sums, products = many.count_events(
         initial.states(scene, replicas, 3), np.uint64(3), 0, 64, duration, many.law_of(scene),
         hops_x, None,
@@ -98,7 +98,7 @@ def test_both_kernels_have_the_same_rates(scene):
 def test_a_few_events_are_the_same_ones(scene):
     """From the same states, before roundings have grown: the same counts, every one of them."""
     replicas, duration = 256, many.replica_duration(scene, 2 * scene.discs)
-    hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
+    hops_x = None if scene.periodic else True
     given, law = (initial.states(scene, replicas, 4), np.uint64(4), 0), many.law_of(scene)
     one = many_cells.count_events(
         *given, duration, duration / 3, law, grid_of(scene), True, hops_x, None

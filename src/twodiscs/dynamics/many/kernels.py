@@ -5,7 +5,13 @@ import numpy as np
 from twodiscs.dynamics.ensemble import LANES, RETURNS
 from twodiscs.dynamics.kicks import opened
 from twodiscs.dynamics.many import cells, lockstep
-from twodiscs.sampling.many.initial import draw_states, initial_of, large_grid, rows_of, states
+from twodiscs.sampling.many.initial import (
+    draw_states,
+    initial_of,
+    large_grid,
+    rows_of,
+    states_of,
+)
 from twodiscs.sampling.streams import open_stream
 
 #: Entries of a log before it is read.
@@ -22,15 +28,15 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
     """
     replicas = replicas or lockstep.replicas_of(scene)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
-    law, grid = lockstep.law_of(scene), large_grid(scene)
-    starts = np.hstack([states(scene, replicas, seed, block) for block in range(first, stop)])
+    law, grid, initial = lockstep.law_of(scene), large_grid(scene), initial_of(scene)
+    states = np.hstack([states_of(initial, replicas, seed, b) for b in range(first, stop)])
     replica = np.uint64(seed), first * replicas
     if grid is None:
         return lockstep.count_events(
-            starts, *replica, lanes, duration, law, hops_x, lockstep.new_kicks(scene, lanes)
+            states, *replica, lanes, duration, law, hops_x, lockstep.new_kicks(scene, lanes)
         )
     return cells.count_events(
-        starts, *replica, duration, lockstep.epoch_of(scene), law, grid, True if hops else None,
+        states, *replica, duration, lockstep.epoch_of(scene), law, grid, True if hops else None,
         hops_x if hops else None, lockstep.new_kicks(scene, 1),
     )  # fmt: skip
 

@@ -37,11 +37,12 @@ from twodiscs.sampling.many import measures
 from twodiscs.sampling.many.initial import (
     LARGE,
     draw_velocities,
+    initial_of,
     method,
     put_spins,
     spin_of,
     spins_in,
-    states,
+    states_of,
     velocity_memory,
 )
 from twodiscs.theory.many import methods
@@ -568,12 +569,10 @@ def run_intervals(scene, event, seed, first, stop, replicas, window, bins, sums,
     """Record the intervals between hops of a ``Scene`` as ``record_intervals`` does."""
     hops_x, kicks = True if event == "horizontal_hop" else None, new_kicks(scene, LANES)
     given = window, law_of(scene), hops_x, bins, sums, going, kicks
-    totals = [
-        record_intervals(
-            states(scene, replicas, seed, block), np.uint64(seed), block * replicas, *given
-        )
-        for block in range(first, stop)
-    ]
+    initial, totals = initial_of(scene), []
+    for block in range(first, stop):
+        states = states_of(initial, replicas, seed, block)
+        totals.append(record_intervals(states, np.uint64(seed), block * replicas, *given))
     return np.hstack(totals)
 
 

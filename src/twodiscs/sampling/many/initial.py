@@ -107,7 +107,6 @@ def method(scene):
     return "rejection" if measures.free_fraction(scene) >= LEAST else "chain"
 
 
-@lru_cache(maxsize=64)
 def initial_of(scene, by=None):
     """Return the ``Initial`` of a ``Scene``, by its ``method`` unless another one is named."""
     by = by or method(scene)
@@ -506,6 +505,11 @@ def states(scene, number, seed, block=0, by=None):
 
     They are the first states of the stream of ``seed`` for ``block``.
     """
-    states = np.zeros((rows_of(scene), number))
-    draw_states(open_stream(np.uint64(seed), block), initial_of(scene, by), states)
+    return states_of(initial_of(scene, by), number, seed, block)
+
+
+def states_of(initial, number, seed, block):
+    """Return ``states`` of an ``Initial``."""
+    states = np.zeros((initial.rows, number))
+    draw_states(open_stream(np.uint64(seed), block), initial, states)
     return states
