@@ -218,3 +218,16 @@ def test_lanes_and_shards_do_not_matter():
         for one, same, *pieces in zip(whole, other, *parts, strict=True):
             assert np.array_equal(one, same)
             assert np.array_equal(one, sum(pieces))
+
+
+def test_states_of_one_block_at_a_time(monkeypatch):
+    """A shard of many blocks needs no more memory than one block."""
+    sizes, count = [], many.count_events
+
+    def counting_events(states, *given):
+        sizes.append(states.shape[1])
+        return count(states, *given)
+
+    monkeypatch.setattr(many, "count_events", counting_events)
+    kernels.run_blocks(EXACT["three, rough"], 7, 0, 3, 8.0, replicas=100)
+    assert sizes == [100, 100, 100]

@@ -78,6 +78,21 @@ def test_both_kernels_count_the_same_events_between_kicks(monkeypatch):
     assert np.array_equal(one[1], other[1])
 
 
+def test_kicks_belong_to_replicas_not_to_blocks(monkeypatch):
+    """Two blocks of four replicas from the same state are one block of eight, in both kernels."""
+    duration = many.replica_duration(CHANNEL, 160)
+    state = initial.states(CHANNEL, 1, 1)
+    monkeypatch.setattr(kernels, "states_of", lambda _, number, *__: np.repeat(state, number, 1))
+    for _ in range(2):
+        first, _ = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=4)
+        halves = kernels.run_blocks(CHANNEL, 5, 0, 2, duration, replicas=4)
+        whole = kernels.run_blocks(CHANNEL, 5, 0, 1, duration, replicas=8)
+        assert np.array_equal(halves[0], whole[0])
+        assert np.array_equal(halves[1], whole[1])
+        assert not np.array_equal(halves[0], 2 * first)
+        monkeypatch.setattr(kernels, "large_grid", lambda scene: None)
+
+
 def test_both_kernels_have_the_same_kicks(monkeypatch):
     """Rows and states are the same, before roundings have grown."""
     duration = many.replica_duration(CHANNEL, 160)

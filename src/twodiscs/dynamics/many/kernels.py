@@ -29,16 +29,21 @@ def run_blocks(scene, seed, first, stop, duration, *, replicas=None, lanes=LANES
     replicas = replicas or lockstep.replicas_of(scene)
     hops_x = None if scene.periodic or scene.height <= 4 * scene.radius else True
     law, grid, initial = lockstep.law_of(scene), large_grid(scene), initial_of(scene)
-    states = np.hstack([states_of(initial, replicas, seed, b) for b in range(first, stop)])
-    replica = np.uint64(seed), first * replicas
-    if grid is None:
-        return lockstep.count_events(
-            states, *replica, lanes, duration, law, hops_x, lockstep.new_kicks(scene, lanes)
-        )
-    return cells.count_events(
-        states, *replica, duration, lockstep.epoch_of(scene), law, grid, True if hops else None,
-        hops_x if hops else None, lockstep.new_kicks(scene, 1),
-    )  # fmt: skip
+    counts = None
+    for block in range(first, stop):
+        states = states_of(initial, replicas, seed, block)
+        given = states, np.uint64(seed), block * replicas
+        if grid is None:
+            part = lockstep.count_events(
+                *given, lanes, duration, law, hops_x, lockstep.new_kicks(scene, lanes)
+            )
+        else:
+            part = cells.count_events(
+                *given, duration, lockstep.epoch_of(scene), law, grid, True if hops else None,
+                hops_x if hops else None, lockstep.new_kicks(scene, 1),
+            )  # fmt: skip
+        counts = part if counts is None else tuple(map(np.add, counts, part))
+    return counts
 
 
 def advance_scene(scene, states, laps, time, kicks):
