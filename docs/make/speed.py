@@ -12,7 +12,7 @@ from pictures import DPI, HEIGHT, TOP
 
 from twodiscs.arguments import Parser, run
 from twodiscs.figures.kit import panels, style
-from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs_paper.studies.effects.study import Benchmark
 
 #: {end of a variant's name: (colour, marker, name in the legend)}.
 LOOKS = {

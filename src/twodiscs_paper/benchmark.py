@@ -33,7 +33,7 @@ from twodiscs.theory.exact import event_rate
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.studies.accuracy_cost import scalar
-from twodiscs_paper.studies.effects.table import Benchmark, EffectsCost
+from twodiscs_paper.studies.effects.study import Benchmark, EffectsCost
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7

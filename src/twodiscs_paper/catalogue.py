@@ -11,7 +11,7 @@ from pathlib import Path
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study
 
 

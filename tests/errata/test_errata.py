@@ -21,7 +21,7 @@ from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, mean_time
 from twodiscs_paper.errata import measure as errata
 from twodiscs_paper.errata import published
 from twodiscs_paper.errata.statements import LIMITS, REGIMES, STATEMENTS
-from twodiscs_paper.errata.table import Errata
+from twodiscs_paper.errata.study import Errata
 
 WRONG = {
     "axis of the cylinder",

@@ -8,7 +8,7 @@ from pictures import HEIGHT, PANELS, WHOLE, alone
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs_paper.studies.effects.study import Benchmark
 
 
 def test_pictures_are_of_figures_that_there_are():

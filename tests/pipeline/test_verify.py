@@ -17,8 +17,8 @@ from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.pipeline.configuration.request import STAGES
 from twodiscs_paper.pipeline.results import verify
 from twodiscs_paper.pipeline.results.manifest import is_reproducible, manifest
-from twodiscs_paper.studies.stability.table import Stability
-from twodiscs_paper.studies.thresholds.table import Thresholds
+from twodiscs_paper.studies.stability.study import Stability
+from twodiscs_paper.studies.thresholds.study import Thresholds
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 

@@ -15,7 +15,7 @@ from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact
 from twodiscs_paper.studies.accuracy_cost import figure, figure_by_radius, scalar
 from twodiscs_paper.studies.accuracy_cost import measure as accuracy_cost
-from twodiscs_paper.studies.accuracy_cost.table import AccuracyCost
+from twodiscs_paper.studies.accuracy_cost.study import AccuracyCost
 
 PAPER = Scene(1.5, 1.0, 0.2)
 AREA = accuracy_cost.AREA

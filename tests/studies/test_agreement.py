@@ -8,8 +8,8 @@ from factory import written
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.events import HOPS
 from twodiscs_paper.studies.agreement import measure
-from twodiscs_paper.studies.agreement.table import Agreement
-from twodiscs_paper.studies.effects.table import Effects
+from twodiscs_paper.studies.agreement.study import Agreement
+from twodiscs_paper.studies.effects.study import Effects
 
 #: Scores at four radii.
 SCORES = {

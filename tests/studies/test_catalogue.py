@@ -18,11 +18,11 @@ from twodiscs_paper import catalogue
 from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.studies.effects.table import Benchmark
+from twodiscs_paper.studies.effects.study import Benchmark
 
 CONFIG = Path(__file__).parents[2] / "config"
 PACKAGE = Path(twodiscs_paper.__file__).parent
-FOLDERS = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("**/table.py")}
+FOLDERS = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("*/**/study.py")}
 FOLDERS = {".".join(folder.parts) for folder in FOLDERS if folder.parts[0] != "pipeline"}
 
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
@@ -66,14 +66,14 @@ def test_only_long_runs_are_built_when_asked_for():
 
 def test_every_folder_and_every_table_has_its_study():
     modules = {
-        study.tables[0].__module__.removeprefix("twodiscs_paper.").removesuffix(".table")
+        study.tables[0].__module__.removeprefix("twodiscs_paper.").removesuffix(".study")
         for study in STUDIES.values()
     }
     assert modules == FOLDERS
     declared = [
         value
         for folder in FOLDERS
-        for value in vars(import_module(f"twodiscs_paper.{folder}.table")).values()
+        for value in vars(import_module(f"twodiscs_paper.{folder}.study")).values()
         if isinstance(value, type) and issubclass(value, Table) and value is not Table
     ]
     assert set(declared) == {Benchmark, *STUDY_TABLES.values()}

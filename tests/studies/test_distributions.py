@@ -21,7 +21,7 @@ from twodiscs.points import estimates
 from twodiscs.theory import tails
 from twodiscs_paper.studies.distributions import figure, shape
 from twodiscs_paper.studies.distributions import measure as distributions
-from twodiscs_paper.studies.distributions.table import Distributions
+from twodiscs_paper.studies.distributions.study import Distributions
 from twodiscs_paper.studies.tails.measure import tail
 from twodiscs_paper.studies.thresholds import figure as thresholds_figure
 

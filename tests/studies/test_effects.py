@@ -29,8 +29,13 @@ from twodiscs_paper.pipeline.configuration.load import load
 from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.studies.effects import figure
 from twodiscs_paper.studies.effects import measure as effects
-from twodiscs_paper.studies.effects.study import SCENES
-from twodiscs_paper.studies.effects.table import Benchmark, Effects, EffectsCost, EffectsCurves
+from twodiscs_paper.studies.effects.study import (
+    SCENES,
+    Benchmark,
+    Effects,
+    EffectsCost,
+    EffectsCurves,
+)
 
 NAMES = [*SCENES]
 FILES = [Path(__file__).parents[2] / "config" / "scenes" / f"{name}.yaml" for name in NAMES]

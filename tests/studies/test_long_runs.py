@@ -12,9 +12,9 @@ import yaml
 from twodiscs.dynamics.two.passages import REPLICAS
 from twodiscs.points.digests import read_json
 from twodiscs_paper.studies.passages import long_run as passages
-from twodiscs_paper.studies.passages.table import Passages
+from twodiscs_paper.studies.passages.study import Passages
 from twodiscs_paper.studies.tails import long_run as tails
-from twodiscs_paper.studies.tails.table import Tails
+from twodiscs_paper.studies.tails.study import Tails
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 

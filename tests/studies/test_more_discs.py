@@ -3,7 +3,7 @@
 import pytest
 
 from twodiscs_paper.studies.more_discs import figure, measure
-from twodiscs_paper.studies.more_discs.table import MoreDiscs
+from twodiscs_paper.studies.more_discs.study import MoreDiscs
 
 
 @pytest.fixture(scope="module")

@@ -34,8 +34,7 @@ from twodiscs_paper.studies.passages import (
     measure,
 )
 from twodiscs_paper.studies.passages.models import exclusion, file
-from twodiscs_paper.studies.passages.study import STUDY
-from twodiscs_paper.studies.passages.table import Passages
+from twodiscs_paper.studies.passages.study import STUDY, Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
 EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"

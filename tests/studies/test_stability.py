@@ -19,7 +19,7 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.theory import exact
 from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
-from twodiscs_paper.studies.stability.table import LongRuns, Stability
+from twodiscs_paper.studies.stability.study import LongRuns, Stability
 
 PAPER = Box(1.5, 1.0)
 BOXES = [

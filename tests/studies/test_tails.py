@@ -25,7 +25,7 @@ from twodiscs.theory import exact
 from twodiscs.theory.tails import tail_constant
 from twodiscs_paper.studies.tails import figure, fits
 from twodiscs_paper.studies.tails import measure as tails
-from twodiscs_paper.studies.tails.table import Tails
+from twodiscs_paper.studies.tails.study import Tails
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.24)

@@ -13,10 +13,10 @@ from twodiscs.model.box import Box
 from twodiscs.model.events import SHELLS
 from twodiscs.theory import exact, laws
 from twodiscs_paper.catalogue import STUDY_FIGURES
-from twodiscs_paper.studies.distributions.table import Distributions
+from twodiscs_paper.studies.distributions.study import Distributions
 from twodiscs_paper.studies.thresholds import figure
 from twodiscs_paper.studies.thresholds import measure as thresholds
-from twodiscs_paper.studies.thresholds.table import Thresholds
+from twodiscs_paper.studies.thresholds.study import Thresholds
 
 PAPER, LONG = Box(1.5, 1.0), Box(3.0, 1.0)
 

@@ -22,7 +22,7 @@ from twodiscs_paper.studies.passages.measure import (
     radius_at,
     thresholds,
 )
-from twodiscs_paper.studies.passages.table import Passages
+from twodiscs_paper.studies.passages.study import Passages
 
 
 def near(one, halvings):

@@ -18,7 +18,7 @@ from twodiscs.model.box import Box
 from twodiscs.points.estimates import Estimate
 from twodiscs.theory import exact, tails
 from twodiscs_paper.studies.tails import fits, measure
-from twodiscs_paper.studies.tails.table import Tails
+from twodiscs_paper.studies.tails.study import Tails
 
 
 def _start(one):
