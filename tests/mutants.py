@@ -119,7 +119,7 @@ MUTANTS = [
     ("twodiscs_paper/studies/agreement/measure.py", "independent counts of a bin", "fraction * (1 - fraction)", "fraction"),
     ("twodiscs_paper/pipeline/documents/formats.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
     ("twodiscs_paper/pipeline/documents/formats.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
-    ("twodiscs_paper/pipeline/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
+    ("twodiscs_paper/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
     ("theory/weighted.py", "kinks of a thick shell", "np.clip([0.0, *touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
     ("theory/exact.py", "range of a disc in the free fraction", "else 2 * radius)\n        for axis in scene.axes", "else radius)\n        for axis in scene.axes"),
     ("sampling/blocks/rounds.py", "one block beyond the budget", "min(blocks, math.floor(affordable * done))", "min(blocks, math.ceil(affordable * done))"),

@@ -27,7 +27,7 @@ from twodiscs.points import estimates
 from twodiscs.points.digests import read_json
 from twodiscs.sampling import montecarlo
 from twodiscs.theory import exact, laws, tails, virial
-from twodiscs_paper.pipeline.configuration import load, reading
+from twodiscs_paper.configuration import load
 
 BOX = Box(1.5, 1.0)
 PAPER = BOX.scene(0.2)
@@ -214,7 +214,7 @@ def test_numbers_that_yaml_reads_as_others_are_refused(tmp_path, line, where, te
     path = tmp_path / "a.yaml"
     path.write_text(f"results: a\n{line}\n", encoding="utf-8")
     with pytest.raises(InputError) as caught:
-        reading.read(path)
+        load.read(path)
     asked = "must be a decimal number, or text in quotes, not"
     assert str(caught.value) == f"{path}, line 2: {where} {asked} {text}: YAML reads {read}"
 
@@ -224,7 +224,7 @@ def test_numbers_that_yaml_reads_as_others_are_refused(tmp_path, line, where, te
 )
 def test_numbers_that_everyone_reads_in_one_way_are_taken(tmp_path, text):
     (tmp_path / "a.yaml").write_text(f"a: [{text}]\n", encoding="utf-8")
-    (value,) = reading.read(tmp_path / "a.yaml")["a"]
+    (value,) = load.read(tmp_path / "a.yaml")["a"]
     assert float(value) == float(text.strip("'").replace(".inf", "inf"))
 
 

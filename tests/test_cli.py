@@ -19,8 +19,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.theory.exact import exact as exact_numbers
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.pipeline.jobs import build
 
 BOX = ["--width", "1.5", "--height", "1"]

@@ -25,9 +25,9 @@ import twodiscs
 from twodiscs import cli
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
+from twodiscs_paper.configuration import load
+from twodiscs_paper.configuration.load import read
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.configuration import load
-from twodiscs_paper.pipeline.configuration.reading import read
 from twodiscs_paper.pipeline.documents.formats import rounded_up
 from twodiscs_paper.pipeline.results import verdict
 

@@ -25,8 +25,8 @@ from twodiscs.figures.kit import style
 from twodiscs.figures.motion import animation
 from twodiscs.model.box import Box
 from twodiscs.sampling.starts import components
+from twodiscs_paper.configuration import load
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.configuration import load
 
 SCENE = td.Scene(1.5, 1.0, 0.2)
 WORDS = ["--width", "1.5", "--height", "1", "--radius", "0.2"]

@@ -17,7 +17,7 @@ LIBRARY = (
     "model", "theory", "points", "sampling", "dynamics", "comparison", "figures", "arguments",
     "cli",
 )  # fmt: skip
-PAPER = ("study", "errata", "studies", "catalogue", "pipeline", "benchmark")
+PAPER = ("study", "errata", "studies", "catalogue", "configuration", "pipeline", "benchmark")
 ROOMS = (
     *(f"twodiscs.{room}" for room in LIBRARY), *(f"twodiscs_paper.{room}" for room in PAPER),
 )  # fmt: skip

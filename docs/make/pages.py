@@ -21,7 +21,7 @@ from twodiscs.arguments import Parser, run
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.catalogue import STUDIES, TABLES
-from twodiscs_paper.pipeline.configuration.schema import document, schema
+from twodiscs_paper.configuration.schema import document, schema
 from twodiscs_paper.pipeline.documents.numbers import PaperNumbers
 
 INTRODUCTION = """\

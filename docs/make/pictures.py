@@ -17,7 +17,7 @@ from PIL import Image
 
 from twodiscs.arguments import Parser, run
 from twodiscs.figures.kit import panels, style
-from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
 from twodiscs_paper.pipeline.jobs.study import read_tables
 

@@ -30,8 +30,7 @@ from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
 from twodiscs.theory.exact import event_rate
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.accuracy_cost import scalar
 from twodiscs_paper.studies.effects.study import Benchmark, EffectsCost
 

@@ -70,7 +70,7 @@ ASKING = {
     "twodiscs/figures/motion/animation.py": 1,
     "twodiscs/figures/motion/hopping_trajectory.py": 1,
     "twodiscs_paper/benchmark.py": 1,
-    "twodiscs_paper/pipeline/configuration/load.py": 1,
+    "twodiscs_paper/configuration/load.py": 1,
     "twodiscs_paper/pipeline/cost.py": 1,
 }
 

@@ -8,7 +8,7 @@ from factory import BOX
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.points.digests import write_json
-from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline.jobs.point import monte_carlo
 from twodiscs_paper.pipeline.jobs.table import rows_of
 from twodiscs_paper.pipeline.results import audit, manifest

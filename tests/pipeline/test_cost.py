@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.configuration.load import load
 
 
 def scene(**keys):

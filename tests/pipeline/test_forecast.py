@@ -11,8 +11,8 @@ from twodiscs.dynamics.intervals import CHAINS, RETURNS
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
 from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost, forecast
-from twodiscs_paper.pipeline.configuration.load import load
 
 BOX = {"width": 1.5, "height": 1.0}
 

@@ -18,8 +18,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.points.digests import read_json
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs_paper.catalogue import TABLES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.pipeline.documents import formats, numbers
 from twodiscs_paper.pipeline.documents.formats import FIRST_HOP, MAIN, Cells, Number, Other
 from twodiscs_paper.pipeline.documents.manuscript import CONSTANTS

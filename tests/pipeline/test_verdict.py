@@ -15,8 +15,8 @@ from twodiscs.dynamics import counting
 from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.configuration.load import load
+from twodiscs_paper.configuration.request import STAGES
 from twodiscs_paper.pipeline.results import verdict
 
 EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"

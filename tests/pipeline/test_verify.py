@@ -12,9 +12,8 @@ from factory import bins_point, hits_point
 from twodiscs.comparison.tables.monte_carlo import Areas
 from twodiscs.points.digests import read_json, write_json
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.request import STAGES
 from twodiscs_paper.pipeline.results import verify
 from twodiscs_paper.pipeline.results.manifest import is_reproducible, manifest
 from twodiscs_paper.studies.stability.study import Stability

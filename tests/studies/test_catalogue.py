@@ -16,8 +16,7 @@ from twodiscs.figures.catalogue import FIGURES, Entry
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper import catalogue
 from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects.study import Benchmark
 
 CONFIG = Path(__file__).parents[2] / "config"

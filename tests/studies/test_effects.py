@@ -25,8 +25,7 @@ from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
 from twodiscs_paper import benchmark
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
+from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.effects import figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import (

@@ -24,7 +24,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
-from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline.results import verdict
 from twodiscs_paper.studies.passages import (
     figure,

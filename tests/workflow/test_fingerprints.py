@@ -15,7 +15,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model import sources
 from twodiscs.model.family import FAMILIES, module_of
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.configuration.request import STAGES
 
 TABLE = Path(__file__).with_name("reruns.txt")
 COMMON = (REPOSITORY / "workflow" / "rules" / "common.smk").read_text(encoding="utf-8")

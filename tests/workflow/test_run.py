@@ -8,7 +8,7 @@ import sys
 import pytest
 from checkout import Checkout, first
 
-from twodiscs_paper.pipeline.configuration.new import new
+from twodiscs_paper.configuration.new import new
 
 
 @pytest.fixture

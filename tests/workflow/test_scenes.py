@@ -7,9 +7,8 @@ from checkout import REPOSITORY
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.events import HOPS, WALLS
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.configuration.load import load, read
+from twodiscs_paper.configuration.request import STAGES
 
 FILES = sorted((REPOSITORY / "config" / "scenes").glob("*.yaml"))
 BLOCKS = {path.stem: read(path) for path in FILES}

@@ -8,7 +8,7 @@ import yaml
 from checkout import BELOW, Checkout, use
 
 from twodiscs.points.digests import read_json
-from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.configuration.load import load
 
 TINY = {
     "shared": [],

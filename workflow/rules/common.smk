@@ -11,7 +11,7 @@ from twodiscs.figures.kit.captions import Shown
 from twodiscs.model.family import FAMILIES, module_of
 from twodiscs.model.sources import fingerprint
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES
-from twodiscs_paper.pipeline.configuration.request import (
+from twodiscs_paper.configuration.request import (
     GATHERED,
     STAGES,
     assigned,

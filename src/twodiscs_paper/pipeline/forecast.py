@@ -19,8 +19,8 @@ from twodiscs.arguments import Parser, end_with_workflow, parameters, run
 from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.model.checks import check_integer
 from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.configuration.load import load
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.configuration.load import load
 
 #: The most events or samples of a pilot, unless one block has more.
 EVENTS = 4e7

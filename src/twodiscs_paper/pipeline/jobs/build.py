@@ -18,8 +18,7 @@ import twodiscs
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.model.checks import InputError, check_integer
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration.load import check_results, load
-from twodiscs_paper.pipeline.configuration.reading import ConfigError, read
+from twodiscs_paper.configuration.load import ConfigError, check_results, load, read
 
 #: Targets by name, beside the figures and the studies.
 TARGETS = (

@@ -13,8 +13,8 @@ from twodiscs.arguments import Parser, parameters, run
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs.points.digests import digest, read_json
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.request import GATHERED
+from twodiscs_paper.configuration.load import load
+from twodiscs_paper.configuration.request import GATHERED
 from twodiscs_paper.pipeline.jobs.table import POINTS, rows_of
 
 EDITED, MISSING = "is not what its job wrote", "is missing"

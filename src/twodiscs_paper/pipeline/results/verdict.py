@@ -20,7 +20,7 @@ from twodiscs.arguments import Parser, parameters, run
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
 from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
-from twodiscs_paper.pipeline.configuration.load import load
+from twodiscs_paper.configuration.load import load
 
 #: The columns that identify a row of a study, as far as its table has them.
 NAMES = (

@@ -19,8 +19,8 @@ from twodiscs.arguments import Parser, parameters, run
 from twodiscs.model.checks import InputError
 from twodiscs.points.digests import digest
 from twodiscs_paper.catalogue import TABLES
-from twodiscs_paper.pipeline.configuration.load import load
-from twodiscs_paper.pipeline.configuration.request import STAGES
+from twodiscs_paper.configuration.load import load
+from twodiscs_paper.configuration.request import STAGES
 from twodiscs_paper.pipeline.jobs.table import POINTS
 
 #: The largest difference of floats, relative to their size.

@@ -20,9 +20,9 @@ from twodiscs.model.events import AXIS, EVENTS, HOPS
 from twodiscs.model.radii import stream_seed
 from twodiscs.model.scene import Scene
 from twodiscs_paper.catalogue import STUDIES
-from twodiscs_paper.pipeline.configuration import load, schema
-from twodiscs_paper.pipeline.configuration.reading import read
-from twodiscs_paper.pipeline.configuration.request import STAGES, Quantities
+from twodiscs_paper.configuration import load, schema
+from twodiscs_paper.configuration.load import read
+from twodiscs_paper.configuration.request import STAGES, Quantities
 
 ROOT = Path(__file__).resolve().parents[2]
 PLAIN = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
@@ -119,8 +119,8 @@ def test_every_effect_is_a_key_with_its_meaning_range_and_default():
 
 def test_reading_a_configuration_needs_no_numerical_package():
     code = (
-        "import sys; from twodiscs_paper.pipeline.configuration import load, reading;"
-        "load.load(reading.read('config/config.yaml'));"
+        "import sys; from twodiscs_paper.configuration import load;"
+        "load.load(load.read('config/config.yaml'));"
         "print({'numpy', 'pandas', 'numba', 'scipy', 'matplotlib'} & set(sys.modules))"
     )
     command = [sys.executable, "-c", code]
