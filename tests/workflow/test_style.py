@@ -14,8 +14,8 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.catalogue import STUDIES
 
 #: Rules without a benchmark, and rules without output.
-UNMEASURED = ("configuration", "verify", "forecast", "audit")
-WITHOUT_OUTPUT = ("verify", "audit")
+UNMEASURED = ("configuration", "verify", "renew", "forecast", "audit")
+WITHOUT_OUTPUT = ("verify", "renew", "audit")
 
 
 def test_every_rule_keeps_a_log_and_a_benchmark():

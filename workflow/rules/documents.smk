@@ -237,11 +237,25 @@ rule verify:
         f"{RESULTS}/logs/verify.log",
     localrule: True
     params:
-        # A wheel has no expected results: then the job says so.
         expected=os.path.join(os.path.dirname(source("paper/paper.typ")), "expected"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.results.verify --configuration {input.configuration:q}"
-        " --expected {params.expected:q} 2> {log:q}"
+    script:
+        "../scripts/verify.py"
+
+
+use rule verify as renew with:
+    input:
+        configuration=rules.configuration.output.json,
+        tables=[p for p in rules.manifest.input.files if str(p).endswith(".csv")],
+    log:
+        f"{RESULTS}/logs/renew.log",
+    params:
+        expected=rules.verify.params.expected,
+        points=[
+            path
+            for scene in CONFIGURED
+            for stage in STAGES
+            for path in CONFIGURATION.points(scene, "cost", stage)
+        ],
 
 
 rule forecast:
