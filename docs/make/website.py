@@ -204,10 +204,8 @@ def gallery(pictures):
 
 def live_explorer():
     """Return the explorer with the points that are expected."""
-    tables = {path.stem: path for path in (EXPECTED / "paper").glob("*.csv")}
-    parts = {path.name: path.read_text("utf-8") for path in (ROOT / "workflow/explorer").iterdir()}
-    data = explorer.data_of([SCENE | {"points": explorer.points(tables)}], seed=1908)
-    return explorer.explorer(parts, data)
+    tables = (EXPECTED / "paper").glob("*.csv")
+    return explorer.explorer((ROOT / "workflow/explorer").iterdir(), tables, [SCENE], seed=1908)
 
 
 EXPLORER = """\

@@ -52,17 +52,13 @@ SIGMAS = 5
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The path of the explorer, as its job writes it."""
+    """The path of the explorer, written."""
     return written(tmp_path_factory.mktemp("explorer") / "explorer.html", SCENES)
 
 
 def written(path, scenes):
-    """Return ``path`` when the job has written the explorer of ``scenes`` there."""
-    words = [*TABLES, "--parts", *PARTS, "--scenes", json.dumps(scenes)]
-    words = ["explorer", *words, "--seed", 1908, "--output", path]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sys.argv", [*map(str, words)])
-        explorer.main()
+    """Write the explorer of ``scenes`` to ``path``, and return this."""
+    path.write_text(explorer.explorer(PARTS, TABLES, scenes, seed=1908), encoding="utf-8")
     return path
 
 

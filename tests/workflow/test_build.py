@@ -1,7 +1,6 @@
 """A whole build: all is there, the same bytes come out again, and a wrong formula is found."""
 
 import csv
-from hashlib import sha256
 
 import pytest
 from checkout import fresh
@@ -145,23 +144,6 @@ def test_what_only_looks_changes_nothing_and_lint_is_clean_and_every_rule_says_w
     assert everything() == before
     assert len(listed) > 40
     assert [line for line in listed if "(" not in line] == []
-
-
-@pytest.mark.slow
-def test_a_crate_names_every_file_that_is_called_for_and_says_what_it_is(built):
-    rocrate = pytest.importorskip(
-        "rocrate.rocrate", reason="rocrate, of the extra workflow, is not installed"
-    )
-    others = ("logs/", "benchmarks/", "points/", "parts/", "effects/", "report-workflow.html")
-    called = {name for name in built.results() if not any(one in name for one in others)}
-    built.snakemake("--cores", "1", "crate")
-    crate = rocrate.ROCrate(built.path / "results")
-    files = {one.id: one for one in crate.data_entities if not one.id.startswith("_workflow/")}
-    assert set(files) == called
-    for name, one in files.items():
-        assert one["sha256"] == sha256((built.path / "results" / name).read_bytes()).hexdigest()
-        assert one["description"] != crate.get("_workflow/scenes.smk")["description"]
-    assert built.jobs("crate") == []
 
 
 @pytest.mark.slow

@@ -72,14 +72,13 @@ def test_the_page_lists_every_target():
         "verify",
         "forecast",
         "audit",
-        "crate",
         "explorer",
         "provenance",
         *FIGURES,
         *STUDIES,
     )
     (table,) = re.findall(r"^\| target \|.*\n\|[-|]+\n((?:\|.*\n)+)", page, re.MULTILINE)
-    others = (*WITHOUT_OUTPUT, "forecast", "long_runs", "crate", "explorer")
+    others = (*WITHOUT_OUTPUT, "forecast", "long_runs", "explorer")
     assert [
         name for name in targets if f"`{name}`" not in (page if name in others else table)
     ] == []

@@ -103,11 +103,10 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        scenes=json.dumps(CONFIGURATION.report()),
+        scenes=CONFIGURATION.report(),
         code=code("twodiscs_paper.pipeline.documents.report"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.documents.report {input.results:q} --template {input.front:q}"
-        " --graph {input.graph:q} --scenes {params.scenes:q} --output {output.html:q} > {log:q} 2>&1"
+    script:
+        "../scripts/report.py"
 
 
 rule manifest:
@@ -174,48 +173,11 @@ rule explorer:
         f"{RESULTS}/benchmarks/explorer.tsv"
     localrule: True
     params:
-        scenes=json.dumps(CONFIGURATION.report()),
+        scenes=CONFIGURATION.report(),
         seed=CONFIGURATION.seed,
         code=code("twodiscs_paper.pipeline.documents.explorer"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.documents.explorer {input.tables:q} --parts {input.parts:q}"
-        " --scenes {params.scenes:q} --seed {params.seed} --output {output.html:q} > {log:q} 2>&1"
-
-
-rule crate:
-    """The results described as an RO-Crate, to be published."""
-    input:
-        files=[
-            rules.report.input.results,
-            rules.report.output if "report" in CONFIGURATION.shared else [],
-            rules.configuration.output,
-            rules.manifest.output,
-        ],
-        provenance=rules.provenance.output,
-        citation=source("CITATION.cff"),
-        texts=[
-            source("workflow/Snakefile"),
-            source("workflow/rules/common.smk"),
-            source("workflow/rules/scenes.smk"),
-            source("workflow/rules/figures.smk"),
-            source("workflow/rules/studies.smk"),
-            source("workflow/rules/documents.smk"),
-            source("workflow/rules/targets.smk"),
-        ],
-    output:
-        json=f"{RESULTS}/ro-crate-metadata.json",
-        texts=directory(f"{RESULTS}/_workflow"),
-    log:
-        f"{RESULTS}/logs/crate.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/crate.tsv"
-    localrule: True
-    params:
-        code=code("twodiscs_paper.pipeline.documents.crate"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.documents.crate {input.files:q} {input.provenance:q}"
-        " --provenance {input.provenance:q} --citation {input.citation:q} --texts {input.texts:q}"
-        " --output {output.json:q} > {log:q} 2>&1"
+    script:
+        "../scripts/explorer.py"
 
 
 rule audit:

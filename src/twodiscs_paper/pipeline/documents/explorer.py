@@ -8,7 +8,6 @@ import json
 import math
 from pathlib import Path
 
-from twodiscs.arguments import Parser, run
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.comparison.tables.monte_carlo import Areas, Volume
 from twodiscs.figures.kit.looks import LOOKS
@@ -76,48 +75,28 @@ def points(tables, periodic=""):
     }
 
 
-def data_of(scenes, seed):
-    """Return the data of the scripts: ``scenes`` with their points, looks of events, the seed."""
-    return {"looks": {e: LOOKS[e] for e in COUNTED}, "scenes": scenes, "seed": seed}
+def explorer(parts, tables, scenes, seed):
+    """Return the page, with the points of all scenes that it can show; it names the others.
 
-
-def explorer(parts, data, left_out=()):
-    """Return the page of ``parts``, {name: text} of its files; its scripts read ``data``.
-
-    It names the scenes that are ``left_out``.
+    ``parts`` are the paths of its files, and ``tables`` those of built tables. ``scenes`` are
+    [{"name", "width", "height", "effects"}]. The page draws random numbers from ``seed``.
     """
     from jinja2 import Environment, StrictUndefined
 
-    values = {
-        "data": json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
-        "left_out": left_out,
-        "scripts": [parts[name] for name in SCRIPTS],
-    }
-    environment = Environment(undefined=StrictUndefined, trim_blocks=True)
-    return environment.from_string(parts["explorer.html"]).render(values)
-
-
-def main():
-    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
-    parser.add_argument("tables", nargs="*", type=Path, metavar="TABLE", help="<scene>/<name>.csv")
-    parser.add_argument("--parts", nargs="+", type=Path, required=True, help="files of the page")
-    parser.add_argument("--scenes", required=True, help="the scenes, JSON")
-    parser.add_argument("--seed", type=int, required=True, help="of the random numbers in the page")
-    parser.add_argument("--output", type=Path, required=True, metavar="HTML")
-    options = parser.parse_args()
-    scenes, left_out = [], []
-    for scene in json.loads(options.scenes):
+    shown, left_out = [], []
+    for scene in scenes:
         name, effects = scene["name"], scene["effects"]
         if not effects.keys() <= SHOWN:
             left_out.append(name)
             continue
-        tables = {path.stem: path for path in options.tables if path.parent.name == name}
+        own = {Path(path).stem: path for path in tables if Path(path).parent.name == name}
         kept = {key: scene[key] for key in ("name", "width", "height")}
-        scenes.append(kept | effects | {"points": points(tables, effects.get("periodic", ""))})
-    parts = {path.name: path.read_text(encoding="utf-8") for path in options.parts}
-    page = explorer(parts, data_of(scenes, options.seed), left_out)
-    options.output.write_text(page, encoding="utf-8", newline="\n")
-
-
-if __name__ == "__main__":
-    run(main)
+        shown.append(kept | effects | {"points": points(own, effects.get("periodic", ""))})
+    data = {"looks": {event: LOOKS[event] for event in COUNTED}, "scenes": shown, "seed": seed}
+    texts = {Path(path).name: Path(path).read_text(encoding="utf-8") for path in parts}
+    environment = Environment(undefined=StrictUndefined, trim_blocks=True)
+    return environment.from_string(texts["explorer.html"]).render(
+        data=json.dumps(data, sort_keys=True).replace("<", "\\u003c"),  # "<" could end a script
+        left_out=left_out,
+        scripts=[texts[name] for name in SCRIPTS],
+    )

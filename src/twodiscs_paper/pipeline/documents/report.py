@@ -4,7 +4,6 @@ It is one HTML file with its pictures in it; tables and figures are also links t
 it.
 """
 
-import json
 import re
 from base64 import b64encode
 from datetime import date
@@ -14,7 +13,6 @@ from pathlib import Path, PurePosixPath
 from markupsafe import Markup, escape
 from PIL import Image
 
-from twodiscs.arguments import Parser, run
 from twodiscs.comparison.measured.measurements import measurement
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
@@ -209,23 +207,3 @@ def page(template, shown):
     environment.filters["short"] = short
     environment.filters["three_digits"] = lambda x: f"{x:.3g}"  # as in check.passed
     return environment.from_string(template).render(shown)
-
-
-def main():
-    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="all results")
-    parser.add_argument("--template", required=True, type=Path, help="the page, for Jinja")
-    parser.add_argument("--scenes", required=True, help="the scenes, JSON")
-    parser.add_argument("--graph", required=True, type=Path, help="a picture of the rules, SVG")
-    parser.add_argument("--output", required=True, type=Path, metavar="HTML")
-    options = parser.parse_args()
-    folder = options.output.parent
-    files = [path.relative_to(folder).as_posix() for path in options.files]
-    scenes = json.loads(options.scenes)
-    shown = contents(folder, files, scenes, options.graph.read_text(encoding="utf-8"))
-    text = page(options.template.read_text(encoding="utf-8"), shown)
-    options.output.write_text(text, encoding="utf-8", newline="\n")
-
-
-if __name__ == "__main__":
-    run(main)

@@ -23,7 +23,7 @@ from twodiscs_paper.configuration.load import ConfigError, check_results, load, 
 #: Targets by name, beside the figures and the studies.
 TARGETS = (
     "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
-    "explorer", "forecast", "benchmark", "crate", *FIGURES, *STUDIES,
+    "explorer", "forecast", "benchmark", *FIGURES, *STUDIES,
 )  # fmt: skip
 
 #: Bytes: if the disk has less space, a build may have failed for that reason.
