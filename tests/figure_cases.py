@@ -61,7 +61,7 @@ def tables_of(name):
             found["hop_histogram"] += histogram(rng, scene)
     found["trajectory"] = trajectory(rng, box.shortest)
     for table, rows in found.items():
-        assert all(row.keys() == SCENE_TABLES[table].columns().keys() for row in rows)
+        assert all(row.keys() == SCENE_TABLES[table].columns.keys() for row in rows)
     return found
 
 

@@ -329,7 +329,7 @@ def test_rows_of_the_check_are_those_of_the_page(checked):
     with open(checked, newline="", encoding="utf-8") as file:
         found = list(csv.DictReader(file))
     lines = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("docs/reading-check.md"), re.MULTILINE)
-    assert [name for name, _ in lines] == list(SCENE_TABLES["check"].columns())
+    assert [name for name, _ in lines] == list(SCENE_TABLES["check"].columns)
     cells = [[cell.strip() for cell in line.split("|")] for _, line in lines]
     key = ("comparison", "quantity", "radius", "method")
     for values in zip(*cells, strict=True):

@@ -58,10 +58,9 @@ def described_tables(cell="`{}.csv`"):
 
 def described_table(name, table):
     """Return the description of a table, its columns among it, as Markdown."""
-    meanings = table.meanings()
     rows = (
-        f"| `{column}` | {kind.unit or '–'} | {_plain(meanings[column])} |\n"
-        for column, kind in table.columns().items()
+        f"| `{column}` | {kind.unit or '–'} | {_plain(kind.meaning)} |\n"
+        for column, kind in table.columns.items()
     )
     head = f"# {name}.csv\n\n{table.meaning()}\n\n| column | unit | meaning |\n|---|---|---|\n"
     return head + "".join(rows)

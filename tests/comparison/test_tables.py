@@ -14,7 +14,7 @@ from pages import described_table, described_tables
 from twodiscs.comparison import frames
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.comparison.tables import base
-from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, TIME, Column, Table
+from twodiscs.comparison.tables.base import RADIUS, TEXT, TIME, Column, Table, Z
 from twodiscs.comparison.tables.check import Check
 from twodiscs.comparison.tables.cost import Cost
 from twodiscs.comparison.tables.theory import Theory
@@ -31,56 +31,22 @@ class Measured(Table):
     row by row.
     """
 
-    radius: LENGTH
-    event: TEXT
-    """
-    the event, which
-    has a name
-    """
-    estimate: TIME
-    """the estimate"""
+    columns = {"radius": RADIUS, "event": TEXT("the event"), "estimate": TIME("the estimate")}
 
 
 class BetterMeasured(Measured):
     """With an error."""
 
-    stderr: Column(float, "as estimate")
-    """its standard error"""
-    z: NUMBER
-    event: TEXT
-    """a hop"""
-
-
-def test_columns_are_those_of_the_class_after_those_it_is_derived_from():
-    assert Measured.columns() == {"radius": LENGTH, "event": TEXT, "estimate": TIME}
-    assert list(BetterMeasured.columns()) == ["radius", "event", "estimate", "stderr", "z"]
-    assert BetterMeasured.columns()["stderr"] == Column(float, "as estimate")
-    # A common column is in no table that does not name it.
-    assert "width" not in BetterMeasured.columns()
+    columns = Measured.columns | {"stderr": Column(float, "as estimate", "its error"), "z": Z}
 
 
 def test_a_table_is_called_as_its_class():
     assert Measured.name() == "measured"
     assert BetterMeasured.name() == "better_measured"
+    assert Measured.meaning() == "What is measured, row by row."
     assert {name: table.__name__ for name, table in SCENE_TABLES.items()}["hop_histogram"] == (
         "HopHistogram"
     )
-
-
-def test_meanings_are_the_docstrings():
-    assert Measured.meaning() == "What is measured, row by row."
-    assert Measured.meanings() == {
-        "radius": "radius of the discs",  # as everywhere
-        "event": "the event, which has a name",
-        "estimate": "the estimate",
-    }
-    assert BetterMeasured.meanings() == {
-        "radius": "radius of the discs",
-        "event": "a hop",
-        "estimate": "the estimate",
-        "stderr": "its standard error",
-        "z": "standard normal deviate of the comparison, positive when the estimate is high",
-    }
 
 
 def test_an_empty_row_has_every_column_and_nothing_in_it(tmp_path):
@@ -95,15 +61,14 @@ def test_an_empty_row_has_every_column_and_nothing_in_it(tmp_path):
 @pytest.mark.parametrize("table", EVERY_TABLE.values(), ids=EVERY_TABLE)
 def test_every_table_and_every_column_say_what_they_mean(table):
     assert table.meaning()[-1] in ".?"
-    assert list(table.meanings()) == list(table.columns())
-    assert len(table.columns()) > 3 or table is Theory
-    for name, meaning in table.meanings().items():
-        assert len(meaning) > 6, name
-        assert "\n" not in meaning
-        assert not meaning.endswith("."), name
-    for name, column in table.columns().items():
-        assert column.kind in (str, int, bool, float), name
-        assert column.kind is float or not column.unit, name
+    assert len(table.columns) > 3 or table is Theory
+    for name, column in table.columns.items():
+        assert len(column.meaning) > 6, name
+        assert "\n" not in column.meaning
+        assert "  " not in column.meaning
+        assert not column.meaning.endswith("."), name
+        assert column.type in (str, int, bool, float), name
+        assert column.type is float or not column.unit, name
 
 
 def test_every_column_is_described_on_a_line_of_its_own():
@@ -114,10 +79,9 @@ def test_every_column_is_described_on_a_line_of_its_own():
         text = described_table(name, table)
         shown.append(text)
         assert text.startswith(f"# {name}.csv\n\n{table.meaning()}\n")
-        for column, meaning in table.meanings().items():
-            meaning = meaning.replace("|", "\\|").replace("<", "&lt;")
-            unit = table.columns()[column].unit or "–"
-            assert f"| `{column}` | {unit} | {meaning} |\n" in text
+        for name_of_column, column in table.columns.items():
+            meaning = column.meaning.replace("|", "\\|").replace("<", "&lt;")
+            assert f"| `{name_of_column}` | {column.unit or '–'} | {meaning} |\n" in text
     for text, bars in zip(shown, [3] + [4] * len(EVERY_TABLE), strict=True):
         for line in text.splitlines():
             if line.startswith("|"):
@@ -131,7 +95,7 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
         for table in vars(import_module(f"{base.__package__}.{path.stem}")).values()
         if isclass(table) and issubclass(table, Table)
     }
-    assert declared - {"table", "sampled"} == {*SCENE_TABLES, "forecast"}
+    assert declared - {"table"} == {*SCENE_TABLES, "forecast"}
     assert all(
         callable(table.rows)
         for name, table in EVERY_TABLE.items()
@@ -147,7 +111,7 @@ def test_contract_columns_are_there():
         "cost": "stage,radius,events,seconds,forecast_seconds",
     }
     for name, columns in contract.items():
-        assert set(columns.split(",")) <= set(SCENE_TABLES[name].columns())
+        assert set(columns.split(",")) <= set(SCENE_TABLES[name].columns)
 
 
 # Files ----------------------------------------------------------------------------------------
@@ -234,19 +198,18 @@ def test_a_wrong_cell_writes_nothing(tmp_path, change, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("\xff", "must be a table theory, but is no text"),
-        ("", "must be a table theory with the columns"),
-        ("radius,quantity\n", "must be a table theory with the columns"),
-        ("quantity,radius,exact\n", "must be a table theory with the columns"),
-        ("radius,quantity,exact\n0.1,volume,1.0,\n", "line 2"),
-        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume\n", "line 3"),
-        ("radius,quantity,exact\nr,volume,1.0\n", "line 2"),
-        ("radius,quantity,exact\n0.1,volume,nan\n", "line 2"),
+        ("\xff", "can't decode byte"),
+        ("", "No columns to parse"),
+        ("radius,quantity\n", "has no column 'exact'"),
+        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume\n", "exact has nan, which is no float"),
+        ("radius,quantity,exact\n0.1,volume,1.0\n0.1,volume,1,2\n", "Expected 3 fields in line 3"),
+        ("radius,quantity,exact\nr,volume,1.0\n", "could not convert string to float: 'r'"),
+        ("radius,quantity,exact\n0.1,volume,nan\n", "exact has 'nan', which is no float"),
     ],
 )
 def test_a_wrong_file_is_named(tmp_path, text, message):
     (tmp_path / "theory.csv").write_bytes(text.encode("latin-1"))
-    with pytest.raises(ValueError, match=rf"theory\.csv .*{message}"):
+    with pytest.raises(ValueError, match=rf"theory\.csv must be a table theory, but .*{message}"):
         Theory.read(tmp_path / "theory.csv")
 
 
@@ -264,7 +227,7 @@ def test_a_truth_value_is_spelled_in_one_way(tmp_path):
     Check.write(tmp_path / "x.csv", [CHECK_ROW])
     text = (tmp_path / "x.csv").read_text()
     (tmp_path / "x.csv").write_text(text.replace(",false,", ",False,"))
-    with pytest.raises(ValueError, match="bad row in line 2"):
+    with pytest.raises(ValueError, match="passed has 'False', which is no bool"):
         Check.read(tmp_path / "x.csv")
 
 

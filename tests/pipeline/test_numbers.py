@@ -254,7 +254,7 @@ def test_every_number_of_the_prose_is_declared_and_every_declared_one_is_used():
     ids=lambda one: one.name,
 )
 def test_a_number_is_of_a_table_and_of_columns_that_there_are(one):
-    kept = (TABLES | numbers.LONG_RUNS)[one.table].columns().keys()
+    kept = (TABLES | numbers.LONG_RUNS)[one.table].columns.keys()
     if one.table in SCENE_TABLES:
         kept |= {"scene", "width", "height"}
     columns = {one.columns} if isinstance(one.columns, str) else {*one.columns}

@@ -133,7 +133,7 @@ def test_hops_of_a_strip_are_compared_from_all_initial_states_too():
     assert failures(rows)[0] == said
 
 
-@pytest.mark.parametrize("column", SCENE_TABLES["check"].columns())
+@pytest.mark.parametrize("column", SCENE_TABLES["check"].columns)
 def test_no_cell_that_is_empty_ends_the_verdict_without_a_sentence(column):
     """Whether it matters or not: p, status and independent decide nothing."""
     for rows in (PAPER[:40], PAPER[-40:]):

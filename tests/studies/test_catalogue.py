@@ -185,5 +185,5 @@ def test_figures_are_drawn_from_tables_of_the_study_or_of_one_before(study):
 def test_timed_tables_are_its_own(study):
     assert set(study.timed) <= {table.name() for table in study.tables}
     for table in study.tables:
-        seconds = [name for name, column in table.columns().items() if column.unit == "s"]
+        seconds = [name for name, column in table.columns.items() if column.unit == "s"]
         assert not seconds or table.name() in study.timed

@@ -1,6 +1,6 @@
 """The study of effects: its counts, its table and its figure."""
 
-import ast
+import json
 from functools import cache
 from pathlib import Path
 
@@ -156,7 +156,7 @@ def test_starts_that_have_not_met_are_counted_at_every_radius_where_discs_meet_s
         if exact.mean_times(scene)["disc_collision"] <= 5
     ]
     assert [(row["radius"], row["effects"]) for row in rows] == [
-        (scene.radius, repr(scene.effects)) for scene in pairs for _ in effects.TIMES
+        (scene.radius, json.dumps(scene.effects)) for scene in pairs for _ in effects.TIMES
     ]
     assert {row["replicas"] for row in rows} == {REPLICAS}
     for i, scene in enumerate(pairs[:2]):
@@ -173,7 +173,7 @@ def test_rows_have_the_exact_times_with_and_without_effects(rows):
             r for r in asked.radii for _ in asked.quantities.mean_times
         ]
         for row in own:
-            assert ast.literal_eval(row["effects"]) == asked.effects
+            assert json.loads(row["effects"]) == asked.effects
             event, radius = row["quantity"].removesuffix("_time"), row["radius"]
             assert row["exact"] == exact.mean_times(asked.box.scene(radius))[event]
             box = Box(row["width"], row["height"])

@@ -4,16 +4,11 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-import pandas as pd
-
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.plugins import plugin
 from twodiscs.points.digests import digest
-
-#: The pandas types of columns, which know an empty cell.
-KINDS = {float: "float64", int: "Int64", bool: "boolean", str: "string"}
 
 
 def load(folder):
@@ -35,20 +30,12 @@ def load(folder):
 
 def read(path, table):
     """Return the file of a ``Table`` as a ``DataFrame`` with units and meanings in ``attrs``."""
-    rows = table.read(path)
-    table = table.of(rows[0] if rows else ())
-    columns = table.columns()
-    kinds = {name: KINDS[column.kind] for name, column in columns.items()}
-    # N! parts of configuration space may be more than 64 bits hold.
-    whole = [name for name, kind in kinds.items() if kind == KINDS[int]]
-    kinds |= {n: "object" for n in whole if max((row[n] or 0 for row in rows), default=0) >= 2**63}
-    configuration = _configuration(path)
-    # Floats with all their digits: pandas' own parser may be off in the last one.
-    frame = pd.DataFrame(rows, columns=list(columns)).astype(kinds)
+    frame, configuration = table.frame(path), _configuration(path)
+    columns = table.columns_of(frame)
     frame.attrs = {
         "table": table.name(),
         "meaning": table.meaning(),
-        "meanings": table.meanings(),
+        "meanings": {name: column.meaning for name, column in columns.items()},
         "units": {name: column.unit for name, column in columns.items()},
         "path": str(path),
         "sha256": digest(path),

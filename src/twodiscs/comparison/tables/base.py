@@ -1,67 +1,65 @@
-"""Tables: CSV files whose columns, units, meaning and rows are declared once, as a class.
+"""Tables: CSV files whose columns and rows are declared once, as a class.
 
     class Tails(Table):
         '''One row per time t: how probable an interval T longer than t is.'''
 
-        radius: LENGTH
-        '''radius of the discs'''
+        columns = {"radius": RADIUS, "time": TIME("t")}
 
-declares tails.csv. A class has columns and a function ``rows`` that makes its rows. Floats are
+declares tails.csv. A class has ``columns`` and a function ``rows`` that makes its rows. Floats are
 written with all their digits, integers as integers, truth values as ``true`` and ``false``; an
-empty cell is a value that does not exist. The texts are docstrings, so that no job runs again after
-an edit of one.
+empty cell is a value that does not exist.
 """
 
-import csv
-import math
 import re
 from dataclasses import dataclass
+from functools import partial
 from numbers import Integral, Real
+from typing import ClassVar
 
 from twodiscs.model.checks import InputError
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column: the type of its values, and their unit, "" for none."""
+    """A column: the type of its values, their unit ("" for none), and their meaning."""
 
-    kind: type
-    unit: str = ""
+    type: type
+    unit: str
+    meaning: str
 
 
-TEXT, COUNT, TRUTH, NUMBER = Column(str), Column(int), Column(bool), Column(float)
-LENGTH, TIME, RATE, SECONDS = (Column(float, unit) for unit in ("length", "time", "1/time", "s"))
+TEXT, COUNT, TRUTH, NUMBER = (partial(Column, kind, "") for kind in (str, int, bool, float))
+LENGTH, TIME, RATE, SECONDS = (
+    partial(Column, float, unit) for unit in ("length", "time", "1/time", "s")
+)
+
+# Columns that several tables have.
+SCENE = TEXT("the scene")
+WIDTH = LENGTH("side of the box along x")
+HEIGHT = LENGTH("side of the box along y")
+RADIUS = LENGTH("radius of the discs")
+Z = NUMBER("standard normal deviate of the comparison, positive when the estimate is high")
+TEST = TEXT(
+    "how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled), "
+    "cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the "
+    "probability is 0 or 1), chi-square (sum of squared scores)"
+)
+ERGODIC_COMPONENTS = COUNT("disjoint parts of configuration space")
+
+#: The types of pandas that have an empty cell.
+PANDAS = {float: "float64", bool: "boolean", str: "string"}
+
+#: The values that a cell of each type takes.
+TAKEN = {float: Real, int: Integral, bool: bool, str: str}
 
 
 class Table:
     """A table; a row is a mapping from the names of its columns to values, None for an empty cell.
 
-    If a column has no text, the text of the base class applies.
+    ``columns`` is {name: ``Column``} in the order of the file.
     """
 
-    # Columns that several tables have.
-    scene: TEXT
-    """the scene"""
-    width: LENGTH
-    """side of the box along x"""
-    height: LENGTH
-    """side of the box along y"""
-    radius: LENGTH
-    """radius of the discs"""
-    z: NUMBER
-    """standard normal deviate of the comparison, positive when the estimate is high"""
-    test: TEXT
-    """
-    how z was found: normal (1000 or more events expected), exact-tail (binomial tail, doubled),
-    cluster-bound (Chernoff's bound with an allowance for clusters of events), certain (the
-    probability is 0 or 1), chi-square (sum of squared scores)
-    """
-    ergodic_components: COUNT
-    """disjoint parts of configuration space"""
-    chi2: NUMBER
-    """Pearson's χ²"""
-    degrees: COUNT
-    """its degrees of freedom"""
+    columns: ClassVar[dict[str, Column]]
 
     @classmethod
     def name(cls):
@@ -69,17 +67,19 @@ class Table:
         return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
 
     @classmethod
-    def columns(cls):
-        """Return {name: ``Column``} in the order of the file."""
-        derived = cls.__mro__[: cls.__mro__.index(Table)]
-        return {
-            n: column for table in reversed(derived) for n, column in table.__annotations__.items()
-        }
+    def meaning(cls):
+        """Return the meaning of a row of the table."""
+        return " ".join(cls.__doc__.split())
 
     @classmethod
-    def of(cls, names):
-        """Return the table of a file whose columns are ``names``: this class, if not overridden."""
-        return cls
+    def columns_of(cls, names):
+        """Return the columns of a file or a row with these ``names``."""
+        return cls.columns
+
+    @classmethod
+    def empty(cls, **values):
+        """Return a row in which only these ``values`` are not empty."""
+        return dict.fromkeys(cls.columns) | values
 
     @classmethod
     def write(cls, path, rows):
@@ -88,99 +88,73 @@ class Table:
         Raises ``ValueError`` for another set of columns, a value of another type, and NaN, before
         anything is written.
         """
-        columns = cls.columns()
-        lines = [list(columns)]
+        import pandas as pd  # which takes long to import, and the Snakefile reads this module
+
+        rows = list(rows)
+        columns = cls.columns_of(rows[0] if rows else ())
         for row in rows:
-            if row.keys() != columns.keys():
-                odd = ", ".join(sorted(row.keys() ^ columns.keys()))
-                raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {odd}")
-            lines.append([_text(name, column, row[name]) for name, column in columns.items()])
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(lines)
+            if odd := sorted(row.keys() ^ columns.keys()):
+                names = ", ".join(odd)
+                raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
+        cells = {n: [_cell(n, column, row[n]) for row in rows] for n, column in columns.items()}
+        pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
 
     @classmethod
-    def read(cls, path):
-        """Return the rows of the CSV file at ``path`` as dicts, with ``None`` for empty cells.
+    def frame(cls, path):
+        """Return the CSV file at ``path`` as a ``DataFrame``.
 
         The file may have columns that the table does not know, which are left out. Raises
         ``InputError`` if it lacks a column, or a cell is not of its type.
         """
-        columns = cls.columns()
+        import pandas as pd
+
         try:
-            with open(path, encoding="utf-8", newline="") as file:
-                lines = list(csv.reader(file))
-        except UnicodeDecodeError:
-            raise InputError(f"{path} must be a table {cls.name()}, but is no text") from None
-        header = lines[0] if lines else []
-        if [name for name in header if name in columns] != list(columns):
-            raise InputError(
-                f"{path} must be a table {cls.name()} with the columns {list(columns)}"
+            # The engine in Python does not fill up a line that is too short with empty cells.
+            texts = pd.read_csv(
+                path, dtype=str, keep_default_na=False, index_col=False, engine="python"
             )
-        rows = []
-        for number, line in enumerate(lines[1:], start=2):
-            try:
-                cells = dict(zip(header, line, strict=True))
-                rows.append({name: _value(column, cells[name]) for name, column in columns.items()})
-            except (ValueError, KeyError):
-                raise InputError(f"{path} has a bad row in line {number}: {line}") from None
-        return rows
+            columns = cls.columns_of(texts)
+            return pd.DataFrame({n: _values(texts[n], column) for n, column in columns.items()})
+        except KeyError as missing:
+            raise InputError(
+                f"{path} must be a table {cls.name()}, but has no column {missing}"
+            ) from None
+        except ValueError as error:
+            why = " ".join(str(error).split())
+            raise InputError(f"{path} must be a table {cls.name()}, but {why}") from None
 
     @classmethod
-    def empty(cls, **values):
-        """Return a row in which only these ``values`` are not empty."""
-        return dict.fromkeys(cls.columns()) | values
-
-    @classmethod
-    def meaning(cls):
-        """Return the meaning of a row of the table."""
-        return " ".join(cls.__doc__.split())
-
-    @classmethod
-    def meanings(cls):
-        """Return {name: meaning of the column}."""
-        texts = {}
-        for table in reversed(cls.__mro__[:-1]):
-            texts |= _texts(table)
-        return {name: texts[name] for name in cls.columns()}
+    def read(cls, path):
+        """Return the rows of the CSV file at ``path``, as ``frame`` does, as a list of dicts."""
+        frame = cls.frame(path)
+        return frame.astype(object).where(frame.notna(), None).to_dict("records")
 
 
-def _texts(table):
-    """Return {column: its text} of a class, without the texts that it inherits."""
-    import ast
-    import inspect
-    from textwrap import dedent
-
-    (statement,) = ast.parse(dedent(inspect.getsource(table))).body
-    texts, column = {}, None
-    for part in statement.body:
-        if isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and column:
-            texts[column] = " ".join(part.value.value.split())
-        column = part.target.id if isinstance(part, ast.AnnAssign) else None
-    return texts
-
-
-def _text(name, column, value):
-    """Return the text of a cell, or raise ``ValueError`` for a value of another kind."""
+def _cell(name, column, value):
+    """Return a value of a row as its column has it, or raise ``ValueError``."""
     if value is None:
-        return ""
-    if column.kind is bool and isinstance(value, bool):
-        return "true" if value else "false"
-    if column.kind is str and isinstance(value, str) and value:
-        return value
-    number = isinstance(value, Real) and not isinstance(value, bool) and value == value
-    if column.kind is float and number:
-        return repr(float(value))
-    if column.kind is int and number and isinstance(value, Integral):
-        return repr(int(value))
-    raise ValueError(f"{name} must be a {column.kind.__name__} or None, not {value!r}")
-
-
-def _value(column, text):
-    if text == "":
         return None
-    if column.kind is bool:
-        return {"true": True, "false": False}[text]
-    value = column.kind(text)
-    if column.kind is float and math.isnan(value):
-        raise ValueError
-    return value
+    wrong = isinstance(value, bool) and column.type is not bool
+    if wrong or not isinstance(value, TAKEN[column.type]) or value != value or value == "":
+        raise ValueError(f"{name} must be a {column.type.__name__} or None, not {value!r}")
+    return str(value).lower() if column.type is bool else column.type(value)
+
+
+def _values(texts, column):
+    """Return the cells of a column as its type; raise ``ValueError`` if a cell is of another."""
+    import pandas as pd
+
+    empty = texts == ""
+    if column.type is int:
+        numbers = [int(text) if text else None for text in texts]
+        # N! parts of configuration space may be more than 64 bits hold.
+        wide = any(number is not None and number.bit_length() > 63 for number in numbers)
+        return pd.Series(numbers, dtype=object if wide else "Int64")
+    values = texts.mask(empty)
+    if column.type is bool:
+        values = values.map({"true": True, "false": False})
+    values = values.astype(PANDAS[column.type])
+    if (values.isna() != empty).any():
+        wrong = texts[values.isna() != empty].iloc[0]
+        raise ValueError(f"{texts.name} has {wrong!r}, which is no {column.type.__name__}")
+    return values

@@ -1,6 +1,6 @@
 """Intervals between hops, bin by bin: hop_histogram.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, RATE, TEXT, TIME, Table
+from twodiscs.comparison.tables.base import COUNT, RADIUS, RATE, TEXT, TIME, Table, Z
 from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.points.base import by_radius
 
@@ -8,34 +8,30 @@ from twodiscs.points.base import by_radius
 class HopHistogram(Table):
     """One row per radius and bin: intervals between hops, from one crossing to the next."""
 
-    radius: LENGTH
-    event: TEXT
-    """the hop"""
-    bins: TEXT
-    """equal: bins about as wide as τ/16; wide: the same intervals in bins that widen with time"""
-    left: TIME
-    """lower edge of the bin"""
-    right: TIME
-    """upper edge of the bin"""
-    count: COUNT
-    """intervals in the bin"""
-    density: RATE
-    """count/(intervals × width of the bin)"""
-    stderr: RATE
-    """
-    its standard error from the spread between independent chains; a chain has 256 successive
-    intervals or, for more than two discs, all that begin within a window of time; empty for an
-    empty bin
-    """
-    intervals: COUNT
-    """number of all intervals, including those beyond the last bin"""
-    exact_mean: TIME
-    """exact mean interval, empty if none is known"""
-    mean: TIME
-    """mean of all intervals"""
-    mean_stderr: TIME
-    """its standard error from the spread between independent chains; empty below 100"""
-    z: NUMBER
+    columns = {
+        "radius": RADIUS,
+        "event": TEXT("the hop"),
+        "bins": TEXT(
+            "equal: bins about as wide as τ/16; wide: the same intervals in bins that widen with "
+            "time"
+        ),
+        "left": TIME("lower edge of the bin"),
+        "right": TIME("upper edge of the bin"),
+        "count": COUNT("intervals in the bin"),
+        "density": RATE("count/(intervals × width of the bin)"),
+        "stderr": RATE(
+            "its standard error from the spread between independent chains; a chain has 256 "
+            "successive intervals or, for more than two discs, all that begin within a window of "
+            "time; empty for an empty bin"
+        ),
+        "intervals": COUNT("number of all intervals, including those beyond the last bin"),
+        "exact_mean": TIME("exact mean interval, empty if none is known"),
+        "mean": TIME("mean of all intervals"),
+        "mean_stderr": TIME(
+            "its standard error from the spread between independent chains; empty below 100"
+        ),
+        "z": Z,
+    }
 
     @staticmethod
     def rows(theory, points):

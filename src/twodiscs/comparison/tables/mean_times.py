@@ -1,6 +1,15 @@
 """Mean times by molecular dynamics, beside the exact values: mean_times.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Table
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    ERGODIC_COMPONENTS,
+    NUMBER,
+    RADIUS,
+    TEST,
+    TEXT,
+    TIME,
+    Table,
+)
 from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.points.base import by_radius
 
@@ -11,63 +20,55 @@ class MeanTimes(Table):
     measured in a strip, check.csv also compares the count from ordinary initial states.
     """
 
-    radius: LENGTH
-    event: TEXT
-    """the event"""
-    exact: TIME
-    """exact mean time; empty if the event is impossible or no exact value is known"""
-    estimate: TIME
-    """
-    copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip the mean over strata of the
-    initial states; empty without a count
-    """
-    stderr: TIME
-    """
-    standard error from the spread between replicas, in a strip from the spread within strata; empty
-    if there are too few events for one
-    """
-    z: NUMBER
-    """
-    standard normal deviate of the mean count, which is unbiased for every T; positive if the time
-    is too long
-    """
-    count: COUNT
-    """events counted in all replicas; for walls with all events that are equal by symmetry"""
-    ergodic_components: COUNT
-    replicas: COUNT
-    """independent trajectories"""
-    duration: TIME
-    """length T of a replica"""
-    relative_stderr: NUMBER
-    """stderr/estimate"""
-    target: NUMBER
-    """relative standard error that was asked for"""
-    status: TEXT
-    """
-    reached: the target; budget: stopped by the event budget; too-few: no error bar, because of
-    under 100 replicas or 100 effective events (clusters count once), or too few initial states to
-    find the rare ones of rough discs with very many events; none-seen: no event; impossible:
-    blocked by geometry
-    """
-    bound: TIME
-    """
-    without a count: lower bound on the mean time at 95 %, with an allowance for clusters of four
-    events
-    """
-    test: TEXT
-    starts: TEXT
-    """
-    initial states. invariant: in all of configuration space, so that dynamics alone gives the time;
-    strip: next to the surface of a rare hop, in an exactly known share of configuration space, so
-    that the share comes from theory and the test is about the flux through the surface
-    """
-    share: NUMBER
-    """share of configuration space from which the initial states are drawn"""
-    copies: COUNT
-    """
-    events that count as one, on average: for a wall, the pairs of a disc and a wall that are equal
-    by symmetry and that a trajectory can reach
-    """
+    columns = {
+        "radius": RADIUS,
+        "event": TEXT("the event"),
+        "exact": TIME(
+            "exact mean time; empty if the event is impossible or no exact value is known"
+        ),
+        "estimate": TIME(
+            "copies · T/(share · ⟨N⟩) with ⟨N⟩ = count/replicas, in a strip the mean over strata "
+            "of the initial states; empty without a count"
+        ),
+        "stderr": TIME(
+            "standard error from the spread between replicas, in a strip from the spread within "
+            "strata; empty if there are too few events for one"
+        ),
+        "z": NUMBER(
+            "standard normal deviate of the mean count, which is unbiased for every T; positive "
+            "if the time is too long"
+        ),
+        "count": COUNT(
+            "events counted in all replicas; for walls with all events that are equal by symmetry"
+        ),
+        "ergodic_components": ERGODIC_COMPONENTS,
+        "replicas": COUNT("independent trajectories"),
+        "duration": TIME("length T of a replica"),
+        "relative_stderr": NUMBER("stderr/estimate"),
+        "target": NUMBER("relative standard error that was asked for"),
+        "status": TEXT(
+            "reached: the target; budget: stopped by the event budget; too-few: no error bar, "
+            "because of under 100 replicas or 100 effective events (clusters count once), or too "
+            "few initial states to find the rare ones of rough discs with very many events; "
+            "none-seen: no event; impossible: blocked by geometry"
+        ),
+        "bound": TIME(
+            "without a count: lower bound on the mean time at 95 %, with an allowance for "
+            "clusters of four events"
+        ),
+        "test": TEST,
+        "starts": TEXT(
+            "initial states. invariant: in all of configuration space, so that dynamics alone "
+            "gives the time; strip: next to the surface of a rare hop, in an exactly known share "
+            "of configuration space, so that the share comes from theory and the test is about "
+            "the flux through the surface"
+        ),
+        "share": NUMBER("share of configuration space from which the initial states are drawn"),
+        "copies": COUNT(
+            "events that count as one, on average: for a wall, the pairs of a disc and a wall "
+            "that are equal by symmetry and that a trajectory can reach"
+        ),
+    }
 
     @staticmethod
     def rows(box, theory, points):

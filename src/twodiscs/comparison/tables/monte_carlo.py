@@ -1,70 +1,61 @@
 """What Monte Carlo samples, beside the exact values: volume.csv and areas.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import COUNT, LENGTH, RADIUS, TEST, TEXT, Column, Table, Z
 from twodiscs.comparison.tables.theory import ExactValues
 from twodiscs.model.events import EVENTS
 from twodiscs.points.base import by_radius
 from twodiscs.theory.exact import shell_expectation
 
-AS_QUANTITY = Column(float, "as quantity")
-VOLUME, AREA = Column(float, "length⁴"), Column(float, "length³")
+
+def _columns(unit):
+    """Return the columns of a sampled quantity of this ``unit``."""
+    as_quantity = partial(Column, float, unit)
+    return {
+        "radius": RADIUS,
+        "quantity": TEXT("volume, or <event>_area"),
+        "method": TEXT(
+            "monte_carlo: rejection from the prism; conditioned: draws from the part of the prism "
+            "in which the discs can fit, if fewer than one in 64 draws from the whole prism do; "
+            "both have areas by a thin shell. insertion: more than two discs, one by one, each "
+            "sample with a weight; areas without a shell"
+        ),
+        "exact": as_quantity("exact value"),
+        "estimate": as_quantity(
+            "measure × hits/samples, for insertions measure × mean weight; empty without a hit"
+        ),
+        "stderr": as_quantity(
+            "binomial standard error, for insertions from the weights; empty below 100 hits or "
+            "misses"
+        ),
+        "z": Z,
+        "samples": COUNT("configurations drawn from the prism, or proposed"),
+        "hits": COUNT(
+            "configurations that count; for insertions the effective number (Σw)²/Σw², rounded"
+        ),
+        "epsilon": LENGTH(
+            "thickness of the shell in configuration space (to either side, for a hop), × √mass "
+            "if masses differ; empty for the volume and, without effects, for any_wall_area = 4 "
+            "(right + top), which has two shells"
+        ),
+        "expectation": as_quantity("exact expectation of the estimate; z is against it"),
+        "bias": as_quantity("expectation − exact, the effect of the thickness of the shell"),
+        "status": TEXT(
+            "sampled; too-few: under 100 hits or misses, no error bar; none-seen: no hit; "
+            "impossible: blocked by geometry"
+        ),
+        "test": TEST,
+    }
 
 
-class Sampled(Table):
-    """The estimate of a quantity at a radius by Monte Carlo, beside the exact value."""
-
-    radius: LENGTH
-    quantity: TEXT
-    """volume, or <event>_area"""
-    method: TEXT
-    """
-    monte_carlo: rejection from the prism; conditioned: draws from the part of the prism in which
-    the discs can fit, if fewer than one in 64 draws from the whole prism do; both have areas by a
-    thin shell. insertion: more than two discs, one by one, each sample with a weight; areas without
-    a shell
-    """
-    exact: AS_QUANTITY
-    """exact value"""
-    estimate: AS_QUANTITY
-    """measure × hits/samples, for insertions measure × mean weight; empty without a hit"""
-    stderr: AS_QUANTITY
-    """
-    binomial standard error, for insertions from the weights; empty below 100 hits or misses
-    """
-    z: NUMBER
-    samples: COUNT
-    """configurations drawn from the prism, or proposed"""
-    hits: COUNT
-    """configurations that count; for insertions the effective number (Σw)²/Σw², rounded"""
-    epsilon: LENGTH
-    """
-    thickness of the shell in configuration space (to either side, for a hop), × √mass if masses
-    differ; empty for the volume and, without effects, for any_wall_area = 4 (right + top), which
-    has two shells
-    """
-    expectation: AS_QUANTITY
-    """exact expectation of the estimate; z is against it"""
-    bias: AS_QUANTITY
-    """expectation − exact, the effect of the thickness of the shell"""
-    status: TEXT
-    """
-    sampled; too-few: under 100 hits or misses, no error bar; none-seen: no hit; impossible: blocked
-    by geometry
-    """
-    test: TEXT
-
-
-class Volume(Sampled):
+class Volume(Table):
     """
     One row per radius: the volume of configuration space, exact and by Monte Carlo. In a field the
     invariant density weights it. For balls it is in length⁶, for N discs in length^2N.
     """
 
-    exact: VOLUME
-    estimate: VOLUME
-    stderr: VOLUME
-    expectation: VOLUME
-    bias: VOLUME
+    columns = _columns("length⁴")
 
     @staticmethod
     def rows(theory, points):
@@ -80,18 +71,14 @@ class Volume(Sampled):
         return rows
 
 
-class Areas(Sampled):
+class Areas(Table):
     """
     One row per radius and event: the area of the event's surface, exact and by Monte Carlo. A shell
     of finite thickness is not a surface, so its exact expectation has a column. In a field areas
     have the weight of the flux. For balls they are in length⁵, for N discs in length^(2N − 1).
     """
 
-    exact: AREA
-    estimate: AREA
-    stderr: AREA
-    expectation: AREA
-    bias: AREA
+    columns = _columns("length³")
 
     @staticmethod
     def rows(box, theory, points, areas=EVENTS):

@@ -1,6 +1,6 @@
 """The exact values of a scene: grid.csv and theory.csv."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, TEXT, Column, Table
+from twodiscs.comparison.tables.base import COUNT, LENGTH, RADIUS, TEXT, Column, Table
 from twodiscs.model.checks import InputError
 from twodiscs.theory.exact import exact
 
@@ -8,13 +8,16 @@ from twodiscs.theory.exact import exact
 class Grid(Table):
     """One row per radius that the scene computes."""
 
-    radius: LENGTH
-    regime: TEXT
-    """all-hops, vertical-hops, horizontal-hops or no-hops"""
-    ergodic_components: COUNT
-    """disjoint parts of configuration space; empty if not known, for more than two discs"""
-    largest_radius: LENGTH
-    """largest radius at which the discs fit, as far as an arrangement of them is known"""
+    columns = {
+        "radius": RADIUS,
+        "regime": TEXT("all-hops, vertical-hops, horizontal-hops or no-hops"),
+        "ergodic_components": COUNT(
+            "disjoint parts of configuration space; empty if not known, for more than two discs"
+        ),
+        "largest_radius": LENGTH(
+            "largest radius at which the discs fit, as far as an arrangement of them is known"
+        ),
+    }
 
     @staticmethod
     def rows(box, radii):
@@ -33,14 +36,16 @@ class Grid(Table):
 class Theory(Table):
     """One row per radius and quantity: the exact values."""
 
-    radius: LENGTH
-    quantity: TEXT
-    """volume, <event>_area or <event>_time"""
-    exact: Column(float, "length⁴, length³ or time")
-    """
-    exact value, empty if none is known; if the event is impossible, the area is 0 and the time is
-    empty
-    """
+    columns = {
+        "radius": RADIUS,
+        "quantity": TEXT("volume, <event>_area or <event>_time"),
+        "exact": Column(
+            float,
+            "length⁴, length³ or time",
+            "exact value, empty if none is known; if the event is impossible, the area is 0 and "
+            "the time is empty",
+        ),
+    }
 
     @staticmethod
     def rows(box, radii):

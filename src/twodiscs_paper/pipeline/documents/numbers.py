@@ -594,12 +594,11 @@ LONG_RUNS = {
 class PaperNumbers(Table):
     """One row per number that the manuscript prints."""
 
-    name: TEXT
-    """its name in the manuscript; table/row/column for a cell of a table"""
-    value: NUMBER
-    """the number itself, if the text shows one number"""
-    text: TEXT
-    """the printed text, as markup of Typst; empty for an empty cell"""
+    columns = {
+        "name": TEXT("its name in the manuscript; table/row/column for a cell of a table"),
+        "value": NUMBER("the number itself, if the text shows one number"),
+        "text": TEXT("the printed text, as markup of Typst; empty for an empty cell"),
+    }
 
 
 def read(results, scenes, long_runs=None):

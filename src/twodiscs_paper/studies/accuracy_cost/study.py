@@ -1,6 +1,16 @@
 """The processor time that a digit costs, by each method."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, SECONDS, TEXT, Column, Table
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    NUMBER,
+    RADIUS,
+    SECONDS,
+    TEXT,
+    WIDTH,
+    Column,
+    Table,
+)
 from twodiscs.figures.catalogue import Entry
 from twodiscs_paper.study import Study
 
@@ -11,57 +21,49 @@ class AccuracyCost(Table):
     one core. All rows come from one run, in which the methods take turns.
     """
 
-    part: TEXT
-    """
-    volume, area, time: work and precision; floor: the error that no work removes; radius: the cost
-    of a relative error, radius by radius; precision: the errors of single precision; speed: of the
-    engines, by their median runs of the part time
-    """
-    quantity: TEXT
-    """volume, <event>_area, <event>_time or energy"""
-    width: LENGTH
-    height: LENGTH
-    radius: LENGTH
-    method: TEXT
-    """
-    rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), surface,
-    quadrature, closed_form, exact; lockstep, scalar, single_precision, time_step. radius: lockstep
-    (speed and error of a pilot), strip (the same from starts next to a rare hop), poisson (exact
-    rates, one speed, the noise of a Poisson process), paid (a run to this error)
-    """
-    setting: Column(float, "see method")
-    """
-    ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, and for the
-    energy the events of a trajectory. speed: events per second, divided by the same number for
-    scalar, for single_precision by the number for lockstep
-    """
-    work: COUNT
-    """samples, points, nodes, wall and disc events, or time steps"""
-    seconds: SECONDS
-    """median processor time of one run"""
-    error: NUMBER
-    """
-    root mean square over the repetitions of the relative error against the exact value; radius: the
-    wanted error
-    """
-    spread: NUMBER
-    """
-    standard deviation of its size between repetitions. floor: standard error; precision:
-    statistical error of one run
-    """
-    bias: NUMBER
-    """mean relative error with its sign"""
-    floor: NUMBER
-    """part of the error that no work removes; 0 if it is within the noise"""
-    repetitions: COUNT
-    """runs with other random numbers"""
-    slope: NUMBER
-    """
-    fitted power of the work by which the error of this method and setting falls, above its floor;
-    for quadrature, digits per node; for floor, power of the setting
-    """
-    slope_stderr: NUMBER
-    """its standard error"""
+    columns = {
+        "part": TEXT(
+            "volume, area, time: work and precision; floor: the error that no work removes; "
+            "radius: the cost of a relative error, radius by radius; precision: the errors of "
+            "single precision; speed: of the engines, by their median runs of the part time"
+        ),
+        "quantity": TEXT("volume, <event>_area, <event>_time or energy"),
+        "width": WIDTH,
+        "height": HEIGHT,
+        "radius": RADIUS,
+        "method": TEXT(
+            "rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), "
+            "surface, quadrature, closed_form, exact; lockstep, scalar, single_precision, "
+            "time_step. radius: lockstep (speed and error of a pilot), strip (the same from "
+            "starts next to a rare hop), poisson (exact rates, one speed, the noise of a Poisson "
+            "process), paid (a run to this error)"
+        ),
+        "setting": Column(
+            float,
+            "see method",
+            "ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, "
+            "and for the energy the events of a trajectory. speed: events per second, divided by "
+            "the same number for scalar, for single_precision by the number for lockstep",
+        ),
+        "work": COUNT("samples, points, nodes, wall and disc events, or time steps"),
+        "seconds": SECONDS("median processor time of one run"),
+        "error": NUMBER(
+            "root mean square over the repetitions of the relative error against the exact value; "
+            "radius: the wanted error"
+        ),
+        "spread": NUMBER(
+            "standard deviation of its size between repetitions. floor: standard error; "
+            "precision: statistical error of one run"
+        ),
+        "bias": NUMBER("mean relative error with its sign"),
+        "floor": NUMBER("part of the error that no work removes; 0 if it is within the noise"),
+        "repetitions": COUNT("runs with other random numbers"),
+        "slope": NUMBER(
+            "fitted power of the work by which the error of this method and setting falls, above "
+            "its floor; for quadrature, digits per node; for floor, power of the setting"
+        ),
+        "slope_stderr": NUMBER("its standard error"),
+    }
 
     @classmethod
     def rows(cls, seconds):

@@ -1,40 +1,40 @@
 """Statistics over the comparisons of all scenes."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, Column, Table
 from twodiscs_paper.study import Study
 
-SEE_QUANTITY = Column(float, "see quantity")
+SEE_QUANTITY = partial(Column, float, "see quantity")
 
 
 class Agreement(Table):
     """One row per quantity that follows from the comparisons of several scenes, radii or events."""
 
-    quantity: TEXT
-    """
-    mean_square: of the scores z of mean times by dynamics; correlation: Pearson's, of the scores z
-    of two mean times over the radii of all scenes; error_ratio: the largest error of a bin of
-    hop_histogram.csv over the error of independent counts, 1 or more; density_at_zero: of chains in
-    hop_histogram.csv, p(0) of p(0) − at² in the first two bins; effects: the largest |z| of mean
-    times with effects; third_virial: B₃/B₂² of hard discs, from exact volumes
-    """
-    scene: TEXT
-    """the scene; empty for all scenes"""
-    event: TEXT
-    """the event"""
-    other: TEXT
-    """the event with which it is correlated"""
-    radius: LENGTH
-    count: COUNT
-    """
-    scores behind the value; for a correlation, pairs of scores; for error_ratio, bins; for effects,
-    tests: mean times that can fail and whose count is not the sum of other counts
-    """
-    estimate: SEE_QUANTITY
-    """the value"""
-    stderr: NUMBER
-    """
-    its standard error; for mean_square √(2/count), as for independent standard normal scores
-    """
+    columns = {
+        "quantity": TEXT(
+            "mean_square: of the scores z of mean times by dynamics; correlation: Pearson's, of "
+            "the scores z of two mean times over the radii of all scenes; error_ratio: the "
+            "largest error of a bin of hop_histogram.csv over the error of independent counts, 1 "
+            "or more; density_at_zero: of chains in hop_histogram.csv, p(0) of p(0) − at² in the "
+            "first two bins; effects: the largest |z| of mean times with effects; third_virial: "
+            "B₃/B₂² of hard discs, from exact volumes"
+        ),
+        "scene": TEXT("the scene; empty for all scenes"),
+        "event": TEXT("the event"),
+        "other": TEXT("the event with which it is correlated"),
+        "radius": RADIUS,
+        "count": COUNT(
+            "scores behind the value; for a correlation, pairs of scores; for error_ratio, bins; "
+            "for effects, tests: mean times that can fail and whose count is not the sum of other "
+            "counts"
+        ),
+        "estimate": SEE_QUANTITY("the value"),
+        "stderr": NUMBER(
+            "its standard error; for mean_square √(2/count), as for independent standard normal "
+            "scores"
+        ),
+    }
 
     @classmethod
     def rows(cls, tables):

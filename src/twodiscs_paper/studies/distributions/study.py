@@ -1,11 +1,24 @@
 """How intervals between hops are distributed."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    NUMBER,
+    RADIUS,
+    SCENE,
+    TEXT,
+    TIME,
+    WIDTH,
+    Column,
+    Table,
+)
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.study import Study, scaled
 
-SEE_QUANTITY = Column(float, "see quantity")
-AS_ESTIMATE = Column(float, "as estimate")
+SEE_QUANTITY = partial(Column, float, "see quantity")
+AS_ESTIMATE = partial(Column, float, "as estimate")
 
 
 class Distributions(Table):
@@ -15,58 +28,50 @@ class Distributions(Table):
     initial state.
     """
 
-    scene: TEXT
-    width: LENGTH
-    height: LENGTH
-    radius: LENGTH
-    event: TEXT
-    """the hop"""
-    exact_mean: TIME
-    """exact mean interval τ"""
-    quantity: TEXT
-    """
-    mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ if last is c;
-    density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: rate of hops at a time
-    since the last hop, ln[P(T > first)/P(T > last)]/(last − first); rate: one hazard fitted by
-    maximum likelihood to all bins from four mean times on, with longer intervals censored; trend: β
-    of a hazard ∝ t^β in these bins; plateau: the rate again, if the hazard is constant within the
-    errors; falling, falling_without_drift: if it is not constant, the hazard in the last two fifths
-    of the time that the data reach, for hops that drifting discs avoid and for other hops;
-    over_cubic: hops in this time over those expected from the hazard 3/t of a cubic tail, if the
-    hazard falls below three quarters of the rate
-    """
-    first: TIME
-    """where the bin or the fit begins"""
-    last: TIME
-    """where it ends; for first_passage the cut c"""
-    count: COUNT
-    """intervals or first passages; for a fit or bin, the intervals that end in it"""
-    estimate: SEE_QUANTITY
-    """estimate: a time, 1/time or a number"""
-    stderr: AS_ESTIMATE
-    """its standard error"""
-    reference: AS_ESTIMATE
-    """
-    mean: τ; squared_cv: 1, as for an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + CV²)/2, or
-    with a cut ⟨T² − (T − c)₊²⟩/(2τ), as measured; density_at_zero: exact; rate: 1/τ, as for
-    exponential intervals; trend: 0
-    """
-    reference_stderr: AS_ESTIMATE
-    """its standard error, if the reference is measured"""
-    z: NUMBER
-    """
-    (estimate − reference)/error; for a rate, how far intervals are from exponential at all times;
-    empty if a cubic tail gives F and T² an infinite variance: see the row with the cut
-    """
-    chi2: NUMBER
-    """Pearson's χ² of a constant hazard"""
-    degrees: COUNT
-    """degrees of freedom of chi2"""
-    p: NUMBER
-    """
-    rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. If neither
-    is small, the data show a plateau
-    """
+    columns = {
+        "scene": SCENE,
+        "width": WIDTH,
+        "height": HEIGHT,
+        "radius": RADIUS,
+        "event": TEXT("the hop"),
+        "exact_mean": TIME("exact mean interval τ"),
+        "quantity": TEXT(
+            "mean: of T; squared_cv: CV² = ⟨T²⟩/τ² − 1; first_passage: ⟨F⟩, or ⟨min(F, c)⟩ if "
+            "last is c; density_at_zero: p(0) of p(0) − at² in the first two bins of T; hazard: "
+            "rate of hops at a time since the last hop, ln[P(T > first)/P(T > last)]/(last − "
+            "first); rate: one hazard fitted by maximum likelihood to all bins from four mean "
+            "times on, with longer intervals censored; trend: β of a hazard ∝ t^β in these bins; "
+            "plateau: the rate again, if the hazard is constant within the errors; falling, "
+            "falling_without_drift: if it is not constant, the hazard in the last two fifths of "
+            "the time that the data reach, for hops that drifting discs avoid and for other hops; "
+            "over_cubic: hops in this time over those expected from the hazard 3/t of a cubic "
+            "tail, if the hazard falls below three quarters of the rate"
+        ),
+        "first": TIME("where the bin or the fit begins"),
+        "last": TIME("where it ends; for first_passage the cut c"),
+        "count": COUNT(
+            "intervals or first passages; for a fit or bin, the intervals that end in it"
+        ),
+        "estimate": SEE_QUANTITY("estimate: a time, 1/time or a number"),
+        "stderr": AS_ESTIMATE("its standard error"),
+        "reference": AS_ESTIMATE(
+            "mean: τ; squared_cv: 1, as for an exponential law; first_passage: ⟨T²⟩/(2τ) = τ(1 + "
+            "CV²)/2, or with a cut ⟨T² − (T − c)₊²⟩/(2τ), as measured; density_at_zero: exact; "
+            "rate: 1/τ, as for exponential intervals; trend: 0"
+        ),
+        "reference_stderr": AS_ESTIMATE("its standard error, if the reference is measured"),
+        "z": NUMBER(
+            "(estimate − reference)/error; for a rate, how far intervals are from exponential at "
+            "all times; empty if a cubic tail gives F and T² an infinite variance: see the row "
+            "with the cut"
+        ),
+        "chi2": NUMBER("Pearson's χ² of a constant hazard"),
+        "degrees": COUNT("degrees of freedom of chi2"),
+        "p": NUMBER(
+            "rate: probability of a larger χ² if the hazard is constant; trend: of a larger |z|. "
+            "If neither is small, the data show a plateau"
+        ),
+    }
 
     @classmethod
     def rows(cls, scenes, seed, events):

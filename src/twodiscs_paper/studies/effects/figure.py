@@ -1,6 +1,6 @@
 """How each effect changes the mean times, and how much its simulation costs."""
 
-import ast
+import json
 
 import numpy as np
 
@@ -103,7 +103,7 @@ def _look(i):
 
 def _box(row):
     """Return the ``Box`` that a row is about."""
-    return Box(row["width"], row["height"], ast.literal_eval(row["effects"]))
+    return Box(row["width"], row["height"], json.loads(row["effects"]))
 
 
 def _curve(rows, scene, event):

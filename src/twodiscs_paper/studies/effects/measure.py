@@ -4,6 +4,7 @@ The scenes are in the files of ``config/scenes``. Their mean times, measured as 
 compared with the exact mean times of plain discs in the same box.
 """
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -115,7 +116,7 @@ def _plain(box, radius):
 def _mean_time_row(box, row):
     plain = _plain(box, row["radius"])
     return {name: row[name] for name in KEPT} | {
-        "effects": repr(box.effects),
+        "effects": json.dumps(box.effects),
         "quantity": f"{row['event']}_time",
         "plain": exact.mean_times(plain)[row["event"]] if plain else None,
     }
@@ -137,7 +138,7 @@ def _survivors_row(scene, starts, time, count):
     fraction = estimates.binomial_estimate(count, starts, 1.0)
     enough = count >= estimates.MIN_EVENTS
     return {
-        "effects": repr(scene.effects),
+        "effects": json.dumps(scene.effects),
         "radius": scene.radius,
         "quantity": "never_met_share",
         "exact": None,

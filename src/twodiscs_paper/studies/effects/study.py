@@ -1,57 +1,62 @@
 """How each effect changes the mean times, and its cost."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    LENGTH,
+    NUMBER,
+    TEST,
+    TEXT,
+    TIME,
+    WIDTH,
+    Column,
+    Table,
+    Z,
+)
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.study import Study
 
-AS_EXACT = Column(float, "as exact")
+AS_EXACT = partial(Column, float, "as exact")
 
 
 class Effects(Table):
     """One row per scene with effects, radius and quantity, beside discs without effects."""
 
-    scene: TEXT
-    """its name, which is the name of its file in config/scenes"""
-    width: LENGTH
-    height: LENGTH
-    effects: TEXT
-    """
-    the effects of the scene, as a Python dict; never_met_share also has rows of smooth discs
-    """
-    radius: LENGTH
-    """radius of disc 1"""
-    quantity: TEXT
-    """<event>_time; never_met_share: share of starts whose discs do not meet within duration"""
-    exact: TIME
-    """exact mean time; empty if the event is impossible"""
-    plain: AS_EXACT
-    """
-    exact mean time of plain discs of this radius, empty if it does not exist; for never_met_share
-    2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), the long-time limit for plain discs
-    """
-    estimate: AS_EXACT
-    """as in mean_times.csv; for never_met_share count/replicas"""
-    stderr: AS_EXACT
-    """its standard error; empty if events are too few for an error bar"""
-    z: NUMBER
-    count: COUNT
-    """events counted, or starts that have not met"""
-    replicas: COUNT
-    """independent trajectories in which the event can occur"""
-    duration: TIME
-    """length T of a replica"""
-    status: TEXT
-    """
-    reached, budget, too-few, none-seen, impossible: as in mean_times.csv; sampled: a share with its
-    error
-    """
-    test: TEXT
-    starts: TEXT
-    """where initial states come from, as in mean_times.csv"""
-    share: NUMBER
-    """share of configuration space from which initial states are drawn"""
-    copies: COUNT
-    """events that count as one, as in mean_times.csv"""
+    columns = {
+        "scene": TEXT("its name, which is the name of its file in config/scenes"),
+        "width": WIDTH,
+        "height": HEIGHT,
+        "effects": TEXT(
+            "the effects of the scene, as a JSON object; never_met_share also has rows of smooth "
+            "discs"
+        ),
+        "radius": LENGTH("radius of disc 1"),
+        "quantity": TEXT(
+            "<event>_time; never_met_share: share of starts whose discs do not meet within duration"
+        ),
+        "exact": TIME("exact mean time; empty if the event is impossible"),
+        "plain": AS_EXACT(
+            "exact mean time of plain discs of this radius, empty if it does not exist; for "
+            "never_met_share 2[A²(B − 2r)₊⁴ + B²(A − 2r)₊⁴]/(πVt²), the long-time limit for plain "
+            "discs"
+        ),
+        "estimate": AS_EXACT("as in mean_times.csv; for never_met_share count/replicas"),
+        "stderr": AS_EXACT("its standard error; empty if events are too few for an error bar"),
+        "z": Z,
+        "count": COUNT("events counted, or starts that have not met"),
+        "replicas": COUNT("independent trajectories in which the event can occur"),
+        "duration": TIME("length T of a replica"),
+        "status": TEXT(
+            "reached, budget, too-few, none-seen, impossible: as in mean_times.csv; sampled: a "
+            "share with its error"
+        ),
+        "test": TEST,
+        "starts": TEXT("where initial states come from, as in mean_times.csv"),
+        "share": NUMBER("share of configuration space from which initial states are drawn"),
+        "copies": COUNT("events that count as one, as in mean_times.csv"),
+    }
 
     @staticmethod
     def rows(tables, scenes, seed):
@@ -67,17 +72,15 @@ class EffectsCurves(Table):
     A row without a radius stands between two regimes, where a curve has a gap.
     """
 
-    scene: TEXT
-    """its name, which is the name of its file in config/scenes"""
-    radius: LENGTH
-    """radius of disc 1"""
-    event: TEXT
-    """the event"""
-    ratio: NUMBER
-    """
-    exact mean time over the exact mean time of plain discs of this radius in the same box; empty if
-    one of them does not exist
-    """
+    columns = {
+        "scene": TEXT("its name, which is the name of its file in config/scenes"),
+        "radius": LENGTH("radius of disc 1"),
+        "event": TEXT("the event"),
+        "ratio": NUMBER(
+            "exact mean time over the exact mean time of plain discs of this radius in the same "
+            "box; empty if one of them does not exist"
+        ),
+    }
 
     @staticmethod
     def rows(scenes):
@@ -90,26 +93,24 @@ class EffectsCurves(Table):
 class EffectsCost(Table):
     """The rows of benchmark.csv on effects, from a short run."""
 
-    benchmark: TEXT
-    """the name of the measurement"""
-    variant: TEXT
-    """
-    the engine or method; in effects, the scene of config/scenes, or plain: the scene without
-    effects, or plain_walls: the same without detection of hops
-    """
-    value: Column(float, "see unit")
-    """median over the repetitions"""
-    unit: TEXT
-    """unit of the value"""
-    ratio: NUMBER
-    """how many times better than the baseline of the same run; empty for a fit"""
+    columns = {
+        "benchmark": TEXT("the name of the measurement"),
+        "variant": TEXT(
+            "the engine or method; in effects, the scene of config/scenes, or plain: the scene "
+            "without effects, or plain_walls: the same without detection of hops"
+        ),
+        "value": Column(float, "see unit", "median over the repetitions"),
+        "unit": TEXT("unit of the value"),
+        "ratio": NUMBER("how many times better than the baseline of the same run; empty for a fit"),
+    }
 
 
 class Benchmark(EffectsCost):
     """One row per benchmark and variant, all variants of a benchmark measured in one run."""
 
-    stderr: Column(float, "as value")
-    """standard error of a fit; empty for a median"""
+    columns = EffectsCost.columns | {
+        "stderr": Column(float, "as value", "standard error of a fit; empty for a median"),
+    }
 
 
 #: The files of config/scenes, a scene each.

@@ -1,10 +1,21 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    NUMBER,
+    RADIUS,
+    TEXT,
+    WIDTH,
+    Column,
+    Table,
+)
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.study import Study, scaled
 
-AS_EXACT = Column(float, "as exact")
+AS_EXACT = partial(Column, float, "as exact")
 
 
 class MoreDiscs(Table):
@@ -13,38 +24,41 @@ class MoreDiscs(Table):
     number of discs, at the energy per disc of two discs.
     """
 
-    discs: COUNT
-    """number of discs"""
-    width: LENGTH
-    height: LENGTH
-    radius: LENGTH
-    theory: TEXT
-    """
-    the theory that gives exact values: plain, three, channel, or none if none is known
-    """
-    states: TEXT
-    """how initial states are drawn: rejection and channel are exact, chain is tested"""
-    event: TEXT
-    """
-    collisions and hops of any pair of discs, hits of one disc at one wall; virial: the sum of rates
-    that is 1
-    """
-    exact: Column(float, "time, 1 for virial")
-    """exact mean time over all initial conditions; empty if none is known"""
-    monte_carlo: AS_EXACT
-    """mean time from volume and area by insertion; empty for 64 discs, for which it takes long"""
-    monte_carlo_stderr: AS_EXACT
-    """its standard error"""
-    monte_carlo_z: NUMBER
-    """its standard normal deviate from the exact value; empty where none is known"""
-    dynamics: AS_EXACT
-    """mean time from counts of events"""
-    dynamics_stderr: AS_EXACT
-    """its standard error"""
-    z: NUMBER
-    """
-    standard normal deviate of dynamics from the exact value, or from Monte Carlo if none is known
-    """
+    columns = {
+        "discs": COUNT("number of discs"),
+        "width": WIDTH,
+        "height": HEIGHT,
+        "radius": RADIUS,
+        "theory": TEXT(
+            "the theory that gives exact values: plain, three, channel, or none if none is known"
+        ),
+        "states": TEXT(
+            "how initial states are drawn: rejection and channel are exact, chain is tested"
+        ),
+        "event": TEXT(
+            "collisions and hops of any pair of discs, hits of one disc at one wall; virial: the "
+            "sum of rates that is 1"
+        ),
+        "exact": Column(
+            float,
+            "time, 1 for virial",
+            "exact mean time over all initial conditions; empty if none is known",
+        ),
+        "monte_carlo": AS_EXACT(
+            "mean time from volume and area by insertion; empty for 64 discs, for which it takes "
+            "long"
+        ),
+        "monte_carlo_stderr": AS_EXACT("its standard error"),
+        "monte_carlo_z": NUMBER(
+            "its standard normal deviate from the exact value; empty where none is known"
+        ),
+        "dynamics": AS_EXACT("mean time from counts of events"),
+        "dynamics_stderr": AS_EXACT("its standard error"),
+        "z": NUMBER(
+            "standard normal deviate of dynamics from the exact value, or from Monte Carlo if "
+            "none is known"
+        ),
+    }
 
     @staticmethod
     def rows(events, samples, seed):

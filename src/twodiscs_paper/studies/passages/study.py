@@ -1,12 +1,25 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TIME, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    NUMBER,
+    RADIUS,
+    TEXT,
+    TIME,
+    WIDTH,
+    Column,
+    Table,
+    Z,
+)
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs_paper.study import Study, scaled
 
-AS_ESTIMATE = Column(float, "as estimate")
+AS_ESTIMATE = partial(Column, float, "as estimate")
 
 
 class Passages(Table):
@@ -15,74 +28,66 @@ class Passages(Table):
     they make discs diffuse along a ring, and the same for a single file on a lattice.
     """
 
-    scene: TEXT
-    """the scene; empty for the lattice"""
-    width: LENGTH
-    height: LENGTH
-    periodic: TEXT
-    """axes without walls; empty if both have walls"""
-    event: TEXT
-    """the hop; swap on the lattice; empty for the limit of any hop"""
-    discs: COUNT
-    """number of discs; empty for the lattice"""
-    radius: LENGTH
-    distance: NUMBER
-    """
-    (r_c − r)/r_c, the relative distance below the radius r_c at which the hop becomes blocked
-    """
-    moment_of_inertia: Column(float, "m r²")
-    """moment of inertia of rough discs; empty for smooth discs"""
-    friction: Column(float, "1/time")
-    """
-    rate γ of kicks, at which all velocities are drawn anew; empty without friction
-    """
-    swap: NUMBER
-    """probability that neighbours on the lattice swap"""
-    exact_mean: TIME
-    """exact mean time τ between hops, in both directions together"""
-    quantity: TEXT
-    """
-    correlation: C(t) = 1 + 2⟨Σ s_0 s_k⟩ of the directions of hops, between walls the transmission
-    coefficient κ(t); slope: −dκ/dt at 0⁺; coefficient: the fraction κ of hops that are passages, by
-    clusters of hops without a pause; plateau: the same from κ(t); passage_time: τ/κ; exponent: of
-    1 − κ for smooth discs, of κ for rough ones, as powers of the distance, from this distance and
-    the one before; last_exponent: the same, fitted to the last five distances; passage_exponent:
-    of the time between passages, over all distances; local_exponent: the same, from this distance
-    and the one before; rate: hops per time, of both of two discs, or
-    of each of more discs; diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction,
-    each by ℓ; single_file: F of the mean square displacement F √t, over ℓ² in files of discs;
-    density: S, the relative variance of the number of discs in a long piece of a file; in long
-    files, over ℓ²: displacement, the mean square displacement of a tagged disc in the time t; file,
-    that of a place in the order of the discs; order: the mean square of the number of places by
-    which a disc has moved in the order; amplitude: c of 1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width
-    of the neck and A the range along the hop
-    """
-    method: TEXT
-    """
-    clusters: odd clusters over hops; hops: initial states on the surface of the hop; states:
-    initial states of the invariant measure; order: by the order of the discs in a file; insertion:
-    Monte Carlo for a ring of 8 discs; fit: to other rows; lattice: exclusion process; limit: the
-    motion in the limit ε → 0
-    """
-    time: TIME
-    """t; for clusters, the time without a hop that ends a cluster"""
-    estimate: Column(float, "time, 1/time or none")
-    """estimate"""
-    stderr: AS_ESTIMATE
-    """its standard error"""
-    reference: AS_ESTIMATE
-    """
-    expected value: exact, or by the other method; for more than two discs by Monte Carlo
-    """
-    reference_stderr: AS_ESTIMATE
-    """standard error of the reference; empty if the reference is exact"""
-    z: NUMBER
-    test: TEXT
-    """how z was found: normal"""
-    replicas: COUNT
-    """independent replicas; for a fit, points"""
-    events: COUNT
-    """wall hits and disc collisions simulated for the estimate"""
+    columns = {
+        "scene": TEXT("the scene; empty for the lattice"),
+        "width": WIDTH,
+        "height": HEIGHT,
+        "periodic": TEXT("axes without walls; empty if both have walls"),
+        "event": TEXT("the hop; swap on the lattice; empty for the limit of any hop"),
+        "discs": COUNT("number of discs; empty for the lattice"),
+        "radius": RADIUS,
+        "distance": NUMBER(
+            "(r_c − r)/r_c, the relative distance below the radius r_c at which the hop becomes "
+            "blocked"
+        ),
+        "moment_of_inertia": Column(
+            float, "m r²", "moment of inertia of rough discs; empty for smooth discs"
+        ),
+        "friction": Column(
+            float,
+            "1/time",
+            "rate γ of kicks, at which all velocities are drawn anew; empty without friction",
+        ),
+        "swap": NUMBER("probability that neighbours on the lattice swap"),
+        "exact_mean": TIME("exact mean time τ between hops, in both directions together"),
+        "quantity": TEXT(
+            "correlation: C(t) = 1 + 2⟨Σ s_0 s_k⟩ of the directions of hops, between walls the "
+            "transmission coefficient κ(t); slope: −dκ/dt at 0⁺; coefficient: the fraction κ of "
+            "hops that are passages, by clusters of hops without a pause; plateau: the same from "
+            "κ(t); passage_time: τ/κ; exponent: of 1 − κ for smooth discs, of κ for rough ones, "
+            "as powers of the distance, from this distance and the one before; last_exponent: the "
+            "same, fitted to the last five distances; passage_exponent: of the time between "
+            "passages, over all distances; local_exponent: the same, from this distance and the "
+            "one before; rate: hops per time, of both of two discs, or of each of more discs; "
+            "diffusion: D/(ν ℓ²) with ν hops of a disc per time in either direction, each by ℓ; "
+            "single_file: F of the mean square displacement F √t, over ℓ² in files of discs; "
+            "density: S, the relative variance of the number of discs in a long piece of a file; "
+            "in long files, over ℓ²: displacement, the mean square displacement of a tagged disc "
+            "in the time t; file, that of a place in the order of the discs; order: the mean "
+            "square of the number of places by which a disc has moved in the order; amplitude: c "
+            "of 1 − κ = c σ^(2/3) ε^(1/3)/A, ε the width of the neck and A the range along the "
+            "hop"
+        ),
+        "method": TEXT(
+            "clusters: odd clusters over hops; hops: initial states on the surface of the hop; "
+            "states: initial states of the invariant measure; order: by the order of the discs in "
+            "a file; insertion: Monte Carlo for a ring of 8 discs; fit: to other rows; lattice: "
+            "exclusion process; limit: the motion in the limit ε → 0"
+        ),
+        "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
+        "estimate": Column(float, "time, 1/time or none", "estimate"),
+        "stderr": AS_ESTIMATE("its standard error"),
+        "reference": AS_ESTIMATE(
+            "expected value: exact, or by the other method; for more than two discs by Monte Carlo"
+        ),
+        "reference_stderr": AS_ESTIMATE(
+            "standard error of the reference; empty if the reference is exact"
+        ),
+        "z": Z,
+        "test": TEXT("how z was found: normal"),
+        "replicas": COUNT("independent replicas; for a fit, points"),
+        "events": COUNT("wall hits and disc collisions simulated for the estimate"),
+    }
 
     @staticmethod
     def part(**given):

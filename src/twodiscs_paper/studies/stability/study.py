@@ -1,10 +1,12 @@
 """How accurate each method is in numerically hard cases."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, TRUTH, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Column, Table, Z
 from twodiscs.figures.catalogue import Entry
 from twodiscs_paper.study import Study, main_box, scaled
 
-SEE_QUANTITY = Column(float, "see quantity")
+SEE_QUANTITY = partial(Column, float, "see quantity")
 
 
 class Stability(Table):
@@ -13,51 +15,48 @@ class Stability(Table):
     first scene.
     """
 
-    part: TEXT
-    """
-    theory: relative errors against 50 digits; sampling: accepted share of the proposals; estimates:
-    conditioned Monte Carlo; times: errors of predicted times; dynamics: worst of a run; reversal:
-    reversed velocities, and the Lyapunov exponent; coverage: of 95 % intervals
-    """
-    quantity: TEXT
-    """
-    the measured quantity. theory: for areas and mean_times the worst of them. times: error in units
-    of 2⁻⁵² × conditioning. dynamics: energy_error, the largest |E − 1/2|; smallest_gap, the
-    smallest |Δx| − 2r, and excess, the largest distance of a centre beyond its range, both in units
-    of the largest power of two in the side of the box; lanes_lost, trajectories that became
-    infinite or stuck. reversal: exponent, per event; return_error, after count events and back;
-    events_retraced, the number of events at which it is 2⁻²⁶. coverage: the event
-    """
-    method: TEXT
-    """stable, or closed-form in plain doubles; conditioned draws, or rejection from the prism"""
-    case: TEXT
-    """
-    ordinary, tiny (1e-9 of the shorter side), or the limit nearby: h/4, w/4, largest radius. times:
-    how the discs approach. reversal: by the way out and back (return), or by a small separation
-    """
-    radius: LENGTH
-    distance: NUMBER
-    """radius/limit − 1, for the limit named in case"""
-    count: COUNT
-    """samples, cases, events or repetitions behind the value"""
-    value: SEE_QUANTITY
-    """the measured value; empty if there is none (see status)"""
-    exact: SEE_QUANTITY
-    """its expected value, apart from random and rounding errors"""
-    stderr: SEE_QUANTITY
-    """standard error of the value"""
-    z: NUMBER
-    low: SEE_QUANTITY
-    """smallest value that passes"""
-    high: SEE_QUANTITY
-    """largest value that passes"""
-    status: TEXT
-    """
-    estimates: as in areas.csv; coverage: counted, or too-few if most repetitions have no interval;
-    reversal: long if the path stays exact for more than 2000 events
-    """
-    passed: TRUTH
-    """whether low ≤ value ≤ high and |z| ≤ 5, as far as these are given; empty without them"""
+    columns = {
+        "part": TEXT(
+            "theory: relative errors against 50 digits; sampling: accepted share of the "
+            "proposals; estimates: conditioned Monte Carlo; times: errors of predicted times; "
+            "dynamics: worst of a run; reversal: reversed velocities, and the Lyapunov exponent; "
+            "coverage: of 95 % intervals"
+        ),
+        "quantity": TEXT(
+            "the measured quantity. theory: for areas and mean_times the worst of them. times: "
+            "error in units of 2⁻⁵² × conditioning. dynamics: energy_error, the largest |E − "
+            "1/2|; smallest_gap, the smallest |Δx| − 2r, and excess, the largest distance of a "
+            "centre beyond its range, both in units of the largest power of two in the side of "
+            "the box; lanes_lost, trajectories that became infinite or stuck. reversal: exponent, "
+            "per event; return_error, after count events and back; events_retraced, the number of "
+            "events at which it is 2⁻²⁶. coverage: the event"
+        ),
+        "method": TEXT(
+            "stable, or closed-form in plain doubles; conditioned draws, or rejection from the "
+            "prism"
+        ),
+        "case": TEXT(
+            "ordinary, tiny (1e-9 of the shorter side), or the limit nearby: h/4, w/4, largest "
+            "radius. times: how the discs approach. reversal: by the way out and back (return), "
+            "or by a small separation"
+        ),
+        "radius": RADIUS,
+        "distance": NUMBER("radius/limit − 1, for the limit named in case"),
+        "count": COUNT("samples, cases, events or repetitions behind the value"),
+        "value": SEE_QUANTITY("the measured value; empty if there is none (see status)"),
+        "exact": SEE_QUANTITY("its expected value, apart from random and rounding errors"),
+        "stderr": SEE_QUANTITY("standard error of the value"),
+        "z": Z,
+        "low": SEE_QUANTITY("smallest value that passes"),
+        "high": SEE_QUANTITY("largest value that passes"),
+        "status": TEXT(
+            "estimates: as in areas.csv; coverage: counted, or too-few if most repetitions have "
+            "no interval; reversal: long if the path stays exact for more than 2000 events"
+        ),
+        "passed": TRUTH(
+            "whether low ≤ value ≤ high and |z| ≤ 5, as far as these are given; empty without them"
+        ),
+    }
 
     @classmethod
     def rows(cls, box, seed, ordinary, hard):

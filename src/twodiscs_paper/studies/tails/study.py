@@ -1,10 +1,12 @@
 """How probable long intervals are."""
 
-from twodiscs.comparison.tables.base import LENGTH, TEXT, TIME, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import RADIUS, TEXT, TIME, Column, Table
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.study import Study, main_box, scaled
 
-AS_ESTIMATE = Column(float, "as estimate")
+AS_ESTIMATE = partial(Column, float, "as estimate")
 
 
 class Tails(Table):
@@ -12,35 +14,30 @@ class Tails(Table):
     One row per time t: how probable an interval T longer than t is, in the box of the first scene.
     """
 
-    event: TEXT
-    """the event that begins and ends the interval: a hop or disc_collision"""
-    radius: LENGTH
-    exact_mean: TIME
-    """exact mean interval"""
-    quantity: TEXT
-    """
-    survival: P(T > t); rate: of the decay of P(T > t); last_ratio: of P(T > t) to its law, at the
-    last time with an error below a fifth; approach: c of that ratio, if it is 1 + c (t/τ)^(−1/2);
-    chi2, degrees, chance: χ² of a constant rate over all times of the fit, its degrees of freedom,
-    and the probability of a larger χ²
-    """
-    method: TEXT
-    """
-    counted: intervals that begin within a window; weighted: intervals around starts that are drawn
-    near motions with long intervals, with exact weights; fit: follows from other rows
-    """
-    time: TIME
-    """t; for a rate, where the fit begins"""
-    until: TIME
-    """where the fit ends; empty for survival"""
-    estimate: Column(float, "1/time for a rate")
-    """estimate"""
-    stderr: AS_ESTIMATE
-    """its standard error, from independent blocks"""
-    law: AS_ESTIMATE
-    """
-    C/t³ with the exact C, empty if C is 0; for a rate 1/mean, the rate of exponential intervals
-    """
+    columns = {
+        "event": TEXT("the event that begins and ends the interval: a hop or disc_collision"),
+        "radius": RADIUS,
+        "exact_mean": TIME("exact mean interval"),
+        "quantity": TEXT(
+            "survival: P(T > t); rate: of the decay of P(T > t); last_ratio: of P(T > t) to its "
+            "law, at the last time with an error below a fifth; approach: c of that ratio, if it "
+            "is 1 + c (t/τ)^(−1/2); chi2, degrees, chance: χ² of a constant rate over all times "
+            "of the fit, its degrees of freedom, and the probability of a larger χ²"
+        ),
+        "method": TEXT(
+            "counted: intervals that begin within a window; weighted: intervals around starts "
+            "that are drawn near motions with long intervals, with exact weights; fit: follows "
+            "from other rows"
+        ),
+        "time": TIME("t; for a rate, where the fit begins"),
+        "until": TIME("where the fit ends; empty for survival"),
+        "estimate": Column(float, "1/time for a rate", "estimate"),
+        "stderr": AS_ESTIMATE("its standard error, from independent blocks"),
+        "law": AS_ESTIMATE(
+            "C/t³ with the exact C, empty if C is 0; for a rate 1/mean, the rate of exponential "
+            "intervals"
+        ),
+    }
 
     @staticmethod
     def rows(box, samples, replicas, seed):

@@ -1,10 +1,22 @@
 """The laws where a hop becomes blocked."""
 
-from twodiscs.comparison.tables.base import COUNT, LENGTH, NUMBER, TEXT, Column, Table
+from functools import partial
+
+from twodiscs.comparison.tables.base import (
+    COUNT,
+    HEIGHT,
+    LENGTH,
+    NUMBER,
+    SCENE,
+    TEXT,
+    WIDTH,
+    Column,
+    Table,
+)
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs_paper.study import Study
 
-AS_ESTIMATE = Column(float, "as estimate")
+AS_ESTIMATE = partial(Column, float, "as estimate")
 
 
 class Thresholds(Table):
@@ -13,47 +25,35 @@ class Thresholds(Table):
     weighted least squares in ln τ against ln δ.
     """
 
-    scene: TEXT
-    width: LENGTH
-    height: LENGTH
-    event: TEXT
-    """the event"""
-    quantity: TEXT
-    """mean_time, or first_passage: ⟨F⟩ of distributions.csv"""
-    form: TEXT
-    """
-    plain: times as measured; reduced: over the regular factor τ_exact/(C δ^p), which tends to 1 at
-    r_c
-    """
-    limit_radius: LENGTH
-    """r_c: w/4 or h/4 of hops, or the largest radius"""
-    points: COUNT
-    """radii fitted: all within 0.2 r_c and beyond other limits"""
-    nearest: LENGTH
-    """smallest δ of the fit"""
-    farthest: LENGTH
-    """largest δ of the fit"""
-    parameter: TEXT
-    """
-    exponent p, or coefficient C at the exact exponent; strips: the share of the fitted mean times
-    whose initial states lie in strips
-    """
-    estimate: Column(float, "of C: time/length^p")
-    """fitted value"""
-    stderr: AS_ESTIMATE
-    """its standard error"""
-    curve: AS_ESTIMATE
-    """the same fit to the exact times at the same radii; empty for first_passage"""
-    law: AS_ESTIMATE
-    """exact value at the limit"""
-    z: NUMBER
-    """(estimate − curve)/stderr"""
-    chi2: NUMBER
-    """sum of squared residuals in standard errors"""
-    degrees: COUNT
-    """degrees of freedom of chi2"""
-    p: NUMBER
-    """probability of a larger χ² if the power law holds over the window"""
+    columns = {
+        "scene": SCENE,
+        "width": WIDTH,
+        "height": HEIGHT,
+        "event": TEXT("the event"),
+        "quantity": TEXT("mean_time, or first_passage: ⟨F⟩ of distributions.csv"),
+        "form": TEXT(
+            "plain: times as measured; reduced: over the regular factor τ_exact/(C δ^p), which "
+            "tends to 1 at r_c"
+        ),
+        "limit_radius": LENGTH("r_c: w/4 or h/4 of hops, or the largest radius"),
+        "points": COUNT("radii fitted: all within 0.2 r_c and beyond other limits"),
+        "nearest": LENGTH("smallest δ of the fit"),
+        "farthest": LENGTH("largest δ of the fit"),
+        "parameter": TEXT(
+            "exponent p, or coefficient C at the exact exponent; strips: the share of the fitted "
+            "mean times whose initial states lie in strips"
+        ),
+        "estimate": Column(float, "of C: time/length^p", "fitted value"),
+        "stderr": AS_ESTIMATE("its standard error"),
+        "curve": AS_ESTIMATE(
+            "the same fit to the exact times at the same radii; empty for first_passage"
+        ),
+        "law": AS_ESTIMATE("exact value at the limit"),
+        "z": NUMBER("(estimate − curve)/stderr"),
+        "chi2": NUMBER("sum of squared residuals in standard errors"),
+        "degrees": COUNT("degrees of freedom of chi2"),
+        "p": NUMBER("probability of a larger χ² if the power law holds over the window"),
+    }
 
     @staticmethod
     def rows(tables, scenes):
