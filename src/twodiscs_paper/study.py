@@ -47,6 +47,16 @@ def scaled(budget, divisor, least, most):
     return min(most, max(least, budget // divisor))
 
 
+def row(start, found=None, **cells):
+    """Return a row of ``cells``, and of those in the mapping ``start``; the others are empty.
+
+    An ``Estimate`` that was ``found`` has the cells ``estimate`` and ``stderr``.
+    """
+    if found is not None:
+        cells = {"estimate": found.value, "stderr": found.stderr or None} | cells
+    return start | cells
+
+
 def main_box(configuration):
     """Return the parameters "box" and "seed" of a study that is about the first scene."""
     return {"box": configuration.main.box.parameters(), "seed": configuration.seed}

@@ -13,7 +13,7 @@ from twodiscs.dynamics.two.passages import REPLICAS
 from twodiscs.points.digests import read_json
 from twodiscs_paper.studies.passages import long_run as passages
 from twodiscs_paper.studies.passages.study import Passages
-from twodiscs_paper.studies.tails import long_run as tails
+from twodiscs_paper.studies.tails import measure as tails
 from twodiscs_paper.studies.tails.study import Tails
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
@@ -123,8 +123,15 @@ def test_tails_agree_with_those_of_the_build():
 
 def test_errors_of_joined_runs_are_those_of_as_many_replicas():
     one = {"width": 1.5, "height": 1.0, "event": "vertical_hop", "radius": 0.3, "times": [2, 4]}
-    many = tails.counted(one | {"replicas": 500, "runs": 16, "seed": 5})
-    single = tails.counted(one | {"replicas": 8000, "runs": 1, "seed": 50})
+    falling = one | {"radius": 0.1, "times": [5], "samples": 1, "seed": 1}
+
+    def counted(**given):
+        rows = tails.long_run(falling, one | given)
+        return of(rows, radius=0.3)
+
+    many = counted(replicas=500, runs=16, seed=5)
+    single = counted(replicas=8000, runs=1, seed=50)
+    assert [row["quantity"] for row in many] == ["survival", "survival", "rate"]
     for joined, alone in zip(many, single, strict=True):
         assert deviation(joined, alone) < 5
         # An error of 8000 replicas is itself known to some per cent.

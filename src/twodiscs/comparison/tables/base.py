@@ -83,9 +83,9 @@ class Table:
 
     @classmethod
     def write(cls, path, rows):
-        """Write ``rows`` as the CSV file ``path``.
+        """Write ``rows`` as the CSV file ``path``; a cell that a row does not name is empty.
 
-        Raises ``ValueError`` for another set of columns, a value of another type, and NaN, before
+        Raises ``ValueError`` for an unknown column, a value of another type, and NaN, before
         anything is written.
         """
         import pandas as pd  # which takes long to import, and the Snakefile reads this module
@@ -93,10 +93,10 @@ class Table:
         rows = list(rows)
         columns = cls.columns_of(rows[0] if rows else ())
         for row in rows:
-            if odd := sorted(row.keys() ^ columns.keys()):
+            if odd := sorted(row.keys() - columns.keys()):
                 names = ", ".join(odd)
                 raise ValueError(f"rows must have the columns of {cls.name()}.csv, but see {names}")
-        cells = {n: [_cell(n, column, row[n]) for row in rows] for n, column in columns.items()}
+        cells = {n: [_cell(n, column, row.get(n)) for row in rows] for n, column in columns.items()}
         pd.DataFrame(cells, dtype=object).to_csv(path, index=False, lineterminator="\n")
 
     @classmethod

@@ -15,14 +15,15 @@ of 1/2, and the estimate has no bias. The method needs only + − × / and √.
 """
 
 import math
+from itertools import pairwise, starmap
 
 import numpy as np
 
+from twodiscs.comparison.scores import chi2_p
 from twodiscs.dynamics.ensemble import across, nearest_power_of_two
 from twodiscs.dynamics.law import DISC, crosses, crossing_time, law_of
 from twodiscs.dynamics.two.path import advance, time_to_next
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, check_ascending, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
@@ -30,12 +31,23 @@ from twodiscs.sampling.separations import draw_configuration, draw_constants, dr
 from twodiscs.sampling.starts import draw_starts, state_in
 from twodiscs.sampling.streams import next_bits, open_stream, uniform
 from twodiscs.theory import exact, tails
-
-#: Events whose tails are measured.
-TAILED = (*HOPS, "disc_collision")
+from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, which then has a relative error of about 7 %.
 BLOCKS = 100
+
+#: Times in the table, in units of the mean: for weighted starts and for plain counting.
+WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
+COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
+
+#: The window of the fitted rate, in units of the mean.
+WINDOW = (3, 9)
+
+#: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
+RAREST = 100
+
+#: A ratio is well measured if its relative error is below this one.
+WELL_MEASURED = 0.2
 
 
 @compiled
@@ -123,93 +135,61 @@ def count_long(seed, first, stop, replicas, window, times, law, draw, hop):
     return counts
 
 
-def _prepared(scene, event, times):
-    """Return (times as an array, the scene with vertical hops, whether the event is a hop).
-
-    For horizontal hops the axes of the scene are exchanged.
-    """
-    check_choice("event", event, TAILED)
-    if tails.tail_constant(scene, event) is None:
-        raise InputError(
-            f"event {event!r} is blocked at radius {scene.radius!r}: it has no intervals"
-        )
-    values = check_ascending("times", times)
+def _oriented(scene, event):
+    """Return the scene in which a hop is a vertical one, and whether the ``event`` is a hop."""
     if event == "horizontal_hop":
         scene = Box.of(scene).turned().scene(scene.radius)
-    return np.array(values), scene, event in HOPS
+    return scene, event in HOPS
 
 
 def tail(scene, event, times, samples, seed, blocks=BLOCKS):
     """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, without bias.
 
     T is the interval between hops of one kind or between disc collisions of the ``Scene``.
-    ``samples`` starts are drawn in each stratum of each of ``blocks`` ≥ 2 independent blocks. The
+    ``samples`` starts are drawn in each stratum of each of ``blocks`` independent blocks. The
     spread between blocks gives the standard error. The strata reach down to drifts that last for
-    the longest of the times, so the work grows with this time. Raises ``InputError`` for an event
-    that is blocked or has no interval, and for a number out of range.
+    the longest of the times, so the work grows with this time.
     """
-    times, oriented, hop = _prepared(scene, event, times)
-    samples, seed = check_integer("samples", samples), check_integer("seed", seed, 0)
-    blocks = check_integer("blocks", blocks, 2)
+    oriented, hop = _oriented(scene, event)
     # A drift of speed √s crosses the box in a time w/√s.
     longest = nearest_power_of_two(max(1.0, times[-1] / max(scene.width, scene.height)))
     strata = 2 + int(math.frexp(longest)[1])
     means = length_biased(
-        np.uint64(seed), 0, blocks, strata, samples, times, law_of(oriented),
+        np.uint64(seed), 0, blocks, strata, samples, np.array(times), law_of(oriented),
         draw_constants(oriented), hop,
     )  # fmt: skip
-    means *= exact.mean_times(scene)[event]
-    return mean_of(means)
+    return mean_of(means * exact.mean_times(scene)[event])
 
 
-def _counts(scene, event, times, replicas, seed):
-    """Return P(T > t) by each replica, (replicas, times): its counts over their mean number."""
-    times, oriented, hop = _prepared(scene, event, times)
-    replicas, seed = check_integer("replicas", replicas, 2), check_integer("seed", seed, 0)
+def survivals(scene, event, times, replicas, seed):
+    """Return P(T > t) for each of the ascending ``times`` by each replica, by plain counting.
+
+    From each of ``replicas`` starts of the invariant measure it counts all intervals that begin
+    within eight mean times, however long they last. They are eight on average, so the counts are
+    divided by eight. The result has the shape (replicas, times).
+    """
+    oriented, hop = _oriented(scene, event)
     window = 8 * exact.mean_times(scene)[event]
     counts = count_long(
-        np.uint64(seed), 0, 1, replicas, window, times, law_of(oriented),
+        np.uint64(seed), 0, 1, replicas, window, np.array(times), law_of(oriented),
         draw_constants(oriented), hop,
     )  # fmt: skip
     return counts[:, 1:] / 8
 
 
-def counted(scene, event, times, replicas, seed):
-    """Return an ``Estimate`` of P(T > t) for each of the ascending ``times``, by plain counting.
-
-    It serves for comparison with ``tail``. From each of ``replicas`` ≥ 2 starts of the invariant
-    measure it counts all intervals that begin within eight mean times, however long they last. They
-    are eight on average, so the estimate divides by eight. Errors come from the spread between
-    replicas. Raises ``InputError`` as ``tail`` does.
-    """
-    return mean_of(_counts(scene, event, times, replicas, seed))
-
-
-def decay(scene, event, first, last, replicas, seed):
+def decay(counted, first, last):
     """Return an ``Estimate`` of the rate at which P(T > t) falls from ``first`` to ``last``.
 
-    It is ln[P(T > first)/P(T > last)]/(last − first) from the intervals that ``counted`` counts,
-    with its error by the delta method over replicas. Raises ``InputError`` as ``counted`` does, and
-    if no interval is longer than ``last``.
+    It is ln[P(T > first)/P(T > last)]/(last − first), from ``survivals`` at the two times, with the
+    error by the delta method over replicas.
     """
-    counts = _counts(scene, event, [first, last], replicas, seed)
-    early, late = counts.mean(axis=0)
-    if not late:
-        raise InputError(f"last must be shorter: none of the intervals lasts longer than {last!r}")
-    n = len(counts)
-    spread = np.std(counts[:, 0] / early - counts[:, 1] / late, ddof=1) / math.sqrt(n)
+    early, late = counted.mean(axis=0)
+    n = len(counted)
+    spread = np.std(counted[:, 0] / early - counted[:, 1] / late, ddof=1) / math.sqrt(n)
     return Estimate(math.log(early / late) / (last - first), spread / (last - first), n)
 
 
-#: Times in the table, in units of the mean: for weighted starts and for plain counting.
-WEIGHTED = (1, 2, 3, 5, 7, 10, 14, 20, 30, 50, 70, 100, 140, 200, 300, 500, 700, 1000)
-COUNTED = (0.5, 1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9, 10)
-
-#: The window of the fitted rate, in units of the mean.
-WINDOW = (3, 9)
-
-#: The most wall and disc events in a mean time: intervals are followed for a thousand mean times.
-RAREST = 100
+# The table --------------------------------------------------------------------------------------
 
 
 def cases(box):
@@ -221,56 +201,166 @@ def cases(box):
     ``RAREST`` events are left out.
     """
     hop, short = "vertical_hop" if box.width >= box.height else "horizontal_hop", box.shortest
+
+    def comes(event, radius):
+        scene = box.scene(radius)
+        return scene.is_possible(event) and (
+            exact.event_rate(scene) * exact.mean_times(scene)[event] < RAREST
+        )
+
     candidates = [("disc_collision", 0.24 * short), (hop, 0.1 * short), (hop, 0.3 * short)]
+    return [case for case in candidates if box.fits(case[1]) and comes(*case)]
+
+
+def start_of(scene, event):
+    """Return the cells that all rows on an ``event`` of a ``Scene`` have in common."""
+    return {"event": event, "radius": scene.radius, "exact_mean": exact.mean_times(scene)[event]}
+
+
+def survival_rows(method, start, times, estimates, constant):
+    """Return the rows of P(T > t) at ``times``, with the law of a tail with the ``constant`` C."""
     return [
-        (event, radius)
-        for event, radius in candidates
-        if box.fits(radius) and _comes(box.scene(radius), event)
-    ]
-
-
-def _comes(scene, event):
-    return scene.is_possible(event) and (
-        exact.event_rate(scene) * exact.mean_times(scene)[event] < RAREST
-    )
+        row(
+            start, estimate, quantity="survival", method=method, time=time,
+            law=constant / time**3 if constant else None,
+        )
+        for time, estimate in zip(times, estimates, strict=True)
+    ]  # fmt: skip
 
 
 def rows(box, samples, replicas, seed):
-    """Yield the rows of tails.csv for a ``Box``; ``tail`` and ``counted`` explain the arguments.
+    """Return the rows of tails.csv for a ``Box``; ``tail`` and ``survivals`` explain the arguments.
 
     Every case and method has its own stream: ``seed`` and the numbers after it.
     """
-    seed = check_integer("seed", seed, 0)
+    found = []
     for i, (event, radius) in enumerate(cases(box)):
         scene = box.scene(radius)
-        mean, constant = exact.mean_times(scene)[event], tails.tail_constant(scene, event)
-        start = {"event": event, "radius": radius, "exact_mean": mean}
-        counts = counted(scene, event, _scaled(COUNTED, mean), replicas, seed + 2 * i)
-        parts = [("counted", COUNTED, counts)]
+        start, constant = start_of(scene, event), tails.tail_constant(scene, event)
+        mean = start["exact_mean"]
+        times = [time * mean for time in COUNTED]
+        estimates = mean_of(survivals(scene, event, times, replicas, seed + 2 * i))
+        found += survival_rows("counted", start, times, estimates, constant)
         if constant:
-            estimates = tail(scene, event, _scaled(WEIGHTED, mean), samples, seed + 2 * i + 1)
-            parts.append(("weighted", WEIGHTED, estimates))
-        for method, times, estimates in parts:
-            for time, estimate in zip(times, estimates, strict=True):
-                law = constant / (time * mean) ** 3 if constant else None
-                yield start | _row("survival", method, time * mean, None, estimate, law)
-        if not constant:
-            first, last = _scaled(WINDOW, mean)
-            estimate = decay(scene, event, first, last, replicas, seed + 2 * i)
-            yield start | _row("rate", "counted", first, last, estimate, 1 / mean)
+            times = [time * mean for time in WEIGHTED]
+            estimates = tail(scene, event, times, samples, seed + 2 * i + 1)
+            found += survival_rows("weighted", start, times, estimates, constant)
+        else:
+            ends = [time * mean for time in WINDOW]
+            rate = decay(survivals(scene, event, ends, replicas, seed + 2 * i), *ends)
+            cells = {"quantity": "rate", "method": "counted", "time": ends[0], "until": ends[1]}
+            found.append(row(start, rate, law=1 / mean, **cells))
+    return [*found, *last_ratios(found), *constancy(found)]
 
 
-def _scaled(times, mean):
-    return [time * mean for time in times]
+def long_run(weighted, counted):
+    """Return the rows of a long run: a ``weighted`` tail, and a ``counted`` one of several runs.
+
+    Each run has its own random streams. The rates between two times follow from the probabilities.
+    """
+    box = Box(weighted["width"], weighted["height"])
+    scene, event = box.scene(weighted["radius"]), weighted["event"]
+    start = start_of(scene, event)
+    times = [time * start["exact_mean"] for time in weighted["times"]]
+    estimates = tail(scene, event, times, weighted["samples"], weighted["seed"])
+    constant = tails.tail_constant(scene, event)
+    falling = survival_rows("weighted", start, times, estimates, constant)
+
+    box = Box(counted["width"], counted["height"])
+    scene, event = box.scene(counted["radius"]), counted["event"]
+    start = start_of(scene, event)
+    times = [time * start["exact_mean"] for time in counted["times"]]
+    seeds = range(counted["seed"], counted["seed"] + counted["runs"])
+    of_runs = [mean_of(survivals(scene, event, times, counted["replicas"], seed)) for seed in seeds]
+    alone = survival_rows("counted", start, times, map(joined, zip(*of_runs, strict=True)), None)
+    return [*falling, *map(approach, falling), *alone, *starmap(rate_between, pairwise(alone))]
 
 
-def _row(quantity, method, time, until, estimate, law):
-    return {
-        "quantity": quantity,
-        "method": method,
-        "time": time,
-        "until": until,
-        "estimate": estimate.value,
-        "stderr": estimate.stderr or None,
-        "law": law,
+# Rows that follow from others -------------------------------------------------------------------
+
+
+def last_ratios(rows):
+    """Yield the rows on the last well measured ratio of each tail to its law, and its approach."""
+    last = {
+        one["event"]: one
+        for one in rows
+        if one["method"] == "weighted" and one["stderr"]
+        if one["stderr"] < WELL_MEASURED * one["estimate"]
     }
+    for event, one in last.items():
+        ratio, error = one["estimate"] / one["law"], one["stderr"] / one["law"]
+        fit = {"quantity": "last_ratio", "method": "fit", "law": None}
+        yield one | fit | {"estimate": ratio, "stderr": error}
+        if event in HOPS:
+            yield approach(one)
+
+
+def approach(weighted):
+    """Return the row on the c of the ratio 1 + c (t/τ)^(−1/2) of a ``weighted`` row to its law.
+
+    Hops approach the law like that; collisions have no such term.
+    """
+    root = math.sqrt(weighted["time"] / weighted["exact_mean"])
+    ratio, error = (weighted[name] / weighted["law"] for name in ("estimate", "stderr"))
+    found = {"estimate": (ratio - 1) * root, "stderr": error * root}
+    return weighted | {"quantity": "approach", "method": "fit", "law": None} | found
+
+
+def joined(estimates):
+    """Return the mean of independent ``estimates`` from equal numbers of replicas."""
+    runs = len(estimates)
+    error = math.sqrt(sum(e.stderr**2 for e in estimates)) / runs
+    return Estimate(float(np.mean([e.value for e in estimates])), error, runs * estimates[0].n)
+
+
+def rate_between(first, later):
+    """Return the row on the rate between the times of two rows of survival.
+
+    Intervals that last longer than the second time are among those that last longer than the first.
+    The variance of the logarithm is therefore the difference of their relative variances.
+    """
+    time = later["time"] - first["time"]
+    late, early = ((one["stderr"] / one["estimate"]) ** 2 for one in (later, first))
+    rate = math.log(first["estimate"] / later["estimate"]) / time
+    found = {"estimate": rate, "stderr": math.sqrt(late - early) / time}
+    ends = {"quantity": "rate", "until": later["time"], "law": 1 / first["exact_mean"]}
+    return first | found | ends
+
+
+def constant_hazard(rows):
+    """Return (χ², degrees of freedom) of a constant hazard between the times of ``rows``.
+
+    ``rows`` are rows of survival at ascending times. The variances are those of ``rate_between``.
+    """
+    hazards, weights = [], []
+    for first, later in pairwise(rows):
+        time = later["time"] - first["time"]
+        late, early = ((one["stderr"] / one["estimate"]) ** 2 for one in (later, first))
+        hazards.append(math.log(first["estimate"] / later["estimate"]) / time)
+        weights.append(time**2 / (late - early))
+    mean = sum(w * h for w, h in zip(weights, hazards, strict=True)) / sum(weights)
+    chi2 = sum(w * (h - mean) ** 2 for w, h in zip(weights, hazards, strict=True))
+    return chi2, len(hazards) - 1
+
+
+def constancy(rows):
+    """Yield the rows that test whether a rate of decay is constant over the times of its fit."""
+    for rate in [one for one in rows if one["quantity"] == "rate"]:
+        within = [
+            one
+            for one in rows
+            if (one["event"], one["radius"]) == (rate["event"], rate["radius"])
+            and (one["quantity"], one["method"]) == ("survival", "counted")
+            and rate["time"] * (1 - 1e-9) <= one["time"] <= rate["until"] * (1 + 1e-9)
+            and one["stderr"] is not None
+        ]
+        if len(within) < 3:
+            continue
+        chi2, degrees = constant_hazard(within)
+        for quantity, value in (
+            ("chi2", chi2),
+            ("degrees", float(degrees)),
+            ("chance", chi2_p(chi2, degrees)),
+        ):
+            fit = {"quantity": quantity, "method": "fit", "law": None}
+            yield rate | fit | {"estimate": value, "stderr": None}

@@ -42,10 +42,16 @@ class Tails(Table):
     @staticmethod
     def rows(box, samples, replicas, seed):
         """Return the rows for a ``Box`` (see ``measure.rows``)."""
-        from twodiscs_paper.studies.tails import fits, measure
+        from twodiscs_paper.studies.tails import measure
 
-        rows = list(measure.rows(box, samples, replicas, seed))
-        return [*rows, *fits.fits(rows)]
+        return measure.rows(box, samples, replicas, seed)
+
+    @staticmethod
+    def part(weighted, counted):
+        """Return the rows of a long run (see ``measure.long_run``)."""
+        from twodiscs_paper.studies.tails import measure
+
+        return measure.long_run(weighted, counted)
 
 
 def _parameters(configuration):
