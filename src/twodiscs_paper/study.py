@@ -16,8 +16,6 @@ class Study:
     ``parts``, {name: parameters}: jobs of its function ``part``, whose rows are read as tables of
     these names.
 
-    ``families`` are the families of the scenes that the study computes.
-
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
     ``timed`` tables hold seconds, which differ from run to run. A study that is not ``shared`` is
@@ -34,7 +32,6 @@ class Study:
     figures: dict = field(default_factory=dict)
     parameters: Callable = lambda configuration: {}
     reads: Callable = lambda configuration: {}
-    families: tuple = ("plain",)
     parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from twodiscs.dynamics.ensemble import relative_errors
-from twodiscs.dynamics.families.many import mean_interval
 from twodiscs.dynamics.many import cells as many_cells
 from twodiscs.dynamics.many import kernels, path
 from twodiscs.dynamics.many import lockstep as many
+from twodiscs.dynamics.many.experiments import mean_interval
 from twodiscs.model.events import SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial

@@ -13,13 +13,13 @@ from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.families.plain import FOLLOWED
+from twodiscs.model.two import FOLLOWED
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
 from twodiscs.sampling.starts import require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs.theory.families.effects import PASSES_PER_EVENT
+from twodiscs.theory.weighted import PASSES_PER_EVENT
 
 
 def decades(low, high):

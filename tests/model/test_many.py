@@ -10,8 +10,8 @@ from scipy.sparse import csgraph
 
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS
-from twodiscs.model.families.many import arrangement, can_be_level, ergodic_components, is_ordered
-from twodiscs.model.families.many import largest_known_radius as largest_radius
+from twodiscs.model.many import arrangement, can_be_level, ergodic_components, is_ordered
+from twodiscs.model.many import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
 
 

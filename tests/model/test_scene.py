@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twodiscs.model.box import Box
+from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs.model.scene import REGIMES, Scene
+from twodiscs.model.scene import REGIMES, Scene, check_two
 
 BOXES = [(1.5, 1.0), (3.0, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (1.0, 1.7), (1e-6, 1e6)]
 sides = st.floats(-6, 6).map(lambda x: 10**x)
@@ -87,3 +88,26 @@ def test_a_copy_is_the_same_whatever_was_asked_before():
     assert scene.largest_radius
     assert pickle.dumps(scene) == new
     assert pickle.loads(new) == scene
+
+
+SCENES = {
+    "plain": Scene(1.5, 1.0, 0.2),
+    "effects": Scene(1.5, 1.0, 0.2, mass_ratio=2.0),
+    "many": Scene(1.5, 1.0, 0.15, discs=3),
+}
+
+
+@pytest.mark.parametrize("family", SCENES)
+def test_a_scene_knows_its_family(family):
+    assert SCENES[family].family == family
+
+
+def test_all_discs_have_a_radius_and_a_mass():
+    assert (SCENES["many"].radii, SCENES["many"].masses) == ((0.15,) * 3, (1.0,) * 3)
+    assert (SCENES["effects"].radii, SCENES["effects"].masses) == ((0.2, 0.2), (1.0, 2.0))
+
+
+def test_two_discs_are_required_in_one_sentence():
+    assert check_two(SCENES["effects"], "shells") is SCENES["effects"]
+    with pytest.raises(InputError, match=r"^discs must be 2 for shells, not 3$"):
+        check_two(SCENES["many"], "shells")

@@ -18,7 +18,8 @@ from scipy.sparse.csgraph import connected_components
 
 from twodiscs.dynamics.law import law_of
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS, WALLS
-from twodiscs.model.scene import ENERGY, Scene
+from twodiscs.model.scene import Scene
+from twodiscs.model.two import ENERGY
 
 SCENES = [
     Scene(1.5, 1.0, 0.2, radius_ratio=1.3),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import f
 
-from twodiscs.model.families.many import arrangement, is_ordered
+from twodiscs.model.many import arrangement, is_ordered
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import chains, initial
 from twodiscs.sampling.streams import open_stream

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import dblquad, quad
 
 from twodiscs.model.scene import Scene
-from twodiscs.theory.families import clusters
+from twodiscs.theory import clusters
 
 BOX = Scene(1.5, 1.0, 0.24, moment_of_inertia=0.5)
 RING = Scene(1.0, 2.0, 0.2495, moment_of_inertia=0.01, periodic="x")

@@ -8,7 +8,6 @@ from twodiscs.arguments import box_arguments, words
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs.figures.kit.captions import Shown
-from twodiscs.model.family import FAMILIES, module_of
 from twodiscs.model.sources import fingerprint
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES
 from twodiscs_paper.configuration.request import (
@@ -75,9 +74,6 @@ wildcard_constraints:
     stop="[0-9]+",
 
 
-# The floors that have modules for families of scenes, from the lowest one up.
-FLOORS = ("model", "theory", "sampling", "dynamics")
-
 # Modules that compute nothing. A job uses only the entry of a catalogue that its parameters name. The
 # other modules refuse input, read arguments, draw a bar or name sources.
 NOT_COMPUTING = (
@@ -95,15 +91,6 @@ NOT_COMPUTING = (
 def code(*modules, without=()):
     """Return the fingerprint of the code that a job runs: modules, and all that they import."""
     return fingerprint(*modules, without=(*NOT_COMPUTING, *without))
-
-
-def family_modules(floor, *families):
-    """Return the modules of families of scenes on a floor and on all lower floors.
-
-    They are imported by a computed name, which a fingerprint does not follow.
-    """
-    floors = FLOORS[: FLOORS.index(floor) + 1]
-    return [module_of(one, family) for one in floors for family in families]
 
 
 def box(w):
@@ -143,9 +130,8 @@ def point_code(stage=None):
     def of_job(w):
         run = STAGES[stage or w.stage]
         others = tuple({*STAGES.values()} - {run})
-        families = family_modules(run.split(".")[1], *SCENES[w.scene].box.families)
         others += ("twodiscs.points.estimates",)
-        return code("twodiscs_paper.pipeline.jobs.point", *families, without=others)
+        return code("twodiscs_paper.pipeline.jobs.point", without=others)
 
     return of_job
 
@@ -175,14 +161,10 @@ def radius_of(w):
 
 def figure_code(w):
     """Return the fingerprint of the code that draws a figure."""
-    scene = about(w)
     return code(
         "twodiscs_paper.pipeline.jobs.figure",
         "twodiscs.figures.kit.style",
         ENTRIES[w.figure].module,
-        *family_modules(
-            "theory", *sorted({"plain", scene.box.family if scene else "plain"})
-        ),
     )
 
 
@@ -224,7 +206,6 @@ def study_code(w):
     return code(
         "twodiscs_paper.pipeline.jobs.study",
         of_study(w).tables[0].__module__,
-        *family_modules("dynamics", *of_study(w).families),
     )
 
 

@@ -252,6 +252,6 @@ rule benchmark:
     localrule: True
     threads: ALL_CORES
     params:
-        code=code("twodiscs_paper.benchmark", *family_modules("dynamics", *FAMILIES)),
+        code=code("twodiscs_paper.benchmark"),
     shell:
         "python -P -m twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"

@@ -20,7 +20,6 @@ rule exact:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             "twodiscs.comparison.tables.theory",
-            *family_modules("theory", SCENES[w.scene].box.family),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
@@ -128,7 +127,6 @@ rule trajectory:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             "twodiscs.comparison.tables.trajectory",
-            *family_modules("dynamics", SCENES[w.scene].box.family),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"
@@ -167,7 +165,6 @@ rule table:
         code=lambda w: code(
             "twodiscs_paper.pipeline.jobs.table",
             SCENE_TABLES[w.table].__module__,
-            *family_modules("theory", *SCENES[w.scene].box.families),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"

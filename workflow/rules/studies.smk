@@ -74,7 +74,6 @@ rule effects_curves:
         code=code(
             "twodiscs_paper.pipeline.jobs.study",
             "twodiscs_paper.studies.effects.curves",
-            *family_modules("theory", "plain", "effects"),
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
@@ -104,7 +103,6 @@ rule effects_cost:
         # The benchmarks of many discs are not part of it.
         code=code(
             "twodiscs_paper.benchmark",
-            *family_modules("dynamics", "plain", "effects"),
             without=(
                 "twodiscs.dynamics.many.kernels",
                 "twodiscs.dynamics.many.lockstep",

@@ -1,7 +1,7 @@
 """Counts of events in a fixed time, from initial states of the invariant measure.
 
 The mean count in a time T is rate × T exactly, for every T and without burn-in; the spread between
-independent replicas gives its error. Each family of scenes has its kernel in ``families``.
+independent replicas gives its error. ``two.lockstep`` follows two discs, ``many`` more of them.
 """
 
 import math
@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 
 from twodiscs.dynamics.ensemble import relative_errors
+from twodiscs.dynamics.two import strip
 from twodiscs.model.checks import InputError, check_choice, check_error, check_integer
 from twodiscs.model.events import EVENTS
-from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.dynamics import DynamicsPoint
 from twodiscs.sampling.blocks.rounds import SequentialRun, all_in_rounds, on_grid
@@ -28,22 +28,26 @@ def simulated_events(sums):
     return int(sums[COLLISIONS] + sums[ANY_WALLS])
 
 
-def expected_rate(scene, event):
-    """Return the rate of an ``event``, exactly if the exact rate is known.
-
-    For more than two discs it may be an estimate; it is 0 if nothing is known.
-    """
-    return of_family(scene, "dynamics", "expected_rate")(scene, event)
+def engine_of(scene):
+    """Return the module that counts the events of a ``Scene``: of two discs, or of many."""
+    if check_scene(scene).discs > 2:
+        from twodiscs.dynamics.many import experiments as engine
+    else:
+        from twodiscs.dynamics.two import lockstep as engine
+    return engine
 
 
 def expected_event_rate(scene):
-    """Return the wall hits and disc collisions per unit of time, as ``expected_rate``."""
-    return of_family(scene, "dynamics", "expected_event_rate")(scene)
+    """Return the wall hits and disc collisions per unit of time, exactly if the rate is known.
+
+    For more than two discs it may be an estimate.
+    """
+    return engine_of(scene).expected_event_rate(scene)
 
 
 def replica_duration(scene):
-    """Return the time T of one replica, a power of two; see the kernel of its family."""
-    return of_family(check_scene(scene), "dynamics", "replica_duration")(scene)
+    """Return the time T of one replica, a power of two."""
+    return engine_of(scene).replica_duration(scene)
 
 
 def run_blocks(scene, events, seed, first, stop, duration, **shape):
@@ -52,9 +56,7 @@ def run_blocks(scene, events, seed, first, stop, duration, **shape):
     A block is some initial states (``block_replicas``), each followed for ``duration``. Returns
     (sums, products): Σ N_e (n) and Σ N_e N_f for e ≤ f (n, n), int64, in the order of EVENTS.
     """
-    return of_family(scene, "dynamics", "run_blocks")(
-        scene, events, seed, first, stop, duration, **shape
-    )
+    return engine_of(scene).run_blocks(scene, events, seed, first, stop, duration, **shape)
 
 
 def count_events(scene, target, budget, seed):
@@ -95,16 +97,13 @@ class CountingRun:
         check_integer("seed", self.seed, 0)
         require_room(self.scene)
 
-    def _family(self, function, *given, **named):
-        return of_family(self.scene, "dynamics", function)(self.scene, *given, **named)
-
     @property
     def _events(self):
         return [event for event in EVENTS if event in self.target]
 
     @cached_property
     def _rare(self):
-        return [hop for hop in self._family("rare_hops") if hop in self.target]
+        return [hop for hop in strip.rare_hops(self.scene) if hop in self.target]
 
     @property
     def _waited(self):
@@ -117,10 +116,10 @@ class CountingRun:
         The budget is divided in proportion to the events that the errors need. If it is too small
         for all of them, each has the same fraction of its events.
         """
-        budget = max(1, int(self.budget / self._family("work_per_event")))
+        budget = max(1, int(self.budget / engine_of(self.scene).work_per_event(self.scene)))
         runs = {"all": self._everything(budget)}
         for hop in self._rare:
-            runs[hop] = self._family("rare_run", hop, self.target[hop], budget, self.seed)
+            runs[hop] = strip.run_of(self.scene, hop, self.target[hop], budget, self.seed)
         events = {name: run.planned * run.block_events for name, run in runs.items()}
         total = sum(events.values())
         most = min(1.0, budget / total)
@@ -134,19 +133,20 @@ class CountingRun:
         }
 
     def _everything(self, budget):
-        scene, duration = self.scene, replica_duration(self.scene)
-        each = self._family("block_replicas")
+        scene, engine = self.scene, engine_of(self.scene)
+        duration, each = engine.replica_duration(scene), engine.block_replicas(scene)
         index = [EVENTS.index(event) for event in self._waited]
         goals = np.array([self.target[event] for event in self._waited])
         replicas = (
-            relative_variance(expected_rate(scene, event) * duration) / self.target[event] ** 2
+            relative_variance(engine.expected_rate(scene, event) * duration)
+            / self.target[event] ** 2
             for event in self._waited
         )
 
         def work(first, stop):
-            return self._family("run_blocks", self._events, self.seed, first, stop, duration)
+            return engine.run_blocks(scene, self._events, self.seed, first, stop, duration)
 
-        block_events = each * expected_event_rate(scene) * duration
+        block_events = each * engine.expected_event_rate(scene) * duration
         # Errors of bursts that the budget cannot reach are ignored.
         needed = np.array([replicas_needed(scene, e, self.target[e]) for e in self._waited])
         needed = needed / each
@@ -164,14 +164,14 @@ class CountingRun:
             lambda sums: max(1, simulated_events(sums[0])),
             block_events,
             budget,
-            on_grid(self._family("planned", planned, budget / block_events)),
-            self._family("cost_ratio"),
+            on_grid(engine.planned(planned, budget / block_events)),
+            engine.cost_ratio(scene),
         )
 
     def point(self, outcomes):
         """Return the ``DynamicsPoint``, given {name: ``Outcome``} of all parts."""
         (sums, products), blocks, rounds, excess = outcomes["all"]
-        strips = {hop: self._family("rare_summary", hop, outcomes[hop]) for hop in self._rare}
+        strips = {hop: strip.summary(self.scene, hop, outcomes[hop]) for hop in self._rare}
         tracked = [EVENTS.index(event) for event in self._events]
         status = dict.fromkeys(self._events, "impossible")
         for event, value in zip(self._waited, excess, strict=True):
@@ -179,7 +179,7 @@ class CountingRun:
         return DynamicsPoint(
             radius=self.scene.radius,
             duration=replica_duration(self.scene),
-            replicas=blocks * self._family("block_replicas"),
+            replicas=blocks * engine_of(self.scene).block_replicas(self.scene),
             rounds=rounds,
             events=simulated_events(sums) + sum(strip.events for strip in strips.values()),
             counts={EVENTS[e]: int(sums[e]) for e in tracked},

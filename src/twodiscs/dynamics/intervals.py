@@ -16,7 +16,6 @@ import numpy as np
 from twodiscs.dynamics.ensemble import RETURNS, nearest_power_of_two
 from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
-from twodiscs.model.family import of_family
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.intervals import IntervalsPoint, WideBins
 from twodiscs.sampling.blocks.rounds import all_in_rounds, fixed
@@ -45,10 +44,19 @@ def wide_edges(bins=BINS):
     return edges
 
 
+def chains_of(scene):
+    """Return the module that records the intervals of a ``Scene``: of two discs, or of many."""
+    if scene.discs > 2:
+        from twodiscs.dynamics.many import experiments as chains
+    else:
+        from twodiscs.dynamics.two import returns as chains
+    return chains
+
+
 def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     """Return (times of the chains, sums in bins) of a number of ``blocks``, from the ``first`` on.
 
-    Each block has ``chains`` chains of ``returns`` intervals, see the kernels of the families.
+    Each block has ``chains`` chains of ``returns`` intervals, see ``record_intervals``.
     ``going`` is an array to stop it with.
     """
     edges = wide_edges()
@@ -56,15 +64,15 @@ def recorded(scene, event, blocks, chains, returns, seed, first=0, going=None):
     beyond = BINS + len(edges)
     wide = np.full(BINS + 1, beyond)
     wide[: edges[-1]] = BINS + np.repeat(np.arange(1, len(edges)), np.diff(edges))
-    sums = np.zeros((of_family(scene, "dynamics", "INTERVAL_SUMS"), beyond + 1), np.int64)
+    sums = np.zeros((chains_of(scene).INTERVAL_SUMS, beyond + 1), np.int64)
     going, bins = np.ones(1, np.bool_) if going is None else going, (_width(scene, event), wide)
-    record = of_family(scene, "dynamics", "record_intervals")
+    record = chains_of(scene).record_intervals
     stop = first + blocks
     return record(scene, event, seed, first, stop, chains, returns, bins, sums, going), sums
 
 
 def _mean(scene, event):
-    return of_family(scene, "dynamics", "mean_interval")(scene, event)
+    return chains_of(scene).mean_interval(scene, event)
 
 
 def hop_intervals(scene, event, intervals, seed, budget=BUDGET):
@@ -112,13 +120,12 @@ class IntervalRun:
 
     @property
     def _events(self):
-        return of_family(self.scene, "dynamics", "events_per_interval")(self.scene, self.event)
+        return chains_of(self.scene).events_per_interval(self.scene, self.event)
 
     @property
     def _each(self):
         """The number of intervals of a block."""
-        of_chain = of_family(self.scene, "dynamics", "intervals_of_chain")
-        return CHAINS * of_chain(self.scene, self.event)
+        return CHAINS * chains_of(self.scene).intervals_of_chain(self.scene, self.event)
 
     @property
     def _blocks(self):
@@ -157,7 +164,7 @@ class IntervalRun:
                 moments += [joint, sum(n), sum(each * each for each in n)]
             return sums, np.array(moments, object)
 
-        ratio = of_family(self.scene, "dynamics", "interval_cost")(self.scene)
+        ratio = chains_of(self.scene).interval_cost(self.scene)
         return {"all": fixed(work, self._blocks, self._each * self._events, ratio)}
 
     def point(self, outcomes):

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from twodiscs.dynamics.counting import CountingRun, expected_event_rate, replica_duration
+from twodiscs.dynamics.counting import CountingRun, engine_of
 from twodiscs.model.checks import InputError, format_number
 
 
@@ -23,7 +23,7 @@ class TimedRun(CountingRun):
 
     def __post_init__(self):
         super().__post_init__()
-        rate = expected_event_rate(self.scene)
+        rate = engine_of(self.scene).expected_event_rate(self.scene)
         if self.duration * rate > self.budget:
             raise InputError(
                 f"duration must be below {format_number(self.budget / rate, '.3g')}, where the "
@@ -38,7 +38,8 @@ class TimedRun(CountingRun):
     @cached_property
     def parts(self):
         """The ``SequentialRun`` of all blocks, {"all": run}."""
-        each = replica_duration(self.scene) * self._family("block_replicas")
+        engine = engine_of(self.scene)
+        each = engine.replica_duration(self.scene) * engine.block_replicas(self.scene)
         blocks, waited = max(1, math.ceil(self.duration / each)), len(self._waited)
         run = replace(
             self._everything(self.budget),

@@ -2,7 +2,7 @@
 
 Every scene has the same columns: time, the centres of all discs, the event, the centres along z,
 and the discs of the event. Along periodic axes centres go on beyond the cell of the box;
-``cell_of`` returns the number of their cell. Each family has its kernel in ``families``.
+``cell_of`` returns the number of their cell. ``two.path`` follows two discs, ``many.path`` more.
 """
 
 from itertools import islice, repeat
@@ -14,9 +14,7 @@ from twodiscs.model.checks import (
     check_integer,
     check_length,
     format_number,
-    quote,
 )
-from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import components, states
@@ -29,9 +27,6 @@ ROWS = 1000
 
 #: The columns of the discs of an event: first < second, None without a disc.
 DISCS = ("first", "second")
-
-#: The largest error of a given state by rounding, over the sides and the energy.
-ROUNDING = 1e-9
 
 
 def columns(discs=2):
@@ -46,9 +41,18 @@ def cell_of(side, centre):
     return np.round(np.asarray(centre) / side).astype(int)
 
 
+def path_of(scene):
+    """Return the module that follows one path of a ``Scene``: of two discs, or of many."""
+    if check_scene(scene).discs > 2:
+        from twodiscs.dynamics.many import path
+    else:
+        from twodiscs.dynamics.two import path
+    return path
+
+
 def new_wraps(scene, number):
     """Return an array for ``advance_all`` to count in, for ``number`` states of a ``Scene``."""
-    return of_family(scene, "dynamics", "new_wraps")(scene, number)
+    return path_of(scene).new_wraps(scene, number)
 
 
 def kicks_of(scene, number, seed, block=0):
@@ -56,7 +60,7 @@ def kicks_of(scene, number, seed, block=0):
 
     They come from the streams of ``seed`` for the states of a ``block`` of this ``number``.
     """
-    return of_family(scene, "dynamics", "kicks_of")(scene, number, seed, block)
+    return path_of(scene).kicks_of(scene, number, seed, block)
 
 
 def advance_all(scene, states, wraps, time, kicks=None):
@@ -65,12 +69,12 @@ def advance_all(scene, states, wraps, time, kicks=None):
     ``wraps`` (``new_wraps``) counts how often a centre was moved back along a periodic axis.
     ``kicks`` (``kicks_of``) go on from one call to the next.
     """
-    of_family(scene, "dynamics", "advance_all")(scene, states, wraps, time, kicks)
+    path_of(scene).advance_all(scene, states, wraps, time, kicks)
 
 
 def unwrap(scene, columns, wraps):
     """Add to the centres in ``columns``, arrays by name, what ``advance_all`` took from them."""
-    of_family(scene, "dynamics", "unwrap")(scene, columns, wraps)
+    path_of(scene).unwrap(scene, columns, wraps)
 
 
 def events_of(scene, state, duration, seed=0):
@@ -80,7 +84,7 @@ def events_of(scene, state, duration, seed=0):
     one "end"; hops are events, walls are named by axis and disc, "wall_x1" say. With friction
     "kick" is an event, because a path turns there; kicks come from the streams of ``seed``.
     """
-    return of_family(scene, "dynamics", "events_of")(scene, state, duration, seed)
+    return path_of(scene).events_of(scene, state, duration, seed)
 
 
 def state_of(scene, start):
@@ -90,17 +94,7 @@ def state_of(scene, start):
     serves. Raises ``InputError`` for anything else, for discs that overlap or lie outside, and for
     another energy than 1/2.
     """
-    return of_family(check_scene(scene), "dynamics", "state_of")(scene, start)
-
-
-def no_state(names, start):
-    """Return the ``InputError`` for a ``start`` that is not a number for each of the ``names``."""
-    hint = ""
-    if np.shape(start) and getattr(getattr(start, "dtype", None), "names", None):
-        hint = "; start[0] is one of these states"
-    elif hasattr(start, "iloc"):
-        hint = "; states_at(times)[0] is a state of a trajectory"
-    return InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
+    return path_of(scene).state_of(scene, start)
 
 
 def follow(scene, state, duration, seed=0):
@@ -124,16 +118,16 @@ def followed(scene, seed, start=None, duration=None, progress=None):
     """Return one trajectory of a ``Scene``, as a list of what ``events_of`` yields.
 
     It starts from the invariant measure, with the random stream of ``seed``, unless a ``start`` is
-    given (see ``state_of``). Without a ``duration`` each family has its usual one. Raises
+    given (see ``state_of``). Without a ``duration`` it has the ``usual_duration``. Raises
     ``InputError`` for anything that is not a ``Scene``, for a seed that is not an integer ≥ 0, and
     for a start that is no state. The same holds for a duration that is no length or takes
     ``MOST_EVENTS``. ``progress``, if given, is called now and then with the time that it has
     reached, and the ``duration``.
     """
     seed = check_integer("seed", seed, 0)
-    rate = of_family(check_scene(scene), "dynamics", "trajectory_rate")(scene)
+    rate = path_of(scene).trajectory_rate(scene)
     if duration is None:
-        duration = of_family(scene, "dynamics", "usual_duration")(scene)
+        duration = path_of(scene).usual_duration(scene)
     elif check_length("duration", duration) * rate > MOST_EVENTS:
         raise InputError(
             f"duration must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "

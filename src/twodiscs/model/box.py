@@ -166,12 +166,6 @@ class Box:
         return self.tiny.family
 
     @property
-    def families(self):
-        """The families whose modules compute its scenes: N rough discs have the bursts of two."""
-        rough = ("effects",) if "moment_of_inertia" in self.effects else ()
-        return tuple(dict.fromkeys((self.family, *rough)))
-
-    @property
     def is_plain(self):
         """Whether it is a box of two equal, smooth discs between walls."""
         return not self.calls_for

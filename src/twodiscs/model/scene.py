@@ -17,6 +17,7 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 
+from twodiscs.model import many, two
 from twodiscs.model.checks import (
     LONGEST,
     MOST_DISCS,
@@ -31,8 +32,6 @@ from twodiscs.model.checks import (
 )
 from twodiscs.model.effects import ABSENT, EFFECTS
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, HOPS
-from twodiscs.model.families.two import ENERGY
-from twodiscs.model.family import of_family
 
 #: The most kicks by friction in the time that a disc of speed 1 takes along the shortest side.
 MOST_KICKS = 1e6
@@ -112,7 +111,7 @@ class Scene:
             object.__setattr__(self, name, effect.checked(getattr(self, name)))
         self._check_effects()
         object.__setattr__(self, "discs", check_integer("discs", self.discs, 2, MOST_DISCS))
-        self._geometry("check")
+        self._geometry.check(self)
 
     def _check_effects(self):
         def settle(name, value):
@@ -270,13 +269,15 @@ class Scene:
 
     @property
     def family(self) -> str:
-        """One of ``family.FAMILIES``: "plain", "effects" or "many"."""
+        """The family: "plain" (two equal, smooth discs between walls), "effects" or "many"."""
         if self.discs > 2:
             return "many"
         return "effects" if self.has_effects else "plain"
 
-    def _geometry(self, function, *arguments):
-        return of_family(self, "model", function)(self, *arguments)
+    @property
+    def _geometry(self):
+        """The module with the geometry of the discs."""
+        return many if self.discs > 2 else two
 
     @property
     def calls_for(self):
@@ -378,11 +379,11 @@ class Scene:
         For more than three discs it belongs to the densest arrangement that is known here. In a
         channel so narrow that only neighbours can touch, no arrangement is denser.
         """
-        return self._geometry("largest_radius")
+        return self._geometry.largest_radius(self)
 
     def require_followable(self):
         """Raise ``InputError`` too close to the largest radius for dynamics in doubles."""
-        self._geometry("require_followable")
+        self._geometry.require_followable(self)
 
     @cached_property
     def passed(self) -> tuple[str, ...]:
@@ -390,7 +391,7 @@ class Scene:
 
         For more than three discs these are the axes along which geometry does not exclude it.
         """
-        return self._geometry("passed")
+        return self._geometry.passed(self)
 
     def room(self, hop):
         """Return the largest distance of discs at a ``hop``, minus σ.
@@ -407,7 +408,7 @@ class Scene:
 
         It is also the length of the gradient of a separation, in the metric of the masses.
         """
-        return math.sqrt(sum(2 * ENERGY / mass for mass in self.masses[:2]))
+        return math.sqrt(sum(2 * two.ENERGY / mass for mass in self.masses[:2]))
 
     @cached_property
     def vertical_hops(self):
@@ -437,7 +438,7 @@ class Scene:
         more in a short channel, in which the heights of one order also form several components.
         They have 1 if any two of them can be exchanged. If the number is not known, it is None.
         """
-        return self._geometry("ergodic_components")
+        return self._geometry.ergodic_components(self)
 
     @cached_property
     def confined(self):
@@ -445,7 +446,7 @@ class Scene:
 
         It is False for more than two discs: their times are averages over all initial conditions.
         """
-        return self._geometry("confined")
+        return self._geometry.confined(self)
 
     @cached_property
     def identical(self):
@@ -468,7 +469,7 @@ class Scene:
         mirror image along y. It is 2N for walls of more than two discs, and 1 for all events except
         wall hits.
         """
-        return self._geometry("multiplicity", DECLARED[event])
+        return self._geometry.multiplicity(self, DECLARED[event])
 
     @cached_property
     def events(self) -> tuple[str, ...]:
@@ -512,7 +513,7 @@ class Scene:
         if declared.kind == "hop":
             return declared.axis in self.passed
         if self.field and (declared.axis, declared.side) == ("y", +1):
-            return self.field * (self.height - 2 * self.radius) < ENERGY
+            return self.field * (self.height - 2 * self.radius) < two.ENERGY
         return True
 
 
@@ -521,6 +522,13 @@ def check_scene(value):
     if not isinstance(value, Scene):
         raise InputError(f"scene must be a Scene, not {quote(value)}")
     return value
+
+
+def check_two(scene, what):
+    """Return a ``Scene`` of two discs; raise ``InputError`` for more, which ``what`` is not for."""
+    if check_scene(scene).discs > 2:
+        raise InputError(f"discs must be 2 for {what}, not {scene.discs}")
+    return scene
 
 
 def hopping_along(scene, hop, axis):

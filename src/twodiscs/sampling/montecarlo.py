@@ -30,8 +30,7 @@ import numpy as np
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_choice, check_fraction, check_integer
 from twodiscs.model.events import AXIS, DECLARED, EVENTS, SHELLS, by_kind
-from twodiscs.model.family import of_family
-from twodiscs.model.scene import Scene, check_scene
+from twodiscs.model.scene import Scene, check_scene, check_two
 from twodiscs.points.monte_carlo import Hits, MonteCarloPoint
 from twodiscs.sampling.blocks.rounds import Sampler, all_in_rounds, fixed
 from twodiscs.sampling.jit import compiled, inlined, optional
@@ -199,12 +198,12 @@ def shell_thickness(scene, event, fraction):
     Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
     1.
     """
-    thickness = of_family(check_scene(scene), "sampling", "thickness", "shells")
     check_choice("event", event, exact.shells(scene))
+    thickness = _plain_thickness if scene.is_plain else _weighted_thickness
     return check_fraction("fraction", fraction) * thickness(scene, event)
 
 
-def plain_thickness(scene, event):
+def _plain_thickness(scene, event):
     """Return the length that ``shell_thickness`` takes a fraction of, in a plain scene."""
     hop = DECLARED[event].kind == "hop"
     vanishing = Box.of(scene).blocking_radius(event) if hop else scene.largest_radius
@@ -217,7 +216,7 @@ def plain_thickness(scene, event):
     return min(scene.radius, room) if room > 0 else scene.radius
 
 
-def weighted_thickness(scene, event):
+def _weighted_thickness(scene, event):
     """Return the length that ``shell_thickness`` takes a fraction of, with effects."""
     kind = DECLARED[event].kind
     if kind == "hop":
@@ -244,7 +243,7 @@ def sample_point(scene, quantities, samples, shell, seed):
     volume of the prism times the number of pairs. A sample takes some forty times as long. Raises
     ``InputError`` for an unknown quantity or a number out of range.
     """
-    sampler = of_family(check_scene(scene), "sampling", "rejection", "shells")
+    sampler = in_prism if check_two(scene, "shells").is_plain else weighted
     return _drawn(sampler(scene, quantities, shell, seed), samples)
 
 
@@ -278,8 +277,8 @@ def in_prism(scene, quantities, shell, seed):
 
 
 def _shelled(scene):
-    """Return the events that Monte Carlo samples by a shell."""
-    return of_family(scene, "sampling", "shelled")
+    """Return the events that Monte Carlo samples by a shell, in the order of its counts."""
+    return SHELLS if scene.is_plain else EVENTS
 
 
 def _shells(scene, quantities, shell):
@@ -532,14 +531,21 @@ def weighted(scene, quantities, shell, seed):
 def plan(scene, samples):
     """Return the function that makes the ``Sampler`` of a ``Scene``, and the number of samples.
 
-    ``samples`` are samples of the prism, or insertions for more than two discs.
+    ``samples`` are samples of the prism, or insertions for more than two discs. In a plain scene
+    rejection is used if it accepts at least one in ``COST_RATIO``.
     """
-    return of_family(check_scene(scene), "sampling", "plan")(scene, samples)
+    if check_scene(scene).discs > 2:
+        from twodiscs.sampling.many import measures
 
-
-def in_blocks(samples):
-    """Return a number of ``samples`` of the prism, rounded up to whole blocks."""
-    return -(-check_integer("samples", samples) // BLOCK) * BLOCK
+        sampler, block = measures.inserted, measures.BLOCK
+    elif scene.has_effects:
+        sampler, block = weighted, BLOCK
+    elif exact.free_fraction(scene) >= 1 / COST_RATIO:
+        sampler, block = in_prism, BLOCK
+    else:
+        blocks = -(-samples // (COST_RATIO * PROPOSALS))
+        return conditioned, blocks * PROPOSALS
+    return sampler, -(-check_integer("samples", samples) // block) * block
 
 
 @dataclass(frozen=True)

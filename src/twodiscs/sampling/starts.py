@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from twodiscs.model.family import of_family
+from twodiscs.model.checks import InputError, quote
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.prism import (
@@ -17,9 +17,11 @@ from twodiscs.sampling.prism import (
     draw_on_surface,
     draw_velocities,
     kinetic_fraction,
+    prism_of,
 )
 from twodiscs.sampling.separations import (
     draw_configuration,
+    draw_constants,
     draw_crossing,
     draw_velocity,
 )
@@ -32,8 +34,11 @@ CALL = 2**18
 #: Initial states in an array that stays in the processor's cache.
 PIECE = 2**13
 
-#: Rows of an array of initial states.
+#: Rows of an array of initial states of two discs.
 COMPONENTS = 12
+
+#: The largest error of a given state by rounding, over the sides and the energy.
+ROUNDING = 1e-9
 
 
 def require_room(scene):
@@ -43,23 +48,62 @@ def require_room(scene):
 
 
 def require_free_fraction(scene):
-    """Raise ``InputError`` for a ``Scene`` whose draws of initial states almost always overlap."""
-    of_family(scene, "sampling", "require_free_fraction")(scene)
+    """Raise ``InputError`` for a ``Scene`` whose draws of initial states almost always overlap.
+
+    Only two discs with effects are drawn from the prism.
+    """
+    least = exact.least_free_fraction(scene)
+    if least and (fraction := exact.free_fraction(scene)) < least:
+        raise InputError(
+            f"radius {scene.radius!r} leaves a fraction {fraction:.1g} of the prism of all centres "
+            f"without overlap, but a scene with effects needs {least:g} of it"
+        )
 
 
 def components(scene):
-    """Return the names of the components of a state of a ``Scene``."""
-    return of_family(scene, "sampling", "components")(scene)
+    """Return the names of the components of a state of a ``Scene``.
+
+    Two discs have centres, velocities, then what balls and rough discs append. N > 2 discs have
+    x1 … xN, then y, u, v and maybe s of all.
+    """
+    if scene.discs > 2:
+        names = "xyuv" if scene.moment_of_inertia is None else "xyuvs"
+        return tuple(f"{name}{disc}" for name in names for disc in range(1, scene.discs + 1))
+    balls = ("z1", "z2", "w1", "w2") if scene.depth is not None else ()
+    rough = ("s1", "s2") if scene.moment_of_inertia is not None else ()
+    return ("x1", "y1", "x2", "y2", "u1", "v1", "u2", "v2", *balls, *rough)
+
+
+def given_state(scene, start):
+    """Return a ``start`` that a user gives as floats, one for each of the ``components``.
+
+    Raises ``InputError`` for anything else.
+    """
+    names = components(scene)
+    try:
+        state = [float(value) for value in start]
+    except (TypeError, ValueError, OverflowError):
+        state = []
+    if len(state) == len(names) and all(map(math.isfinite, state)):
+        return state
+    hint = ""
+    if np.shape(start) and getattr(getattr(start, "dtype", None), "names", None):
+        hint = "; start[0] is one of these states"
+    elif hasattr(start, "iloc"):
+        hint = "; states_at(times)[0] is a state of a trajectory"
+    raise InputError(f"start must be the numbers {', '.join(names)}, not {quote(start)}{hint}")
 
 
 def origins(scene, hop=None, within=None):
-    """Return (``SeparationSampler``, ``PrismSampler``) of a ``Scene``, one of which is None.
+    """Return (``SeparationSampler``, ``PrismSampler``) of two discs, one of which is None.
 
     With a ``hop`` their states are ``within`` a distance of its surface, at most √2 times the
     smaller radius; in a plain scene the hop is horizontal. For a scene with effects call
     ``require_room`` first, because draws from its prism may hardly ever be accepted.
     """
-    return of_family(scene, "sampling", "origins")(scene, hop, within)
+    if scene.is_plain:
+        return draw_constants(scene, within), None
+    return None, prism_of(scene, hop, within)
 
 
 @inlined
@@ -175,12 +219,10 @@ def states(scene, number, seed, block=0, order=(0, 0), progress=None):
     called repeatedly with the number of drawn states, and ``number``.
     """
     require_room(scene)
-    draw = of_family(scene, "sampling", "states")
-    return draw(scene, number, seed, block, order, progress)
+    if scene.discs > 2:
+        from twodiscs.sampling.many.initial import labelled
 
-
-def states_of_two(scene, number, seed, block, order, progress):
-    """Return ``states`` of two discs."""
+        return labelled(scene, number, seed, block, progress)
     filled = np.zeros((COMPONENTS, number))
     draw, prism = origins(scene)
     state = in_a_thread(open_stream, np.uint64(seed), block)

@@ -4,18 +4,18 @@ Speeds are uniform on the unit sphere in four dimensions, so the mean time betwe
 ergodic component is (3π/2) V/A, or half of it for a hop, whose surface is crossed from both sides
 (Chernov, J. Stat. Phys. 88, 1 (1997)). Scenes with effects have other constants and weights. For
 more than two discs exact values are known in some scenes. A value that is not known is None;
-``Scene.is_possible`` tells whether the event is impossible. Each family has its theory in
-``families``.
+``Scene.is_possible`` tells whether the event is impossible. ``theory_of`` finds the module that
+computes them.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from twodiscs.model.checks import InputError, check_choice, check_length
-from twodiscs.model.events import DECLARED, EVENTS, HOPS
-from twodiscs.model.family import of_family
-from twodiscs.model.scene import check_scene
+from twodiscs.model.events import DECLARED, EVENTS, HOPS, SHELLS
+from twodiscs.model.scene import check_scene, check_two
 
 TYPE_CHECKING = False  # type checkers take it for true; the import of typing takes time
 if TYPE_CHECKING:
@@ -37,6 +37,21 @@ if TYPE_CHECKING:
 #: The least fraction of the prism (both centres in their ranges) without overlap in a scene with
 #: effects. Initial states are drawn from the prism by rejection.
 MIN_FRACTION = 1e-4
+
+
+def theory_of(scene):
+    """Return the module with the theory of a ``Scene``.
+
+    It is imported when it is needed: the plain theory does without NumPy, for a quick start.
+    """
+    family = check_scene(scene).family
+    if family == "plain":
+        from twodiscs.theory import plain as theory
+    elif family == "effects":
+        from twodiscs.theory import weighted as theory
+    else:
+        from twodiscs.theory.many import methods as theory
+    return theory
 
 
 def volume(scene: Scene) -> float:
@@ -69,7 +84,7 @@ def volume(scene: Scene) -> float:
     >>> round(td.volume(scene), 12)
     0.236114482448
     """
-    return of_family(check_scene(scene), "theory", "volume")(scene)
+    return theory_of(scene).volume(scene)
 
 
 def areas(scene: Scene) -> dict[str, float]:
@@ -80,7 +95,7 @@ def areas(scene: Scene) -> dict[str, float]:
     length⁵ for balls; they have a factor 1/√mass (1 for disc 1), and the weight
     (1 − U/E)₊^((D − 1)/2) in a field (see ``volume``). For more than two discs an area is None if
     no exact value is known. Accuracy and exceptions are those of ``volume``."""
-    return dict(of_family(check_scene(scene), "theory", "areas")(scene))
+    return dict(theory_of(scene).areas(scene))
 
 
 def rate(scene: Scene, event: str) -> float:
@@ -112,8 +127,7 @@ def rate(scene: Scene, event: str) -> float:
     >>> round(td.rate(scene, "any_wall"), 12)
     2.804358669238
     """
-    rate_of = of_family(check_scene(scene), "theory", "rate")
-    return rate_of(scene, check_choice("event", event, EVENTS))
+    return theory_of(scene).rate(scene, check_choice("event", event, EVENTS))
 
 
 def passing_rate(scene, hop):
@@ -126,8 +140,9 @@ def passing_rate(scene, hop):
     check_choice("hop", hop, HOPS)
     if DECLARED[hop].axis not in check_scene(scene).periodic:
         return rate(scene, hop)
-    rate_of = of_family(scene, "theory", "passing_rate", "passages along a periodic axis")
-    return rate_of(scene, hop)
+    from twodiscs.theory import weighted
+
+    return weighted.passing_rate(check_two(scene, "passages along a periodic axis"), hop)
 
 
 def event_rate(scene):
@@ -142,8 +157,11 @@ def event_rate(scene):
 
 def work_per_event(scene):
     """Return an upper bound on the cost of an event over the usual cost, 1 between walls."""
-    work = of_family(check_scene(scene), "theory", "work_per_event")
-    return work(scene, event_rate(scene))
+    if check_scene(scene).family != "effects":
+        return 1.0
+    from twodiscs.theory import weighted
+
+    return weighted.work_per_event(scene, event_rate(scene))
 
 
 def events_per_interval(scene, hop):
@@ -184,14 +202,24 @@ def exact(scene: Scene) -> Exact:
 def replicas_needed(scene, event, error):
     """Return the number of initial states that a relative ``error`` of an ``event`` needs.
 
-    It is 0 for smooth discs; rough discs have bursts of events (see ``clusters``).
+    It is 0 for smooth discs; rough discs have bursts of events (see ``clusters``). For more than
+    two discs it is an estimate: that of two of the discs in the same box, divided by the number of
+    pairs. Any pair may begin in a neck, and the other discs only shorten its bursts. Each disc is
+    in N − 1 pairs, whose bursts at the walls add up.
     """
-    return of_family(scene, "theory", "replicas_needed")(scene, event, error)
+    if scene.moment_of_inertia is None:
+        return 0.0
+    from twodiscs.theory import clusters
+
+    pairs, others = math.comb(scene.discs, 2), scene.discs - 1
+    if DECLARED[event].kind in ("wall", "walls"):
+        error /= others
+    return clusters.replicas_needed(replace(scene, discs=2), event, error) / pairs
 
 
 def least_free_fraction(scene):
     """Return the least free fraction of the prism, 0 if draws do not use the prism."""
-    return of_family(check_scene(scene), "theory", "least_free_fraction")
+    return MIN_FRACTION if check_scene(scene).family == "effects" else 0.0
 
 
 def free_fraction(scene):
@@ -213,13 +241,11 @@ def fraction_near(scene, hop, distance):
     """
     check_choice("hop", hop, HOPS)
     distance = check_length("distance", distance)
-    fraction_of = of_family(
-        check_scene(scene), "theory", "fraction_near", "fractions near a surface"
-    )
+    check_two(scene, "fractions near a surface")
     limit = math.sqrt(2) * min(scene.radii)
     if distance > limit:
         raise InputError(f"distance must not exceed {limit!r}, but it is {distance!r}")
-    return fraction_of(scene, hop, distance)
+    return theory_of(scene).volume_near(scene, hop, distance) / volume(scene)
 
 
 def shell_expectation(scene, event, epsilon):
@@ -238,16 +264,15 @@ def shell_expectation(scene, event, epsilon):
     is not a length up to the radius. The same holds for an event that does not exist in the scene,
     and for ``any_wall``, which has no shell in a plain scene.
     """
-    expectation = of_family(check_scene(scene), "theory", "shell_expectation", "shells")
     check_choice("event", event, shells(scene))
     epsilon = check_length("epsilon", epsilon)
     if epsilon > scene.radius:
         raise InputError(
             f"epsilon must not exceed the radius {scene.radius!r}, but it is {epsilon!r}"
         )
-    return expectation(scene, event, epsilon)
+    return theory_of(scene).shell_expectation(scene, event, epsilon)
 
 
 def shells(scene):
-    """Return the events whose surface has a shell, for two discs."""
-    return of_family(check_scene(scene), "theory", "shells")(scene)
+    """Return the events whose surface has a shell, for two discs; with effects all events."""
+    return SHELLS if check_two(scene, "shells").is_plain else scene.events

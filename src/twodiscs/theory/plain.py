@@ -192,3 +192,25 @@ def shell_expectation(scene, event, epsilon):
         return _collision_shell(arc, epsilon)
     shell, along = (_hop_shell, "y") if declared.kind == "hop" else (_wall_shell, "x")
     return shell(arc if declared.axis == along else arc.turned(), epsilon)
+
+
+def volume_near(scene, hop, distance):
+    """Return the volume within a ``distance`` of the surface of a ``hop``, see ``exact``."""
+    epsilon = distance / math.sqrt(2)
+    return 2 * epsilon * shell_expectation(scene, hop, epsilon)
+
+
+def volume(scene):
+    """Return the volume of a ``Scene``, see ``exact``."""
+    return volume_and_areas(scene)[0]
+
+
+def areas(scene):
+    """Return {event: area} of a ``Scene``, see ``exact``."""
+    return volume_and_areas(scene)[1]
+
+
+def rate(scene, event):
+    """Return the rate of ``event``."""
+    volume, areas = volume_and_areas(scene)
+    return DECLARED[event].ways * areas[event] / (1.5 * math.pi * volume)

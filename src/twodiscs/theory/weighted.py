@@ -33,7 +33,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
-from twodiscs.model.scene import ENERGY
+from twodiscs.model.two import ENERGY
+from twodiscs.theory.flux import constant
 from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legendre
 
 # Functions of arrays ------------------------------------------------------------------------------
@@ -478,3 +479,38 @@ def shell_expectation(scene, event, epsilon):
         )
         / epsilon
     )
+
+
+# Rates. Friction changes none of them: a kick draws velocities from the law that they have in the
+# invariant measure, for given centres and conserved momenta, so the measure stays invariant. A rate
+# is the flux of this measure through a surface.
+
+#: Crossings of the periodic cell between two events that the usual cost of an event includes.
+PASSES_PER_EVENT = 64
+
+#: The time of a kick over the time of an event.
+KICK = 15
+
+
+def rate(scene, event):
+    """Return the rate of ``event``."""
+    flux = DECLARED[event].ways / 2 * constant(scene.velocity_components) * areas(scene)[event]
+    return flux / volume(scene)
+
+
+def passing_rate(scene, hop):
+    """Return the rate at which the discs pass each other in a ``hop`` along a periodic axis."""
+    area = passing_area(scene, hop)
+    return constant(scene.velocity_components) * area / volume(scene)
+
+
+def work_per_event(scene, event_rate):
+    """Return an upper bound on the cost of an event over the usual cost, 1 between walls.
+
+    On a periodic axis discs leave their cell between two events, very often if they are small. The
+    usual cost includes ``PASSES_PER_EVENT`` such crossings. A kick by friction costs about as much
+    as ``KICK`` events.
+    """
+    passes = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
+    usual = max(1.0, passes / PASSES_PER_EVENT / event_rate)
+    return usual + KICK * scene.friction / event_rate

@@ -8,7 +8,7 @@ import pytest
 from mpmath import mp, mpf
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.families.many import largest_known_radius as largest_radius
+from twodiscs.model.many import largest_known_radius as largest_radius
 from twodiscs.model.scene import Scene
 from twodiscs.theory.many import methods, three
 from twodiscs.theory.many.rates import rates, virial_sum

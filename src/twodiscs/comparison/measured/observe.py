@@ -11,11 +11,10 @@ from twodiscs.comparison.measured.measurements import seed_of
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import note_of_number
 from twodiscs.comparison.measured.states import with_aliases
-from twodiscs.dynamics.counting import expected_event_rate
+from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.trajectory import MOST_EVENTS, advance_all, kicks_of, new_wraps, unwrap
 from twodiscs.model.checks import InputError, as_list, check_count, format_number, quote
-from twodiscs.model.family import of_family
 from twodiscs.model.scene import check_scene
 from twodiscs.sampling.blocks.threads import in_threads
 from twodiscs.sampling.starts import as_records, states
@@ -182,9 +181,9 @@ def observe(
     stream, times = seed_of(check_scene(scene), "observe", seed, name), _times(times)
     if not callable(function):
         raise InputError(f"function must take two arrays of states, not be {quote(function)}")
-    each = BLOCK * of_family(scene, "dynamics", "block_replicas")(scene) // REPLICAS
+    each = BLOCK * engine_of(scene).block_replicas(scene) // REPLICAS
     blocks = -(-check_count("replicas", replicas, most=10**9) // each)
-    rate = expected_event_rate(scene)
+    rate = engine_of(scene).expected_event_rate(scene)
     if times[-1] * rate > MOST_EVENTS:
         raise InputError(
             f"times must be below {format_number(MOST_EVENTS / rate, '.3g')}, where "

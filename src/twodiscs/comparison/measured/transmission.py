@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from twodiscs.comparison.measured.progress import progress_bar
 from twodiscs.comparison.measured.result import Result, note_of_number
+from twodiscs.dynamics.counting import engine_of
 from twodiscs.dynamics.ensemble import FOLLOWED as REPLICAS
+from twodiscs.dynamics.intervals import chains_of
 from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, check_count, quote
 from twodiscs.model.events import AXIS
-from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import check_scene
 from twodiscs.points.estimates import Estimate
@@ -270,15 +270,19 @@ class Transmission(Result):
 
 def passages_of(scene):
     """Return the module that follows the hops of a ``Scene``."""
-    return import_module(of_family(scene, "dynamics", "PASSAGES"))
+    if scene.discs > 2:
+        from twodiscs.dynamics.many import passages
+    else:
+        from twodiscs.dynamics.two import passages
+    return passages
 
 
 def parts_of(scene, hop, mean, gap, times, blocks, name, seed):
     """Return {"times": run} for ``blocks`` of hops, and "clusters", too, if hops are rare."""
     seeds = {what: seed_of(scene, hop, name, seed, what) for what in ("clusters", "times")}
-    passages, names = passages_of(scene), ("expected_event_rate", "work_per_event", "interval_cost")
-    event_rate, *costs = (of_family(scene, "dynamics", each)(scene) for each in names)
-    events, work = REPLICAS * event_rate, math.prod(costs)
+    passages, engine = passages_of(scene), engine_of(scene)
+    events = REPLICAS * engine.expected_event_rate(scene)
+    work = engine.work_per_event(scene) * chains_of(scene).interval_cost(scene)
 
     def clusters(first, stop):
         sizes, _ = passages.cluster_sizes(scene, hop, gap, stop - first, seeds["clusters"], first)

@@ -20,13 +20,12 @@ from twodiscs.dynamics.many.lockstep import (
     kick_lanes,
     law_of,
 )
-from twodiscs.dynamics.trajectory import ROUNDING, no_state
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import ENERGY
+from twodiscs.model.two import ENERGY
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many.initial import large_grid
-from twodiscs.sampling.starts import components
+from twodiscs.sampling.starts import ROUNDING, given_state
 
 #: The wall and disc events of a trajectory, and the most rows, with hops, because rows are long.
 LONGEST_TRAJECTORY, MOST_ROWS = 1500, 2**13
@@ -159,13 +158,7 @@ def _then(at, lag):
 
 def state_of(scene, start):
     """Return ``start`` as an array of numbers, checked as in ``state_of``."""
-    names, n = components(scene), scene.discs
-    try:
-        state = np.array([float(value) for value in start])
-    except (TypeError, ValueError, OverflowError):
-        state = np.array([])
-    if state.size != len(names) or not np.isfinite(state).all():
-        raise no_state(names, start)
+    n, state = scene.discs, np.array(given_state(scene, start))
     (x, y), velocities = state[: 2 * n].reshape(2, n), state[2 * n :]
     for axis in scene.walled:
         centres = x if axis == "x" else y

@@ -32,7 +32,6 @@ from twodiscs.dynamics.law import (
 )
 from twodiscs.dynamics.two import strip
 from twodiscs.model.events import DECLARED, EVENTS, HOPS, WALLS, by_kind
-from twodiscs.model.family import of_family
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.starts import COMPONENTS, draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
@@ -245,6 +244,11 @@ def replica_duration(scene):
     return duration
 
 
+def expected_event_rate(scene):
+    """Return the exact rate of wall hits and disc collisions."""
+    return exact.event_rate(scene)
+
+
 def block_replicas(scene):
     """Return the number of replicas of a block."""
     return REPLICAS
@@ -272,14 +276,21 @@ def run_blocks(
     )  # fmt: skip
 
 
+def planned(needed, affordable):
+    """Return the number of planned blocks, the number ``needed``: rare hops have own parts."""
+    return needed
+
+
 def cost_ratio(scene):
     """Return the time of an event, with the draws of starts, over its time in the plain scene."""
     return 1 + strip.PROPOSAL * proposals_per_event(scene)
 
 
 def proposals_per_event(scene):
-    """Return the proposals of initial states for each event; 0 where they are few."""
-    return of_family(scene, "sampling", "proposals_per_event")(scene, replica_duration(scene))
+    """Return the proposals of initial states for each event; 0 in plain scenes, with few."""
+    if scene.is_plain:
+        return 0.0
+    return 1 / exact.free_fraction(scene) / (exact.event_rate(scene) * replica_duration(scene))
 
 
 def work_per_event(scene):

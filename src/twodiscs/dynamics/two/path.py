@@ -33,12 +33,11 @@ from twodiscs.dynamics.law import (
     law_of,
     next_event,
 )
-from twodiscs.dynamics.trajectory import ROUNDING, no_state
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.scene import ENERGY
+from twodiscs.model.two import ENERGY
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.starts import components
+from twodiscs.sampling.starts import ROUNDING, components, given_state
 from twodiscs.theory import exact
 
 #: Wall and disc events that a trajectory lasts at most, on average.
@@ -204,7 +203,7 @@ def events_of(scene, state, duration, seed=0):
             return
 
 
-def event_rate(scene):
+def trajectory_rate(scene):
     """Return the wall and disc events and kicks per time, and what jumps cost in their unit."""
     work = exact.work_per_event(replace(scene, friction=0.0))
     return exact.event_rate(scene) * work + scene.friction
@@ -216,7 +215,7 @@ def usual_duration(scene):
     It is no longer than ``LONGEST_TRAJECTORY`` wall and disc events on average.
     """
     hops = [exact.mean_times(scene)[hop] for hop in HOPS if scene.is_possible(hop)]
-    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / event_rate(scene))
+    duration = min(8 * max(hops, default=math.inf), LONGEST_TRAJECTORY / trajectory_rate(scene))
     return nearest_power_of_two(duration)
 
 
@@ -227,14 +226,7 @@ def state_of(scene, start):
     of disc 2 serves. Raises ``InputError`` for anything else, for discs that overlap or lie
     outside, and for another energy than 1/2.
     """
-    names = components(scene)
-    try:
-        state = dict(zip(names, map(float, start), strict=True))
-    except (TypeError, ValueError, OverflowError):
-        state = {}
-    if len(state) != len(names) or not all(map(math.isfinite, state.values())):
-        raise no_state(names, start)
-    apart = {}
+    state, apart = dict(zip(components(scene), given_state(scene, start), strict=True)), {}
     for axis in scene.axes:
         side = scene.side(axis)
         if axis in scene.walled:

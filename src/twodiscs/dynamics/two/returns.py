@@ -16,6 +16,7 @@ from twodiscs.dynamics.ensemble import (
 )
 from twodiscs.dynamics.kicks import open_kicks
 from twodiscs.dynamics.law import after_event, crosses, crossing_time, law_of
+from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import COMPONENTS, origins, start_on_surface
 from twodiscs.sampling.streams import open_stream
@@ -124,6 +125,8 @@ def record_returns(
 
 def record_intervals(scene, hop, seed, first, stop, chains, returns, bins, sums, going):
     """Record the intervals between hops as ``record_returns`` does; ``bins`` are (width, wide)."""
+    if scene.is_plain:  # initial states are drawn on the surface of vertical hops only
+        scene, hop = hopping_along(scene, hop, "y")
     return record_returns(
         np.uint64(seed), first, stop, chains, LANES, returns, law_of(scene), *origins(scene),
         True if hop == "horizontal_hop" else None, *bins, sums, going, new_kicks(scene, LANES),
@@ -145,4 +148,6 @@ def interval_cost(scene):
     return 1.0
 
 
-events_per_interval = exact.events_per_interval
+def events_per_interval(scene, hop):
+    """Return the mean number of wall and disc events between two hops, weighted by their work."""
+    return exact.events_per_interval(scene, hop)

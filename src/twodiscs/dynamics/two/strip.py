@@ -34,8 +34,8 @@ from twodiscs.dynamics.ensemble import (
 from twodiscs.dynamics.kicks import before_kick, open_kicks, renew_kicks
 from twodiscs.dynamics.law import END_OF_TIME, after_event, crosses, law_of, next_event
 from twodiscs.model.events import AXIS, HOPS
-from twodiscs.model.family import of_family
 from twodiscs.model.radii import key, stream_seed
+from twodiscs.model.scene import hopping_along
 from twodiscs.points.dynamics import Strata, StripCount
 from twodiscs.points.strata import PARTS, fractions_of_speeds, stratified_mean
 from twodiscs.sampling.blocks.rounds import SequentialRun, on_grid
@@ -166,8 +166,11 @@ def rare_hops(scene):
     """Return the hops that are counted from strips: those that are rare because of a neck.
 
     Hops are left out if the acceptance of starts in their strip is too small, as for whole scenes
-    (``exact.MIN_FRACTION``). They are counted like all other events, mostly without a count.
+    (``exact.MIN_FRACTION``). They are counted like all other events, mostly without a count. More
+    than two discs have no strips.
     """
+    if scene.discs > 2:
+        return ()
     return tuple(
         hop
         for hop in HOPS
@@ -266,17 +269,13 @@ def run_blocks(scene, hop, strip, seed, first, stop, *, replicas=REPLICAS, lanes
     """
     speeds = len(fractions_of_speeds(scene.velocity_components))
     sizes = strip.within / PARTS, scene.fastest / PARTS, speeds
-    scene, hop = of_family(scene, "sampling", "near_hop")(scene, hop)
+    if scene.is_plain:  # initial states are drawn near the surface of horizontal hops only
+        scene, hop = hopping_along(scene, hop, "x")
     horizontal = True if hop == "horizontal_hop" else None
     return count_hops(
         np.uint64(seed), first, stop, replicas, lanes, strip.time, strip.fastest, sizes,
         law_of(scene), *origins(scene, hop, strip.within), horizontal, new_kicks(scene, lanes),
     )  # fmt: skip
-
-
-def planned(scene, blocks, affordable):
-    """Return the number of planned blocks, the number needed; strips have parts of the budget."""
-    return blocks
 
 
 def run_of(scene, hop, target, budget, seed):

@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twodiscs.model.families.many import arrangement, is_ordered
+from twodiscs.model.many import arrangement, is_ordered
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.many import chains, measures

@@ -32,7 +32,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twodiscs.model.checks import InputError, check_number
-from twodiscs.model.families.many import is_ordered
+from twodiscs.model.many import is_ordered
 from twodiscs.theory.many.rates import Measures
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 from twodiscs.model.checks import MOST_WITH_VOLUME
 from twodiscs.model.events import DECLARED, EVENTS, by_kind
-from twodiscs.model.families.many import is_ordered
+from twodiscs.model.many import is_ordered
 from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
 from twodiscs.theory.flux import constant
@@ -105,3 +105,18 @@ def event_rates(scene):
         event: DECLARED[event].ways / 2 * constant_of * part if scene.is_possible(event) else 0.0
         for event, part in surfaces(scene, known).items()
     }
+
+
+def volume(scene):
+    """Return the volume of a ``Scene``, None if no exact value is known."""
+    return volume_and_areas(scene)[0]
+
+
+def areas(scene):
+    """Return {event: area} of a ``Scene``, values None if not known."""
+    return volume_and_areas(scene)[1]
+
+
+def rate(scene, event):
+    """Return the rate of ``event``, None if no exact value is known."""
+    return event_rates(scene)[event]

@@ -135,7 +135,6 @@ def _reads(configuration):
 
 STUDY = Study(
     "effects",
-    families=("plain", "effects"),
     builds="how each effect changes the mean times, and its cost",
     tables=(Effects, EffectsCost, EffectsCurves),
     seconds=40.0,

@@ -13,7 +13,7 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import DECLARED, SHELLS
-from twodiscs.model.families.many import multiplicity
+from twodiscs.model.many import multiplicity
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import methods

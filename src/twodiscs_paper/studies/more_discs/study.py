@@ -86,7 +86,6 @@ def _due(configuration):
 
 STUDY = Study(
     "more_discs",
-    families=("many",),
     builds="mean times of three to 64 discs",
     tables=(MoreDiscs,),
     seconds=10.0,

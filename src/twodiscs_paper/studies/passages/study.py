@@ -145,7 +145,6 @@ def _due(configuration):
 
 STUDY = Study(
     "passages",
-    families=("plain", "effects", "many"),
     builds="which hops are passages, and diffusion by them",
     tables=(Passages,),
     seconds=50.0,

@@ -1,6 +1,6 @@
 """The geometry of N equal discs in the plane, between walls or on a ring along x.
 
-Functions have the same names as in ``families.plain`` and ``families.effects``.
+Functions have the same names as in ``model.two``.
 """
 
 import math
@@ -8,11 +8,6 @@ from fractions import Fraction
 from functools import cache
 
 from twodiscs.model.checks import MOST_WITH_VOLUME, InputError
-
-__all__ = [
-    "check", "confined", "ergodic_components", "largest_radius", "multiplicity", "passed",
-    "require_followable",
-]  # fmt: skip
 
 #: The effects of more than two discs.
 POSSIBLE = ("periodic", "moment_of_inertia", "friction")

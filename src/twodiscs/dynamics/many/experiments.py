@@ -1,34 +1,12 @@
-"""The molecular dynamics of more than two discs."""
+"""The experiments of more than two discs: their costs, windows and arguments."""
 
 import math
 
 from twodiscs.dynamics.ensemble import RETURNS
 from twodiscs.dynamics.many import kernels, lockstep
-from twodiscs.dynamics.many.kernels import kicks_of
-from twodiscs.dynamics.many.lockstep import expected_event_rate, replica_duration
-from twodiscs.dynamics.many.path import (
-    advance_all,
-    events_of,
-    new_wraps,
-    state_of,
-    trajectory_rate,
-    unwrap,
-    usual_duration,
-)
 from twodiscs.model.checks import InputError
 from twodiscs.model.events import HOPS
 from twodiscs.sampling.many.initial import LARGE
-
-__all__ = [
-    "INTERVAL_SUMS", "PASSAGES", "advance_all", "block_replicas", "cost_ratio", "events_of",
-    "events_per_interval", "expected_event_rate", "expected_rate", "interval_cost",
-    "intervals_of_chain", "kicks_of", "mean_interval", "new_wraps", "planned", "rare_hops",
-    "record_intervals", "replica_duration", "run_blocks", "state_of", "trajectory_rate", "unwrap",
-    "usual_duration", "work_per_event",
-]  # fmt: skip
-
-#: The module that follows hops, imported by this name: an edit of it renews no counts of events.
-PASSAGES = "twodiscs.dynamics.many.passages"
 
 #: Numbers that are summed in each bin of intervals: Σ c, Σ c² and Σ c n.
 INTERVAL_SUMS = 3
@@ -48,6 +26,16 @@ KICK, DRAW = 0.45, 8.0
 LONGER = 64
 
 
+def replica_duration(scene):
+    """Return the time T of one replica, a power of two, see ``lockstep``."""
+    return lockstep.replica_duration(scene)
+
+
+def expected_event_rate(scene):
+    """Return the rate of wall hits and disc collisions, an estimate if it is not known."""
+    return lockstep.expected_event_rate(scene)
+
+
 def expected_rate(scene, event):
     """Return the rate of all events that count as ``event``; 0 if it is not known."""
     return lockstep.expected_rates(scene).get(event, 0.0)
@@ -65,14 +53,9 @@ def block_replicas(scene):
     return lockstep.replicas_of(scene)
 
 
-def planned(scene, blocks, affordable):
-    """Return the number of planned blocks: the number needed, if the rate is known."""
-    return min(blocks, affordable)
-
-
-def rare_hops(scene):
-    """Return no hop: strips exist for two discs only."""
-    return ()
+def planned(needed, affordable):
+    """Return the number of planned blocks: the number ``needed``, within the budget."""
+    return min(needed, affordable)
 
 
 def work_per_event(scene):
@@ -94,7 +77,9 @@ def cost_ratio(scene):
     return 1 + pair * scene.discs * (scene.discs - 1) / 2
 
 
-interval_cost = cost_ratio
+def interval_cost(scene):
+    """Return the time of an event over the time of an event of the plain ensemble."""
+    return cost_ratio(scene)
 
 
 def mean_interval(scene, hop):

@@ -1,1 +1,0 @@
-"""The geometry of each family of scenes: largest radius, open hops, number of components."""

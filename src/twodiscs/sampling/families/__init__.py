@@ -1,1 +1,0 @@
-"""Sampling for each family of scenes: initial states, and Monte Carlo of volume and areas."""

@@ -1,1 +1,0 @@
-"""The exact theory of each family of scenes; ``theory.exact`` fetches it."""
