@@ -196,38 +196,6 @@ def test_a_configuration_that_makes_no_sense(mapping):
         load.load(mapping)
 
 
-@pytest.mark.parametrize(
-    ("line", "where", "text", "read"),
-    [
-        ("seed: 010", "seed", "010", 8),
-        ("seed: 1:30", "seed", "1:30", 90),
-        ("seed: 0b11", "seed", "0b11", 3),
-        ("seed: -1_5", "seed", "-1_5", -15),
-        ("seed: 0x1F", "seed", "0x1F", 31),
-        ("accuracy: 1:30.5", "accuracy", "1:30.5", 90.5),
-        ("scenes: [{radii: [0.1, 1_0.5]}]", "scenes[0].radii[1]", "1_0.5", 10.5),
-        ("scenes: [{name: 0o1, box: {width: 1:30}}]", "scenes[0].box.width", "1:30", 90),
-        ("010: 1", "the file", "010", 8),
-    ],
-)
-def test_numbers_that_yaml_reads_as_others_are_refused(tmp_path, line, where, text, read):
-    path = tmp_path / "a.yaml"
-    path.write_text(f"results: a\n{line}\n", encoding="utf-8")
-    with pytest.raises(InputError) as caught:
-        load.read(path)
-    asked = "must be a decimal number, or text in quotes, not"
-    assert str(caught.value) == f"{path}, line 2: {where} {asked} {text}: YAML reads {read}"
-
-
-@pytest.mark.parametrize(
-    "text", ["0", "-7", "+.5", "1.", "1e6", "2.5E-01", "1.e+3", ".inf", "'010'"]
-)
-def test_numbers_that_everyone_reads_in_one_way_are_taken(tmp_path, text):
-    (tmp_path / "a.yaml").write_text(f"a: [{text}]\n", encoding="utf-8")
-    (value,) = load.read(tmp_path / "a.yaml")["a"]
-    assert float(value) == float(text.strip("'").replace(".inf", "inf"))
-
-
 # The face ---------------------------------------------------------------------------------------
 
 

@@ -202,7 +202,7 @@ def test_a_new_configuration_is_one_and_is_not_written_over(tmp_path, monkeypatc
 
 
 def test_a_new_configuration_needs_no_package_of_the_workflow(tmp_path):
-    absent = "import sys; sys.modules |= dict.fromkeys(('snakemake', 'yaml', 'jsonschema'));"
+    absent = "import sys; sys.modules |= dict.fromkeys(('snakemake', 'yaml', 'pydantic'));"
     program = f"{absent} from twodiscs.cli import main; main()"
     words = [sys.executable, "-c", program, "new", "my.yaml"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)

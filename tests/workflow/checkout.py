@@ -10,7 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-import jsonschema  # noqa: F401
+import pydantic  # noqa: F401
 import yaml
 from snakemake import cli
 

@@ -1,12 +1,9 @@
 """The Snakefiles: what Snakemake's linter says of them, and the pages about them."""
 
-import json
 import re
 
-import jsonschema
 import pages
 import pytest
-import yaml
 from checkout import REPOSITORY
 
 import twodiscs
@@ -53,13 +50,9 @@ CONFIGURATIONS = [*REPOSITORY.glob("config/**/*.yaml"), *REPOSITORY.glob("tests/
 
 @pytest.mark.parametrize("path", CONFIGURATIONS, ids=lambda path: path.stem)
 def test_editors_find_the_schema_of_a_configuration(path):
-    head, text = path.read_text(encoding="utf-8").split("\n", 1)
+    head = path.read_text(encoding="utf-8").split("\n", 1)[0]
     (place,) = re.fullmatch(r"# yaml-language-server: \$schema=(.+)", head).groups()
-    schema = json.loads((path.parent / place).read_text(encoding="utf-8"))
-    # As YAML 1.2 has it, 2e9 is a number.
-    numbers = re.sub(r"\b\de-?\d\b", lambda found: str(float(found[0])), text)
-    validator = jsonschema.Draft202012Validator(schema)
-    assert [error.message for error in validator.iter_errors(yaml.safe_load(numbers))] == []
+    assert (path.parent / place).resolve() == REPOSITORY / "config/schema.json"
 
 
 def test_the_page_lists_every_target():

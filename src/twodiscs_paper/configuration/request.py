@@ -13,6 +13,7 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError
 from twodiscs.model.radii import key, stream_seed
 from twodiscs_paper.catalogue import STUDIES
+from twodiscs_paper.configuration.model import MOST_EVENTS
 
 #: The stages whose jobs run once for each radius, and the module that does the work of a stage.
 STAGES = {
@@ -34,9 +35,6 @@ GATHERED = {
 #: The thickness of shells in jobs that sample no area. It has no effect; as a constant it keeps an
 #: edit of the configured thickness from running these jobs again.
 NO_SHELL = 0.5
-
-#: The most events that any budget allows.
-MOST_EVENTS = 10**15
 
 
 @dataclass(frozen=True)
