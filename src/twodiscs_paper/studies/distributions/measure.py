@@ -12,6 +12,7 @@ infinite, and only the first form can be tested.
 """
 
 import math
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +22,6 @@ from twodiscs.dynamics.ensemble import nearest_power_of_two
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
 from twodiscs.model.box import Box
-from twodiscs.model.checks import InputError, check_choice, check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.points.estimates import Estimate, density_at_zero, mean_of
@@ -34,6 +34,7 @@ from twodiscs.sampling.separations import (
 )
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
+from twodiscs_paper.study import row
 
 #: Independent blocks behind an error bar, and the bins of a histogram of intervals.
 BLOCKS, BINS = 128, 512
@@ -57,6 +58,18 @@ DISTANCES = (0.16, 0.08, 0.04, 0.02, 0.01)
 
 #: Widening of the bins of the hazard rate, and the fewest intervals in one.
 GROWTH, FEWEST_IN_BIN = 0.08, 100
+
+#: A hazard is a plateau if the probabilities of its χ² and of its trend exceed this level.
+LEVEL = 1e-3
+
+#: A hazard that ends below this fraction of its fitted rate is compared with 3/t.
+FALLEN = 0.75
+
+#: Late bins begin beyond this fraction of the time that the data reach.
+LATE = 0.6
+
+#: The columns that identify one hop at one radius.
+CASE = ("scene", "width", "height", "radius", "event", "exact_mean")
 
 
 @compiled
@@ -107,14 +120,9 @@ def constant_hazard(bins):
     censored. Returns (rate, trend, chi2, degrees). The rate is λ of the largest likelihood, an
     ``Estimate`` with the error from Fisher's information. The trend is β of a rate ∝ t^β, by one
     Newton step from β = 0. The others are Pearson's χ² of a constant rate and its degrees of
-    freedom. Raises ``InputError`` for fewer than three bins or ``FEWEST`` ends.
+    freedom.
     """
-    bins = list(bins)
     ends = sum(part.count for part in bins)
-    if len(bins) < 3 or ends < FEWEST:
-        raise InputError(
-            f"bins must be at least 3 with {FEWEST} ends in all, not {len(bins)} with {ends}"
-        )
     first, last, _, _, count, alive = np.array(bins, float).T
     width, time = last - first, np.log((first + last) / 2)
     rate = ends / float((alive - count / 2) @ width)
@@ -180,7 +188,7 @@ def near_threshold(box, hop):
     They are ``DISTANCES`` below it, relative to it. Radii at which the hop is too rare even for the
     fewest intervals, in very long boxes, are left out.
     """
-    limit = box.threshold(check_choice("hop", hop, HOPS))
+    limit = box.threshold(hop)
     if limit not in box.thresholds:
         return []
     radii = [float(f"{limit * (1 - distance):.6g}") for distance in DISTANCES]
@@ -193,19 +201,17 @@ def _affordable(scene, hop):
     return BLOCKS * events < 4 * EVENTS
 
 
-def measured(scene, hop, seed, events=EVENTS):
+def _z(deviation, error):
+    return student_deviate(deviation / error, BLOCKS - 1)
+
+
+def measured(start, scene, hop, seed, events=EVENTS):
     """Yield the rows of distributions.csv on the times to the next ``hop`` of a ``Scene``.
 
-    The columns that name scene and hop are missing. ``events`` is the most wall and disc events
-    that the intervals may take, and the first passages as well. Raises ``InputError`` for a scene
-    with effects, a hop that is unknown or blocked, and numbers out of range.
+    ``start`` has the columns that name scene and hop. ``events`` is the most wall and disc events
+    that the intervals may take, and the first passages as well.
     """
-    check_choice("hop", hop, HOPS)
-    constant = tails.tail_constant(scene, hop)
-    if constant is None:
-        raise InputError(f"hop {hop!r} is blocked at radius {scene.radius!r}: it has no intervals")
-    seed, events = check_integer("seed", seed, 0), check_integer("events", events)
-    mean = exact.mean_times(scene)[hop]
+    constant, mean = tails.tail_constant(scene, hop), exact.mean_times(scene)[hop]
     rate = exact.event_rate(scene)
     affordable = int(nearest_power_of_two(max(1.0, events / (rate * mean)))) // BLOCKS
     block = max(1, min(affordable, MOST_INTERVALS // BLOCKS))
@@ -221,49 +227,53 @@ def measured(scene, hop, seed, events=EVENTS):
     intervals, passages = BLOCKS * block, BLOCKS * passages
     time, square, cut_square, passage, cut_passage = mean_of(means)
 
-    yield _row("mean", intervals, time, mean, z=_z(time.value - mean, time.stderr))
-    scale = 1 / (2 * mean)
+    of_intervals = start | {"count": intervals}
+    z = _z(time.value - mean, time.stderr)
+    yield row(of_intervals, time, quantity="mean", reference=mean, z=z)
     variation = Estimate(square.value / mean**2 - 1, square.stderr / mean**2, BLOCKS)
-    yield _row("squared_cv", intervals, variation, 1.0)
+    yield row(of_intervals, variation, quantity="squared_cv", reference=1.0)
+    scale = 1 / (2 * mean)
     for last, times, squares in ((None, passage, square), (cut, cut_passage, cut_square)):
-        row = _row("first_passage", passages, times, scale * squares.value, last=last)
-        row["reference_stderr"] = scale * squares.stderr
+        due, error = scale * squares.value, scale * squares.stderr
+        found = {"last": last, "reference": due, "reference_stderr": error}
         if last or not constant:
-            deviation = times.value - row["reference"]
-            row["z"] = _z(deviation, math.hypot(times.stderr, row["reference_stderr"]))
-        yield row
+            found["z"] = _z(times.value - due, math.hypot(times.stderr, error))
+        yield row(start, times, quantity="first_passage", count=passages, **found)
     counts = histogram[:-1]
     if 4 * width <= draw.beyond_x:
         zero = density_at_zero(counts[:2], intervals, width)
         due = tails.density_at_zero(scene, hop)
-        z = (zero.value - due) / zero.stderr
-        yield _row("density_at_zero", intervals, zero, due, first=0.0, last=2 * width, z=z)
+        ends = {"first": 0.0, "last": 2 * width, "z": (zero.value - due) / zero.stderr}
+        yield row(of_intervals, zero, quantity="density_at_zero", reference=due, **ends)
     bins = list(hazard(counts, intervals, width))
-    yield from _constancy([part for part in bins if part.first >= FIRST * mean], mean)
+    yield from _constancy(start, [part for part in bins if part.first >= FIRST * mean], mean)
     for part in bins:
-        estimate = Estimate(part.rate, part.error, part.count)
-        yield _row("hazard", part.count, estimate, None, first=part.first, last=part.last)
+        found = Estimate(part.rate, part.error, part.count)
+        ends = {"first": part.first, "last": part.last, "count": part.count}
+        yield row(start, found, quantity="hazard", **ends)
 
 
-def _constancy(bins, mean):
+def _constancy(start, bins, mean):
     """Yield the rows that test whether the hazard is constant over ``bins``, if these suffice."""
     if len(bins) < 3 or sum(part.count for part in bins) < FEWEST:
         return
     fit, trend, chi2, degrees = constant_hazard(bins)
-    ends = {"first": bins[0].first, "last": bins[-1].last}
-    z, p = (fit.value - 1 / mean) / fit.stderr, chi2_p(chi2, degrees)
-    yield _row("rate", fit.n, fit, 1 / mean, **ends, z=z, chi2=chi2, degrees=degrees, p=p)
+    ends = start | {"first": bins[0].first, "last": bins[-1].last, "count": fit.n}
+    tested = {"chi2": chi2, "degrees": degrees, "p": chi2_p(chi2, degrees)}
+    z = (fit.value - 1 / mean) / fit.stderr
+    yield row(ends, fit, quantity="rate", reference=1 / mean, z=z, **tested)
     z = trend.value / trend.stderr
-    yield _row("trend", trend.n, trend, 0.0, **ends, z=z, p=two_sided_p(z))
+    yield row(ends, trend, quantity="trend", reference=0.0, z=z, p=two_sided_p(z))
 
 
 def rows(scenes, seed, events=EVENTS):
-    """Yield the rows of distributions.csv.
+    """Return the rows of distributions.csv.
 
     ``scenes`` are dicts of name, box, event and radii of hops. For the first scene, the radii near
     the thresholds of its hops are added (``near_threshold``). Every case has its own stream, from
-    the root ``seed``, its scene, hop and radius. Raises ``InputError`` as ``measured`` does.
+    the root ``seed``, its scene, hop and radius. The rows on the shapes of hazards come last.
     """
+    found = []
     for i, case in enumerate(scenes):
         box = Box(**case["box"])
         cases = [(case["event"], radius) for radius in case["radii"]]
@@ -274,24 +284,55 @@ def rows(scenes, seed, events=EVENTS):
             stream = stream_seed(seed, case["name"], "intervals", f"{hop} {key(radius)}")
             start = {"scene": case["name"], "width": box.width, "height": box.height}
             start |= {"radius": radius, "event": hop, "exact_mean": exact.mean_times(scene)[hop]}
-            for row in measured(scene, hop, stream, events):
-                yield row | start
+            found.append([*measured(start, scene, hop, stream, events)])
+    return [*chain(*found), *chain(*map(shape, found))]
 
 
-def _z(deviation, error):
-    return student_deviate(deviation / error, BLOCKS - 1)
+# The shape of a hazard: constant within the errors, or falling, and how far ---------------------
 
 
-def _row(quantity, count, estimate, reference, first=None, last=None, z=None, **more):
-    """Return a row; ``more`` are columns that other rows leave empty."""
-    return {
-        "quantity": quantity,
-        "first": first,
-        "last": last,
-        "count": count,
-        "estimate": estimate.value,
-        "stderr": estimate.stderr,
-        "reference": reference,
-        "z": z,
-        **more,
-    }
+def is_drifted(row):
+    """Return whether discs can avoid the hop of a ``row`` by a drift past each other."""
+    side = row["height"] if row["event"] == "vertical_hop" else row["width"]
+    return row["radius"] <= side / 4
+
+
+def late_hazard(late):
+    """Return the hazard of the bins ``late`` as an ``Estimate``: hops over their time at risk."""
+    hops = sum(one["count"] for one in late)
+    hazard = hops / sum(one["count"] / one["estimate"] for one in late)
+    return Estimate(hazard, hazard / math.sqrt(hops), hops)
+
+
+def over_cubic(late):
+    """Return the hops in the bins ``late`` over those expected from 3/t, as for a cubic tail."""
+    expected = sum(
+        6 * one["count"] / one["estimate"] / (one["first"] + one["last"]) for one in late
+    )
+    return sum(one["count"] for one in late) / expected
+
+
+def shape(case):
+    """Yield the rows on the shape of a hazard; ``case`` are the rows of one hop at one radius.
+
+    The late bins of a hazard that falls are in the last two fifths of the time of the fitted rate.
+    """
+    of = {one["quantity"]: one for one in case}
+    if "rate" not in of:
+        return
+    rate, start = of["rate"], {name: of["rate"][name] for name in CASE}
+    if min(rate["p"], of["trend"]["p"]) > LEVEL:
+        names = ("first", "last", "count", "estimate", "stderr")
+        yield start | {name: rate[name] for name in names} | {"quantity": "plateau"}
+        return
+    hazards = [one for one in case if one["quantity"] == "hazard"]
+    late = [one for one in hazards if one["first"] >= LATE * rate["last"] and one["count"] > 0]
+    falling = "falling" if is_drifted(rate) else "falling_without_drift"
+    if not late:
+        yield row(start, quantity=falling)
+        return
+    found = late_hazard(late)
+    ends = {"first": late[0]["first"], "last": late[-1]["last"], "count": found.n}
+    if found.value < FALLEN * rate["estimate"]:
+        yield row(start, quantity="over_cubic", estimate=over_cubic(late), **ends)
+    yield row(start, found, quantity=falling, **ends)

@@ -73,13 +73,12 @@ class Distributions(Table):
         ),
     }
 
-    @classmethod
-    def rows(cls, scenes, seed, events):
+    @staticmethod
+    def rows(scenes, seed, events):
         """Return the rows of ``scenes`` (see ``measure.rows``)."""
-        from twodiscs_paper.studies.distributions import measure, shape
+        from twodiscs_paper.studies.distributions import measure
 
-        rows = [cls.empty(**row) for row in measure.rows(scenes, seed, events)]
-        return rows + [cls.empty(**row) for row in shape.shapes(rows)]
+        return measure.rows(scenes, seed, events)
 
 
 def _parameters(configuration):
