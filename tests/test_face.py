@@ -683,77 +683,68 @@ def test_a_time_is_simulated_whatever_the_errors_are():
 # Arithmetic ---------------------------------------------------------------------------------------
 
 
-def of_value(value, stderr, exact, stream, unit="time"):
-    """Return a ``Measurement`` of numbers that are given."""
-    streams = frozenset([("dynamics", stream)])
-    return Measurement(
-        f"q{stream}", value, stderr, exact, 0.0, 1000, "reached", unit, streams=streams
+def test_a_measurement_is_a_number_with_its_error(simulated):
+    hop = simulated["vertical_hop"]
+    assert (f"{hop:.3f}", round(hop, 3)) == (f"{hop.value:.3f}", round(hop.value, 3))
+    assert f"{hop}" == str(hop)
+    assert (hop.u.nominal_value, hop.u.std_dev) == (hop.value, pytest.approx(hop.stderr))
+    blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events="horizontal_hop", budget=1)
+    for wrong in (float, lambda m: m.u, lambda m: f"{m:.3f}"):
+        with pytest.raises(td.InputError, match="must have a value, but its status is impossible"):
+            wrong(blocked["horizontal_hop"])
+
+
+@pytest.mark.parametrize("scene", [SCENE, td.Scene(1.5, 1.0, 0.2, discs=3)])
+def test_numbers_of_one_run_are_correlated_as_its_counts_are(scene):
+    """All hits are those of the right and the top wall, in every replica: no error is left."""
+    md = td.simulate(scene, duration=1e4, seed=3)
+    walls = ("right_wall", "top_wall", "any_wall")
+    hits = [scene.share(w) * scene.multiplicity(w) / md[w].u for w in walls]
+    left = hits[0] + hits[1] - hits[2]
+    assert abs(left.nominal_value) < 1e-12
+    assert left.std_dev < 1e-6 * hits[2].std_dev
+    again = td.simulate(scene, duration=1e4, seed=4)
+    apart = md["any_wall"].u - again["any_wall"].u
+    assert apart.std_dev == pytest.approx(
+        math.hypot(md["any_wall"].stderr, again["any_wall"].stderr)
     )
 
 
-@pytest.mark.parametrize(
-    ("function", "name", "unit"),
-    [
-        (lambda a, b: a + b, "q1 + q2", "time"),
-        (lambda a, b: a - b, "q1 − q2", "time"),
-        (lambda a, b: a * b, "q1 × q2", "time·time"),
-        (lambda a, b: a / b, "q1 / q2", ""),
-        (lambda a, b: 2 * a - b / np.float64(4), "(2 × q1) − (q2 / 4)", "time"),
-        (lambda a, b: 1 / a - 3.0 / b, "(1 / q1) − (3 / q2)", "1/time"),
-        (lambda a, b: -a + b, "−q1 + q2", "time"),
-    ],
-)
-def test_errors_go_through_arithmetic(function, name, unit):
-    """Against derivatives by differences of the same function of plain numbers."""
-    one, other = of_value(3.0, 0.02, 2.9, 1), of_value(5.0, 0.07, 5.1, 2)
-    found, step = function(one, other), 1e-6
-    slopes = [
-        (function(3 + step * i, 5 + step * k) - function(3 - step * i, 5 - step * k)) / (2 * step)
-        for i, k in ((1, 0), (0, 1))
-    ]
-    assert found.value == pytest.approx(function(3.0, 5.0), rel=1e-14)
-    assert found.exact == pytest.approx(function(2.9, 5.1), rel=1e-14)
-    assert found.stderr == pytest.approx(math.hypot(0.02 * slopes[0], 0.07 * slopes[1]), rel=1e-8)
-    assert found.z == pytest.approx((found.value - found.exact) / found.stderr)
-    assert (found.status, found.unit, found.count) == ("derived", unit, 1000)
-    assert found.quantity.strip("()") == name.strip("()")
+@pytest.mark.parametrize("scene", [SCENE, td.Scene(1.5, 1.0, 0.2, discs=3)])
+def test_ratios_of_sampled_quantities_scatter_as_their_errors_say(scene):
+    """Over 30 seeds: a spread over the stated error is within 5 of its errors, 1/√58."""
+    for one, other in (("any_wall_area", "volume"), ("top_wall_area", "disc_collision_area")):
+        ratios = [
+            found[one].u / found[other].u
+            for found in (td.sample(scene, 1, seed=seed) for seed in range(30))
+        ]
+        spread = np.std([ratio.nominal_value for ratio in ratios], ddof=1)
+        stated = math.sqrt(np.mean([ratio.std_dev**2 for ratio in ratios]))
+        assert abs(spread / stated - 1) < 5 / math.sqrt(58)
 
 
 def test_differences_of_seeds_scatter_as_their_errors_say():
     """χ² of 15 differences is within its 1e-6 and 1 − 1e-6 quantiles."""
     found = [
-        td.simulate(SCENE, duration=1e5, seed=seed, events="disc_collision")["disc_collision"]
+        td.simulate(SCENE, duration=1e5, seed=seed, events="disc_collision")["disc_collision"].u
         for seed in range(30)
     ]
-    differences = [a - b for a, b in zip(found[::2], found[1::2], strict=True)]
-    assert {difference.exact for difference in differences} == {0}
-    assert 1.21 < sum(difference.z**2 for difference in differences) < 56.5
+    scores = [
+        (a - b).nominal_value / (a - b).std_dev
+        for a, b in zip(found[::2], found[1::2], strict=True)
+    ]
+    assert 1.21 < sum(z**2 for z in scores) < 56.5
 
 
-def test_what_is_not_independent_is_not_combined(simulated, sampled):
-    found = simulated["any_wall"]
-    same = td.simulate(SCENE, 0.05, seed=7, budget=1e6, events="any_wall", name="one")["any_wall"]
-    for other in (found, same, simulated["vertical_hop"], 2 * found, found + 1):
-        with pytest.raises(td.InputError, match="must have different random numbers"):
-            found - other
-    another = td.simulate(SCENE, 0.05, seed=8, budget=1e6, events="any_wall")["any_wall"]
-    with pytest.raises(td.InputError, match="must have different random numbers"):
-        (found - another) / another
-    with pytest.raises(td.InputError, match="must have one unit, not length⁴ and time"):
-        sampled["volume"] + found
-    assert (sampled["volume"] / found).unit == "length⁴/time"
-    blocked = td.simulate(td.Scene(1.5, 1.0, 0.3), 0.05, events="horizontal_hop", budget=1)
-    for wrong in (float, lambda m: m + 1, lambda m: found - m):
-        with pytest.raises(td.InputError, match="must have a value, but its status is impossible"):
-            wrong(blocked["horizontal_hop"])
-    with pytest.raises(td.InputError, match="the divisor must not be 0"):
-        found / 0
-    with pytest.raises(TypeError):
-        found + "1"
-    assert float(found) == found.value
-    shell = sampled["any_wall_area"] / sampled["any_wall_area"].expectation
-    assert shell.expectation == pytest.approx(1)
-    assert shell.z == pytest.approx(
-        (sampled["any_wall_area"].value - sampled["any_wall_area"].expectation)
-        / sampled["any_wall_area"].stderr
-    )
+def test_a_radius_that_does_not_fit_has_a_row_that_says_why():
+    table = td.exact_table(1.5, 1.0, [0.2, 0.9])
+    assert table["regime"][0.9].startswith("radius 0.9 does not fit")
+    assert math.isnan(table["volume"][0.9])
+    assert table["volume"][0.2] == td.volume(SCENE)
+    scan = td.scan(1.5, 1.0, [0.9, 0.2], 0.3, events="any_wall", budget=1)
+    assert scan.radii == [0.2]
+    assert scan.frame()["status"][0.9, ""].startswith("radius 0.9 does not fit")
+    assert "radius 0.9 does not fit" in str(scan)
+    for call in (td.exact_table, td.scan):
+        with pytest.raises(td.InputError, match=r"radius 0\.9 does not fit"):
+            call(1.5, 1.0, [0.9])

@@ -146,7 +146,7 @@ def test_the_face_has_the_coefficient_and_the_curve():
     frame = found.frame()
     assert list(frame.columns) == ["kappa", "stderr"]
     assert frame.index[-1] == pytest.approx(10 * scene.range_x, rel=1e-12)
-    assert "fraction of horizontal hops that are passages  0." in str(found)
+    assert "fraction of horizontal hops that are passages 0." in str(found)
     assert sum(found.clusters.values()) == 2**14
     again = td.transmission(scene, "horizontal_hop", hops=2**14, seed=1)
     assert again.coefficient == kappa
@@ -180,7 +180,7 @@ def test_more_discs_have_a_coefficient_too(tmp_path):
     other = td.transmission(four, "horizontal_hop", 2**11)
     assert other.exact_mean is None
     assert other.passage_time is None
-    assert "fraction of horizontal hops that are passages  0.8" in str(other)
+    assert "fraction of horizontal hops that are passages 0.8" in str(other)
     assert "mean time" not in str(other)
     other.save(tmp_path / "kappa.json")
     assert td.load_result(tmp_path / "kappa.json").coefficient == other.coefficient

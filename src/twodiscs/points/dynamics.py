@@ -165,3 +165,16 @@ class DynamicsPoint(Point):
     def combination(self, weights):
         """Return Σ weight × ⟨N⟩ as an ``Estimate``, given {event: weight} (see ``estimates``)."""
         return estimates.combination(weights, self.counts, self.products, self.replicas)
+
+    def moments(self):
+        """Return the names of mean times, the mean counts ⟨N⟩ and their covariances.
+
+        They are of all events that are counted from initial states in all of configuration space.
+        """
+        events, n = [event for event in self.counted if event not in self.strips], self.replicas
+        totals = [self.counts[event] for event in events]
+        covariances = np.zeros((len(events), len(events)))
+        for (i, a), (k, b) in combinations_with_replacement(enumerate(events), 2):
+            spread = n * self.products[f"{a}*{b}"] - totals[i] * totals[k]
+            covariances[i, k] = covariances[k, i] = spread / (n * n * (n - 1))
+        return [f"{event}_time" for event in events], np.array(totals) / n, covariances

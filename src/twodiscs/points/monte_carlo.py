@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import ClassVar, NamedTuple
 
+import numpy as np
+
 from twodiscs.model.checks import InputError, check_choice
 from twodiscs.points import estimates
 from twodiscs.points.base import Point, decoded, require_positive
@@ -34,6 +36,16 @@ class SampledPoint(Point):
     def estimate(self, quantity):
         """Return the ``Estimate`` of a sampled quantity, None without a hit."""
         return self.sampled(check_choice("quantity", quantity, self.quantities)).estimate
+
+    def moments(self):
+        """Return the names of quantities, the means of their weights and their covariances.
+
+        The weight of a sample in a set is 1.
+        """
+        names = [*self.quantities]
+        means = np.array([self.mean_product(name) for name in names])
+        joint = np.array([[self.mean_product(a, b) for b in names] for a in names])
+        return names, means, (joint - np.outer(means, means)) / self.samples
 
 
 @dataclass(frozen=True)
@@ -77,6 +89,19 @@ class MonteCarloPoint(SampledPoint):
             return None
         estimate = estimates.binomial_estimate(part.hits, self.samples, part.measure)
         return Sampled(estimate, part.hits, min(part.hits, self.samples - part.hits), part.epsilon)
+
+    def mean_product(self, *names):
+        """Return the share of samples in all sets of these ``names``, one or two.
+
+        All shells are parts of the volume. The overlap of two shells is known for the right and the
+        top wall; others are taken as independent, which is right to the square of the thickness.
+        """
+        shares = {name: self.quantities[name].hits / self.samples for name in names}
+        if len(shares) == 1 or "volume" in names:
+            return min(shares.values())
+        if {*names} == {*WALL_AREAS} and self.right_and_top is not None:
+            return self.right_and_top / self.samples
+        return math.prod(shares.values())
 
     def all_walls(self, scene):
         """Return the area of all walls from two shells as ``Sampled``, or None."""
@@ -156,6 +181,16 @@ class InsertionPoint(SampledPoint):
     def _sampled(self, estimate, effective, misses):
         return Sampled(estimate, round(effective), min(effective, misses))
 
+    def _joint(self, a, b):
+        if a == b:
+            return self.quantities[a].squares
+        return self.products[f"{a}*{b}" if f"{a}*{b}" in self.products else f"{b}*{a}"]
+
+    def mean_product(self, *names):
+        """Return the mean weight of one of ``names``, or the mean product of two weights."""
+        total = self._joint(*names) if len(names) == 2 else self.quantities[names[0]].sum
+        return total / (self.unit * self.samples)
+
     def _moments(self, weights):
         """Return ⟨w⟩, ⟨w²⟩ and the effective number of samples of Σ_q weight × quantity.
 
@@ -163,14 +198,8 @@ class InsertionPoint(SampledPoint):
         """
         parts, samples = self.quantities, self.unit * self.samples
         scale = {name: weight * parts[name].measure for name, weight in weights.items()}
-
-        def joint(a, b):
-            if a == b:
-                return parts[a].squares
-            return self.products[f"{a}*{b}" if f"{a}*{b}" in self.products else f"{b}*{a}"]
-
         mean = math.fsum(scale[a] * parts[a].sum for a in scale) / samples
-        second = math.fsum(scale[a] * scale[b] * joint(a, b) for a in scale for b in scale)
+        second = math.fsum(scale[a] * scale[b] * self._joint(a, b) for a in scale for b in scale)
         effective = min(estimates.weighted_estimate(*self._sums(a), 1.0)[1] for a in scale)
         return mean, second / samples, effective
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from numbers import Real
+from functools import cached_property
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from twodiscs.comparison.measured.by_quantity import Quantities
 from twodiscs.comparison.measured.progress import progress_bar
@@ -34,31 +36,28 @@ from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import key, stream_seed
 from twodiscs.model.scene import Scene, check_scene
 from twodiscs.points.estimates import MIN_EVENTS, normal_quantile
+from twodiscs.points.monte_carlo import WALL_AREAS
 from twodiscs.theory import tails
 
 if TYPE_CHECKING:
     import pandas as pd
+    from uncertainties import UFloat
 
 #: Bins resolve how the density of intervals begins if a pair of discs has at most this mean number
 #: of wall hits and collisions in one bin. At .23 to .39 events, extrapolations deviate by less than
 #: 0.5 % from the exact density; at .43 to .77 by up to 3 %, at 1.6 by 3 %, at 4.2 by 35 %.
 RESOLVED_EVENTS = 0.4
 
-#: The columns that people read, and how wide they are.
-COLUMNS = {
-    "quantity": 24, "estimate": 12, "± error": 10, "exact": 12, "unit": 9, "z": 7, "count": 12,
-    "status": 0,
-}  # fmt: skip
+#: The columns that people read.
+COLUMNS = ("quantity", "estimate", "± error", "exact", "unit", "z", "count", "status")
 
 
 @dataclass(frozen=True)
 class Measurement:
     """An estimate of one quantity, beside its exact value.
 
-    ``float(m)`` is the value. ``+``, ``-``, ``*`` and ``/`` combine two measurements with
-    independent random numbers, or one and a number. The result is a measurement whose error adds in
-    quadrature, relative errors for products. Measurements of one run, or of one scene, method and
-    seed, have the same random numbers: these are refused.
+    ``float(m)`` is the value, ``f"{m:.3f}"`` and ``round(m, 3)`` are those of the value. ``m.u`` is
+    a number of the package uncertainties, with which you calculate.
 
     Parameters
     ----------
@@ -78,26 +77,23 @@ class Measurement:
     count : int
         The number of events, or hits.
     status : str
-        As in the tables; "derived" for a result of arithmetic, "too-few" if there is no error, see
-        Notes.
+        As in the tables; "derived" for a pressure or free energy, "too-few" if there is no error,
+        see Notes.
     unit : str
         The unit of value, stderr, exact, expectation and bound.
     expectation : float, optional
         The exact expectation of a shell, for an area.
     bound : float, optional
         A lower bound on a mean time at 95 %, if no event was counted.
-    streams : frozenset, optional
-        Its random streams, which tell whether two measurements are independent.
+    source : Measurements or UFloat, optional
+        The result that has it, whose quantities are correlated, or the number ``u`` itself.
 
     Attributes
     ----------
     relative_stderr : float or None
         The standard error over the size of the value.
-
-    Raises
-    ------
-    InputError
-        For arithmetic with measurements that are not independent, have no value or another unit.
+    u : uncertainties.UFloat
+        The value with its error.
 
     Notes
     -----
@@ -110,9 +106,9 @@ class Measurement:
     Examples
     --------
     >>> v, w = (td.sample(scene, 1e6, seed=n)["volume"] for n in (1, 2))
-    >>> difference = v - w
-    >>> bool(abs(difference.z) < 5), difference.exact, difference.unit
-    (True, 0.0, 'length⁴')
+    >>> difference = v.u - w.u
+    >>> abs(difference.nominal_value) < 5 * difference.std_dev
+    True
     >>> abs(float(v) - v.exact) < 5 * v.stderr
     True
     """
@@ -127,9 +123,7 @@ class Measurement:
     unit: str
     expectation: float | None = None
     bound: float | None = None
-    streams: frozenset = field(default=frozenset(), compare=False)
-
-    __array_ufunc__ = None  # so that numbers of NumPy call the methods below
+    source: Measurements | UFloat | None = field(default=None, compare=False)
 
     def __post_init__(self):
         if self.value is None or self.exact is None:
@@ -176,32 +170,26 @@ class Measurement:
             raise InputError(f"{self.quantity} must have a value, but its status is {self.status}")
         return float(self.value)
 
-    def __neg__(self) -> Measurement:
-        return derived("−{}", lambda a: -a, lambda a: (-1.0,), self.unit, self)
+    def __format__(self, spec: str) -> str:
+        return format(float(self), spec) if spec else str(self)
 
-    def __add__(self, other) -> Measurement:
-        return _combined("{} + {}", lambda a, b: a + b, lambda a, b: (1, 1), _same, self, other)
+    def __round__(self, digits: int | None = None) -> float | int:
+        return round(float(self), digits)
 
-    def __radd__(self, other) -> Measurement:
-        return _combined("{} + {}", lambda a, b: a + b, lambda a, b: (1, 1), _same, other, self)
+    @property
+    def u(self) -> UFloat:
+        """The value with its error, a number of the package uncertainties.
 
-    def __sub__(self, other) -> Measurement:
-        return _combined("{} − {}", lambda a, b: a - b, lambda a, b: (1, -1), _same, self, other)
+        Numbers of one result of ``simulate`` are correlated as their counts are, and numbers of one
+        result of ``sample`` as far as their samples tell. Numbers of two results are taken as
+        independent: give them two seeds. The error is NaN if it is not known.
+        """
+        from uncertainties import ufloat
 
-    def __rsub__(self, other) -> Measurement:
-        return _combined("{} − {}", lambda a, b: a - b, lambda a, b: (1, -1), _same, other, self)
-
-    def __mul__(self, other) -> Measurement:
-        return _combined("{} × {}", lambda a, b: a * b, lambda a, b: (b, a), _product, self, other)
-
-    def __rmul__(self, other) -> Measurement:
-        return _combined("{} × {}", lambda a, b: a * b, lambda a, b: (b, a), _product, other, self)
-
-    def __truediv__(self, other) -> Measurement:
-        return _combined("{} / {}", lambda a, b: a / b, _over, _ratio, self, other)
-
-    def __rtruediv__(self, other) -> Measurement:
-        return _combined("{} / {}", lambda a, b: a / b, _over, _ratio, other, self)
+        independent = ufloat(float(self), math.nan if self.stderr is None else self.stderr)
+        if isinstance(self.source, Measurements):
+            return self.source.correlated.get(self.quantity, independent)
+        return independent if self.source is None else self.source
 
     def cells(self) -> tuple[str, ...]:
         """Return the texts of a printed line.
@@ -235,80 +223,11 @@ class Measurement:
     __repr__ = __str__
 
 
-def derived(name, function, slopes, unit, *parts, quantity=None):
-    """Return the ``Measurement`` of a ``function`` of independent ``parts``.
-
-    Errors are of first order; ``slopes`` returns the derivatives. ``name`` is a format for the
-    quantities of the parts, unless ``quantity`` is given.
-    """
-    means = [p.exact if p.expectation is None else p.expectation for p in parts]
-    values, exact = [p.value for p in parts], [p.exact for p in parts]
-    names = (f"({p.quantity})" if " " in p.quantity else p.quantity for p in parts)
-
-    def known(numbers):
-        return None if None in numbers else function(*numbers)
-
-    value, due, error = known(values), known(means), None
-    if value is not None and None not in [p.stderr for p in parts]:
-        terms = zip(slopes(*values), parts, strict=True)
-        error = math.hypot(*(slope * p.stderr for slope, p in terms))
-    z = (value - due) / error if error and due is not None else None
-    return Measurement(
-        quantity or name.format(*names), value, error, known(exact), z,
-        min(p.count for p in parts), "derived", unit,
-        due if means != exact else None,
-        streams=frozenset().union(*(p.streams for p in parts)),
-    )  # fmt: skip
-
-
-def _combined(name, function, slopes, unit, one, other):
-    """Return the result of ``derived`` for two parts, one of which may be a number.
-
-    For anything else it is NotImplemented.
-    """
-    numbers = [isinstance(part, Real) and not isinstance(part, bool) for part in (one, other)]
-    parts = [part for part in (one, other) if isinstance(part, Measurement)]
-    if len(parts) + sum(numbers) < 2:
-        return NotImplemented
-    if len(parts) == 2 and one.streams & other.streams:
-        raise InputError(
-            f"{one.quantity} and {other.quantity} must have different random numbers, so that "
-            "their errors are independent: measure one of them with another seed"
-        )
-    for part in parts:
-        float(part)
-    if name.startswith("{} /") and not float(other):
-        raise InputError("the divisor must not be 0")
-    if len(parts) == 2:
-        return derived(name, function, slopes, unit(one.unit, other.unit), one, other)
-    (part,), number = parts, float(other if numbers[1] else one)
-    if numbers[1]:
-        of = part.unit if unit is _same else unit(part.unit, "")
-        text = name.format("{}", f"{number:g}")
-        return derived(
-            text, lambda a: function(a, number), lambda a: slopes(a, number)[:1], of, part
-        )
-    of = part.unit if unit is _same else unit("", part.unit)
-    text = name.format(f"{number:g}", "{}")
-    return derived(text, lambda a: function(number, a), lambda a: slopes(number, a)[1:], of, part)
-
-
-def _over(a, b):
-    return 1 / b, -a / b**2
-
-
-def _same(one, other):
-    if one != other:
-        raise InputError(f"measurements that are added must have one unit, not {one} and {other}")
-    return one
-
-
-def _product(one, other):
-    return "·".join(unit for unit in (one, other) if unit)
-
-
-def _ratio(one, other):
-    return "" if one == other else f"{one or 1}/{other}" if other else one
+def derived(quantity, u, exact, unit, count):
+    """Return the ``Measurement`` of a number ``u`` of uncertainties, beside its ``exact`` value."""
+    error = None if math.isnan(u.std_dev) else u.std_dev
+    z = (u.nominal_value - exact) / error if error and exact is not None else None
+    return Measurement(quantity, u.nominal_value, error, exact, z, count, "derived", unit, source=u)
 
 
 def _with_error(value, error):
@@ -328,15 +247,11 @@ def _to_digits(x, n):
     return f"{x:#.{n}g}".rstrip(".")
 
 
-def aligned(lines, widths):
-    """Return lines of texts in columns of these widths, which are wider if a text needs it."""
-    lines = [[*line] for line in lines]
-    longest = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    widths = [max(width, needed + 1) for width, needed in zip(widths, longest, strict=True)]
-    return "\n".join(
-        "".join(f"{text:<{width}}" for text, width in zip(line, widths, strict=True)).rstrip()
-        for line in lines
-    )
+def table_of(measurements):
+    """Return the texts of ``measurements`` as a ``DataFrame``."""
+    import pandas as pd
+
+    return pd.DataFrame([one.cells() for one in measurements], columns=COLUMNS)
 
 
 class Measurements(Result, Mapping[str, Measurement]):
@@ -354,10 +269,10 @@ class Measurements(Result, Mapping[str, Measurement]):
         The rows of the table of its kind, as the pipeline writes it.
     settings : dict
         {argument: value} beside the scene, with the seed and the error that was asked for.
+    point : DynamicsPoint or MonteCarloPoint
+        The sums of its work.
     kept : dict
         {part: {blocks: sums}} of its work, from which it goes on.
-    stream : int, optional
-        The seed of its random streams.
     note : str, optional
         The difference between the work that was asked for and the work that was done.
 
@@ -375,11 +290,35 @@ class Measurements(Result, Mapping[str, Measurement]):
     ('vertical_hop_time', 1)
     """
 
-    def __init__(self, kind, scene, rows, settings, kept, stream=None, note=None):
-        self.kind, self.scene, self.rows = kind, scene, rows
+    def __init__(self, kind, scene, rows, settings, point, kept, note=None):
+        self.kind, self.scene, self.rows, self.point = kind, scene, rows, point
         self.settings, self.kept, self.note = settings, kept, note
-        found = (measurement(scene, row, stream) for row in rows)
+        found = (measurement(scene, row, self) for row in rows)
         self._measurements = Quantities((one.quantity, one) for one in found)
+
+    @cached_property
+    def correlated(self) -> dict[str, UFloat]:
+        """{quantity: number} of uncertainties, of all quantities with errors from the same sums."""
+        from uncertainties import correlated_values
+
+        names, means, covariances = self.point.moments()
+        known = [k for k, name in enumerate(names) if self._has_error(name)]
+        numbers = correlated_values(means[known], covariances[np.ix_(known, known)])
+        found = {}
+        for k, number in zip(known, numbers, strict=True):
+            one = self[names[k]]
+            # A mean time is inversely proportional to its mean count, an area proportional to hits.
+            ratio = means[k] / number if self.kind == "simulate" else number / means[k]
+            found[one.quantity] = one.value * ratio
+        if self.kind == "sample" and "any_wall_area" not in names and {*WALL_AREAS} <= found.keys():
+            copies = (self.scene.multiplicity(wall.removesuffix("_area")) for wall in WALL_AREAS)
+            found["any_wall_area"] = sum(
+                n * found[wall] for n, wall in zip(copies, WALL_AREAS, strict=True)
+            )
+        return found
+
+    def _has_error(self, name):
+        return name in self and self[name].stderr is not None
 
     def __getitem__(self, name: str) -> Measurement:
         return self._measurements[name]
@@ -393,55 +332,9 @@ class Measurements(Result, Mapping[str, Measurement]):
     def _ipython_key_completions_(self) -> list[str]:
         return list(self)
 
-    def more(
-        self,
-        error: float | str | Mapping[str, float | str] | None = None,
-        budget: float | None = None,
-        samples: float | None = None,
-        cores: int = 1,
-        progress: bool | None = None,
-        duration: float | None = None,
-    ) -> Measurements:
-        """Return a result from more work, which goes on from this one.
-
-        It is the same, bit for bit, as the result of one call with the new arguments.
-
-        Parameters
-        ----------
-        error : float, str or dict, optional
-            A smaller error, for a result of ``simulate`` that has one.
-        budget : float, optional
-            A larger budget, for a result of ``simulate``.
-        samples : float, optional
-            More samples, for a result of ``sample``.
-        cores : int, default 1
-            Cores to work on.
-        progress : bool, optional
-            Whether to show a progress bar, as in ``simulate``.
-        duration : float, optional
-            A longer time, for a result of ``simulate`` that has one.
-
-        Returns
-        -------
-        Measurements
-            The result, which includes the work of this one.
-
-        Raises
-        ------
-        InputError
-            For an argument that is not among the ``settings`` of this result.
-
-        Examples
-        --------
-        >>> some = td.simulate(scene, duration=1e3, seed=1, events="any_wall")
-        >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
-        True
-        """
-        changes = {"error": error, "budget": budget, "samples": samples, "duration": duration}
-        return self._again(changes, cores, progress)
-
-    def _repr_html_(self) -> str:
-        return self._html(COLUMNS, [measurement.cells() for measurement in self.values()])
+    def texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table, one row for each quantity."""
+        return table_of(self.values())
 
     def frame(self) -> pd.DataFrame:
         """Return a table of all measurements.
@@ -460,26 +353,15 @@ class Measurements(Result, Mapping[str, Measurement]):
         """
         return _frame(rows_by_quantity(self.rows), index="quantity")
 
-    def __str__(self) -> str:
-        lines = [COLUMNS, *(measurement.cells() for measurement in self.values())]
-        return self._with_scene(aligned(lines, COLUMNS.values()))
 
-    __repr__ = __str__
-
-
-def _streams(kind, stream):
-    return frozenset() if stream is None else frozenset([(kind, stream)])
-
-
-def measurement(scene, row, stream=None):
-    """Return the ``Measurement`` of a row of a table; ``stream`` is the seed of its randomness."""
+def measurement(scene, row, source=None):
+    """Return the ``Measurement`` of a row of a table, which a result ``source`` has."""
     quantity = quantity_of(row)
     return Measurement(
         quantity,
         row["estimate"], row["stderr"], row["exact"], row["z"],
         row["count"] if "count" in row else row["hits"], row["status"], scene.unit(quantity),
-        row.get("expectation"), row.get("bound"),
-        _streams("dynamics" if "event" in row else "sampling", stream),
+        row.get("expectation"), row.get("bound"), source,
     )  # fmt: skip
 
 
@@ -512,8 +394,6 @@ class Intervals(Result):
         {argument: value} beside the scene.
     kept : dict
         {part: {blocks: sums}} of its work, from which it goes on.
-    stream : int, optional
-        The seed of its random streams.
 
     Attributes
     ----------
@@ -561,7 +441,7 @@ class Intervals(Result):
 
     kind = "intervals"
 
-    def __init__(self, scene, point, settings, kept, stream=None):
+    def __init__(self, scene, point, settings, kept):
         self.scene, self.hop = scene, point.event
         self.settings, self.kept = settings, kept
         self.intervals, self.overflow = point.intervals, point.overflow
@@ -575,7 +455,7 @@ class Intervals(Result):
         status = "sampled" if first["mean_stderr"] else "too-few"
         self.mean = Measurement(
             f"{self.hop}_interval", point.mean, first["mean_stderr"], first["exact_mean"], z,
-            point.intervals, status, "time", streams=_streams("intervals", stream),
+            point.intervals, status, "time",
         )  # fmt: skip
         density = point.estimate("density_at_zero")
         few = min(self.counts[:2]) < MIN_EVENTS
@@ -589,46 +469,14 @@ class Intervals(Result):
         self.at_zero = Measurement(
             "density_at_zero",
             at_zero, error, exact, None, sum(self.counts[:2]), status, "1/time",
-            streams=_streams("intervals", stream),
         )  # fmt: skip
 
     def __hash__(self):
         return hash((self.scene, self.hop))
 
-    def more(
-        self, number: float | None = None, cores: int = 1, progress: bool | None = None
-    ) -> Intervals:
-        """Return the result for more intervals, which include these, as one call would.
-
-        Parameters
-        ----------
-        number : float, optional
-            The number of all intervals.
-        cores : int, default 1
-            Cores to work on.
-        progress : bool, optional
-            Whether to show a progress bar, as in ``simulate``.
-
-        Returns
-        -------
-        Intervals
-            The result.
-
-        Raises
-        ------
-        InputError
-            For a number that is no integer from 1 on.
-
-        Examples
-        --------
-        >>> some = td.intervals(scene, "vertical_hop", 1e5, seed=1)
-        >>> some.more(2e5) == td.intervals(scene, "vertical_hop", 2e5, seed=1)
-        True
-        """
-        return self._again({"number": number}, cores, progress)
-
-    def _repr_html_(self) -> str:
-        return self._html(COLUMNS, [self.mean.cells(), self.at_zero.cells()])
+    def texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table: the mean and the density at 0."""
+        return table_of([self.mean, self.at_zero])
 
     @property
     def density(self) -> list[float]:
@@ -651,12 +499,6 @@ class Intervals(Result):
         """
         names = "left", "right", "count", "density", "stderr"
         return _frame([{n: row[n] for n in names} for row in self._bins], index="left")
-
-    def __str__(self) -> str:
-        lines = [COLUMNS, self.mean.cells(), self.at_zero.cells()]
-        return self._with_scene(aligned(lines, COLUMNS.values()))
-
-    __repr__ = __str__
 
 
 def _events_of_pair(scene):
@@ -737,7 +579,7 @@ def simulate(
         point = run.run(progress, cores, kept)
     rows = MeanTimes.rows(Box.of(scene), _theory(scene), {"dynamics": [point]})
     note = _note_of_error(rows, target, budget, point.events)
-    return Measurements("simulate", scene, rows, settings, kept, stream, note)
+    return Measurements("simulate", scene, rows, settings, point, kept, note)
 
 
 def _note_of_error(rows, target, budget, events):
@@ -783,7 +625,7 @@ def _timed(scene, error, duration, seed, budget, events, name, cores, progress, 
         f"duration {duration:g} asked for, {total:g} simulated: {point.replicas} trajectories "
         f"of {point.duration:g} each"
     )
-    return Measurements("simulate", scene, rows, settings, kept, stream, note)
+    return Measurements("simulate", scene, rows, settings, point, kept, note)
 
 
 def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None, kept=None):
@@ -802,13 +644,14 @@ def sample(scene, samples, seed, quantities, shell, name, cores=1, progress=None
     require_free_fraction(scene)
     kept, run = {} if kept is None else kept, SamplingRun(scene, quantities, samples, shell, stream)
     with progress_bar(progress, f"sample r = {scene.radius:g}") as progress:
-        points = {"monte_carlo": [run.run(progress, cores, kept)]}
+        point = run.run(progress, cores, kept)
+    points = {"monte_carlo": [point]}
     theory, areas = _theory(scene), [e for e in EVENTS if f"{e}_area" in quantities]
     rows = Volume.rows(theory, points) + Areas.rows(Box.of(scene), theory, points, areas)
     # Insertions always have the volume.
     rows = [row for row in rows if row["quantity"] in quantities]
-    note = note_of_number("samples", samples, points["monte_carlo"][0].samples)
-    return Measurements("sample", scene, rows, settings, kept, stream, note)
+    note = note_of_number("samples", samples, point.samples)
+    return Measurements("sample", scene, rows, settings, point, kept, note)
 
 
 def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None):
@@ -826,7 +669,7 @@ def intervals(scene, hop, number, seed, name, cores=1, progress=None, kept=None)
     kept, run = {} if kept is None else kept, IntervalRun(scene, hop, number, stream)
     with progress_bar(progress, f"intervals r = {scene.radius:g}") as progress:
         point = run.run(progress, cores, kept)
-    return Intervals(scene, point, settings, kept, stream)
+    return Intervals(scene, point, settings, kept)
 
 
 def starts(scene, number, seed, name, progress=None):
@@ -845,7 +688,7 @@ def exact_table(width, height, radii, effects):
     import pandas as pd
 
     box = box_with(width, height, effects)
-    scenes = scenes_of(box, radii)
+    scenes, refused = scenes_of(box, radii)
     rows = [
         {
             "radius": scene.radius,
@@ -855,8 +698,9 @@ def exact_table(width, height, radii, effects):
         }
         for scene in scenes
     ]
+    rows += [{"radius": radius, "regime": why} for radius, why in refused.items()]
     frame = pd.DataFrame(rows).set_index("radius")
-    parts = [scene.ergodic_components for scene in scenes]
+    parts = [row.get("ergodic_components") for row in rows]
     if any(part is None or part > LARGEST_INTEGER for part in parts):
         frame["ergodic_components"] = pd.Series(parts, frame.index, object)
     times = [f"{event}_time" for event in EVENTS]
@@ -875,13 +719,24 @@ def box_with(width, height, effects):
 
 
 def scenes_of(box, radii):
-    """Return the scenes of a ``Box`` at some ``radii``."""
+    """Return the scenes of a ``Box`` at some ``radii``, and {radius: why it does not fit}.
+
+    Raises ``InputError`` if none of them fits.
+    """
     if isinstance(radii, str | bytes | Mapping) or not isinstance(radii, Iterable):
         raise InputError(f"radii must be a list of numbers, not {quote(radii)}")
-    scenes = [box.scene(radius) for radius in radii]
+    scenes, refused = [], {}
+    for radius in radii:
+        radius = check_length("radius", radius)
+        try:
+            scenes.append(box.scene(radius))
+        except InputError as error:
+            refused[radius] = str(error)
     if not scenes:
-        raise InputError("radii must have at least one radius, but has none")
-    return scenes
+        raise InputError(
+            [*refused.values(), "radii must have at least one radius, but has none"][0]
+        )
+    return scenes, refused
 
 
 def the_scene(result):

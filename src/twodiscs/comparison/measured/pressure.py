@@ -16,16 +16,14 @@ import math
 from typing import TYPE_CHECKING, overload
 
 from twodiscs.comparison.measured.measurements import (
-    COLUMNS,
     Measurement,
     Measurements,
-    aligned,
     derived,
+    table_of,
 )
 from twodiscs.model.checks import InputError, quote
-from twodiscs.model.events import AXIS, EVENTS, WALLS
+from twodiscs.model.events import AXIS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.points import estimates
 from twodiscs.theory import exact, virial
 
 if TYPE_CHECKING:
@@ -40,8 +38,7 @@ class Pressures(dict):
         super().__init__({one.quantity: one for one in measurements})
 
     def __repr__(self):
-        lines = [COLUMNS, *(one.cells() for one in self.values())]
-        return f"{self.scene}\n\n{aligned(lines, COLUMNS.values())}"
+        return f"{self.scene}\n\n{table_of(self.values()).to_string(index=False)}"
 
     def __reduce__(self):
         return type(self), (self.scene, [*self.values()])
@@ -173,39 +170,17 @@ def _measured(result, rows, name, constant, factors):
     scene, some = result.scene, [rows[event] for event in factors]
     power = "²³"[len(scene.axes) - 2]
     unit = "" if name.endswith("factor") else f"energy/length{power}"
-    due, value, error, z = _of_rates(scene, constant, factors), constant, 0.0, None
-    if any(row["estimate"] is None for row in some):
-        value = error = None
-    elif some:
-        # A replica of length T with N events estimates the rate share · N/(copies · T).
-        weights = {
-            event: factors[event] * scene.share(event) / (row["copies"] * row["duration"])
-            for event, row in zip(factors, some, strict=True)
-        }
-        totals, products = _sums(result, some[0])
-        found = estimates.combination(weights, totals, products, some[0]["replicas"])
-        value = constant + found.value
-        error = None if any(row["stderr"] is None for row in some) else found.stderr
-        z = (value - due) / error if error and due is not None else None
-    streams = frozenset().union(*(result[event].streams for event in factors))
+    due = _of_rates(scene, constant, factors)
     count = min((row["count"] for row in some), default=0)
-    status = "derived" if some else "exact"
-    return Measurement(name, value, error, due, z, count, status, unit, streams=streams)
-
-
-def _sums(result, row):
-    """Return ({event: count}, {"a*b": sum of products}) of the blocks that a ``row`` comes from."""
-    index = EVENTS.index(row["event"])
-    blocks = result.kept["all"].values()
-    totals, squares = next(sums[:2] for sums in blocks if sums[0][index] == row["count"])
-    return (
-        {event: int(totals[i]) for i, event in enumerate(EVENTS)},
-        {
-            f"{a}*{b}": int(squares[min(i, k)][max(i, k)])
-            for i, a in enumerate(EVENTS)
-            for k, b in enumerate(EVENTS)
-        },
+    if not some:
+        return Measurement(name, constant, 0.0, due, None, count, "exact", unit)
+    if any(row["estimate"] is None for row in some):
+        return Measurement(name, None, None, due, None, count, "derived", unit)
+    # A time is that of the trajectories that can have the event, which are a share of all.
+    pressure = constant + sum(
+        factors[event] * scene.share(event) / result[event].u for event in factors
     )
+    return derived(name, pressure, due, unit, count)
 
 
 @overload
@@ -253,8 +228,9 @@ def free_energy(of):
     if not is_result:
         volume = exact.volume(scene)
         return None if volume is None else ideal - math.log(volume)
-    name = "excess_free_energy"
-    float(of["volume"])  # raises an InputError if the volume was not measured
-    return derived(
-        "", lambda v: ideal - math.log(v), lambda v: (1 / v,), "kT", of["volume"], quantity=name
-    )
+    from uncertainties.umath import log
+
+    volume = of["volume"]
+    exact_energy = None if volume.exact is None else ideal - math.log(volume.exact)
+    energy = ideal - log(volume.u)
+    return derived("excess_free_energy", energy, exact_energy, "kT", volume.count)

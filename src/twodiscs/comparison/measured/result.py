@@ -17,6 +17,8 @@ from twodiscs.model.box import Box
 from twodiscs.model.checks import InputError, quote, writing_to
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from twodiscs.model.scene import Scene
 
 #: The module of the function that makes a result of each kind; the function has the kind's name.
@@ -54,17 +56,56 @@ class Result:
 
     __hash__ = None
 
-    def _again(self, changes, cores, progress) -> Self:
-        """Return the result for changed settings, which uses the sums of this one."""
-        changes = {name: value for name, value in changes.items() if value is not None}
-        if unknown := [name for name in changes if name not in self.settings]:
+    def more(
+        self, amount: object = None, *, cores: int = 1, progress: bool | None = None, **larger
+    ) -> Self:
+        """Return a result from more work, which goes on from this one.
+
+        It is the same, bit for bit, as the result of one call with the new arguments.
+
+        Parameters
+        ----------
+        amount : optional
+            The argument that says how much work there is: a smaller error of ``simulate`` and
+            ``scan``, more samples, intervals (``number``) or hops.
+        cores : int, default 1
+            Cores to work on.
+        progress : bool, optional
+            Whether to show a progress bar; if left out, only in a terminal or a notebook.
+        **larger
+            The same by name, or a larger ``budget`` or ``duration``.
+
+        Returns
+        -------
+        Measurements, Intervals, Transmission or Scan
+            The result, which includes the work of this one.
+
+        Raises
+        ------
+        InputError
+            For an argument that is not among the ``settings`` of this result.
+
+        Examples
+        --------
+        >>> some = td.simulate(scene, duration=1e3, seed=1, events="any_wall")
+        >>> some.more(duration=1e4) == td.simulate(scene, duration=1e4, seed=1, events="any_wall")
+        True
+        """
+        names = [name for name in MORE if name in self.settings]
+        if amount is not None:
+            larger = {names[0]: amount} | larger
+        larger = {name: value for name, value in larger.items() if value is not None}
+        if unknown := [name for name in larger if name not in names]:
             raise InputError(
                 f"{unknown[0]} must be left out for a result of {self.kind}: to go on, give "
-                f"{' or '.join(f'{n}=' for n in self.settings if n in MORE)}"
+                f"{' or '.join(f'{name}=' for name in names)}"
             )
+        return self._again(self.settings | larger, {"cores": cores, "progress": progress})
+
+    def _again(self, settings, options):
+        """Return the result of these ``settings``, which uses the sums of this one."""
         kept = {part: dict(sums) for part, sums in self.kept.items()}
-        given = self.settings | changes
-        return made(self.kind, self.scene, given, kept, cores=cores, progress=progress)
+        return made(self.kind, self.scene, settings, kept, **options)
 
     def to_dict(self) -> dict[str, object]:
         """Return the result as ``save`` writes it.
@@ -115,19 +156,20 @@ class Result:
         with writing_to(path):
             Path(path).write_text(text, encoding="utf-8")
 
-    def _with_scene(self, text):
-        """Return a ``text`` with the scene above it and the note, if there is one, below."""
-        return "\n\n".join(str(part) for part in (self.scene, text, self.note) if part)
+    def texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table."""
+        raise NotImplementedError
 
-    def _html(self, header, lines):
-        """Return an HTML table with the scene above it and the note, if there is one, below."""
-        rows = "".join(
-            f"<tr>{''.join(f'<td>{escape(str(text))}</td>' for text in line)}</tr>"
-            for line in lines
-        )
-        head = "".join(f"<th>{escape(name)}</th>" for name in header)
+    def __str__(self) -> str:
+        parts = self.scene, self.texts().to_string(index=False), self.note
+        return "\n\n".join(str(part) for part in parts if part)
+
+    def __repr__(self) -> str:
+        return str(self)
+
+    def _repr_html_(self) -> str:
         note = f"<p>{escape(self.note)}</p>" if self.note else ""
-        return f"<p>{escape(str(self.scene))}</p><table><tr>{head}</tr>{rows}</table>{note}"
+        return f"<p>{escape(str(self.scene))}</p>{self.texts().to_html(index=False)}{note}"
 
 
 def note_of_number(what, asked, done):
@@ -137,7 +179,7 @@ def note_of_number(what, asked, done):
     return f"{asked} {what} asked for, {done} done: whole blocks"
 
 
-#: Settings that can grow when a result goes on.
+#: Settings that can grow when a result goes on; the first one of a kind is its amount.
 MORE = ("error", "duration", "budget", "samples", "number", "hops")
 
 
@@ -164,7 +206,7 @@ def from_dict(content):
         )
     if "results" in content:
         module = import_module(f"{__package__}.{MAKERS[content['kind']]}")
-        return module.joined([from_dict(result) for result in content["results"]])
+        return module.joined(content, [from_dict(result) for result in content["results"]])
     scene = dict(content["scene"])
     radius = scene.pop("radius")
     kept = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, overload
 
 from twodiscs.comparison.measured.measurements import (
@@ -29,6 +29,8 @@ class Scan(Result, Sequence[Measurements]):
     ----------
     results : list of Measurements
         One for each radius.
+    refused : dict, optional
+        {radius: why it has no result}, of radii that do not fit.
 
     Attributes
     ----------
@@ -46,9 +48,10 @@ class Scan(Result, Sequence[Measurements]):
 
     kind = "scan"
 
-    def __init__(self, results):
+    def __init__(self, results, refused=None):
         self.results = sorted(results, key=lambda result: result.scene.radius)
         self.box, self.settings = Box.of(self.results[0].scene), self.results[0].settings
+        self.refused = dict(refused or {})
 
     @property
     def radii(self) -> list[float]:
@@ -74,68 +77,16 @@ class Scan(Result, Sequence[Measurements]):
     def __hash__(self):
         return hash((self.box, *self.radii))
 
-    def more(
-        self,
-        error: float | str | Mapping[str, float | str] | None = None,
-        budget: float | None = None,
-        cores: int = 1,
-        progress: bool | None = None,
-        duration: float | None = None,
-    ) -> Scan:
-        """Return the scan with more work at each radius, which goes on from this one.
-
-        It is the same, bit for bit, as the result of one call with the new arguments.
-
-        Parameters
-        ----------
-        error : float, str or dict, optional
-            A smaller error.
-        budget : float, optional
-            A larger budget.
-        cores : int, default 1
-            Cores to work on.
-        progress : bool, optional
-            Whether to show a progress bar, as in ``simulate``.
-        duration : float, optional
-            A longer time, for a scan that has one.
-
-        Returns
-        -------
-        Scan
-            The scan, which includes the work of this one.
-
-        Raises
-        ------
-        InputError
-            For an argument that is not among the ``settings`` of this scan.
-
-        Examples
-        --------
-        >>> some = td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall")
-        >>> [part["any_wall_time"].count > 1e4 for part in some.more(duration=1e4)]
-        [True, True]
-        """
-        asked = {"cores": cores, "progress": progress, "duration": duration}
-        return Scan([result.more(error, budget, **asked) for result in self.results])
+    def _again(self, settings, options):
+        return Scan([result._again(settings, options) for result in self], self.refused)
 
     def to_dict(self) -> dict[str, object]:
-        """Return the scan as ``save`` writes it.
-
-        Returns
-        -------
-        dict
-            Numbers, texts, lists and dicts.
-
-        Examples
-        --------
-        >>> content = td.scan(1.5, 1.0, [0.1, 0.2], duration=1e3, events="any_wall").to_dict()
-        >>> content["kind"], len(content["results"])
-        ('scan', 2)
-        """
+        """Return the scan as ``save`` writes it, as ``Measurements.to_dict`` does."""
         return {
             "twodiscs": self.version,
             "kind": self.kind,
-            "results": [result.to_dict() for result in self.results],
+            "results": [result.to_dict() for result in self],
+            "refused": [*self.refused.items()],
         }
 
     def frame(self) -> pd.DataFrame:
@@ -144,7 +95,8 @@ class Scan(Result, Sequence[Measurements]):
         Returns
         -------
         DataFrame
-            One row per radius and quantity, the index, with the columns of mean_times.csv.
+            One row per radius and quantity, the index, with the columns of mean_times.csv. A radius
+            that does not fit has one row, whose ``status`` says why.
 
         Examples
         --------
@@ -153,21 +105,20 @@ class Scan(Result, Sequence[Measurements]):
         """
         import pandas as pd
 
-        rows = [row for result in self.results for row in rows_by_quantity(result.rows)]
+        rows = [row for result in self for row in rows_by_quantity(result.rows)]
+        rows += [{"radius": r, "quantity": "", "status": why} for r, why in self.refused.items()]
         return pd.DataFrame(rows).set_index(["radius", "quantity"])
 
     def __str__(self) -> str:
-        return "\n\n".join(str(result) for result in self.results)
-
-    __repr__ = __str__
+        return "\n\n".join([*map(str, self), *self.refused.values()])
 
     def _repr_html_(self) -> str:
-        return "".join(result._repr_html_() for result in self.results)
+        return "".join(result._repr_html_() for result in self)
 
 
-def joined(results):
-    """Return the ``Scan`` of loaded results."""
-    return Scan(results)
+def joined(content, results):
+    """Return the ``Scan`` of loaded results, given the ``content`` of its file."""
+    return Scan(results, content["refused"])
 
 
 def scan(
@@ -176,11 +127,11 @@ def scan(
 ):  # fmt: skip
     """Return the ``Scan`` of mean times over ``radii`` (see the face)."""
     box = box_with(width, height, {} if effects is None else effects)
-    scenes = scenes_of(box, radii)
+    scenes, refused = scenes_of(box, radii)
     if len({scene.radius for scene in scenes}) < len(scenes):
         raise InputError(
             "radii must differ, because one radius has the same random numbers each time, not "
             f"{quote([scene.radius for scene in scenes])}; to repeat a radius, give another seed"
         )
     asked = error, duration, seed, budget, events, name, cores, progress
-    return Scan([simulate(scene, *asked, usual=1e-2) for scene in scenes])
+    return Scan([simulate(scene, *asked, usual=1e-2) for scene in scenes], refused)

@@ -187,37 +187,6 @@ class Transmission(Result):
 
     kind = "transmission"
 
-    def more(
-        self, hops: float | None = None, cores: int = 1, progress: bool | None = None
-    ) -> Transmission:
-        """Return the result from more hops, which include these, as one call would.
-
-        Parameters
-        ----------
-        hops : float, optional
-            The number of all hops.
-        cores : int, default 1
-            Cores to work on.
-        progress : bool, optional
-            Whether to show a progress bar, as in ``simulate``.
-
-        Returns
-        -------
-        Transmission
-            The result.
-
-        Examples
-        --------
-        >>> some = td.transmission(td.Scene(1.5, 1.0, 0.246), "horizontal_hop", 2**12, seed=1)
-        >>> some.more(2**13).coefficient.stderr < some.coefficient.stderr
-        True
-        """
-        return self._again({"hops": hops}, cores, progress)
-
-    def _repr_html_(self) -> str:
-        lines = [line.rpartition("  ") for line in self._lines().splitlines()]
-        return self._html(("quantity", "value"), [(name, value) for name, _, value in lines])
-
     @property
     def passage_time(self) -> Estimate | None:
         """The mean time between passages τ/κ, an ``Estimate``; None without κ or an exact τ."""
@@ -245,27 +214,26 @@ class Transmission(Result):
         rows = [(t, e.value, e.stderr) for t, e in zip(self.times, self.curve, strict=True)]
         return pd.DataFrame(rows, columns=["time", "kappa", "stderr"]).set_index("time")
 
-    def __str__(self) -> str:
-        return self._with_scene(self._lines())
+    def texts(self) -> pd.DataFrame:
+        """Return the texts of the printed table, one row for each quantity."""
+        import pandas as pd
 
-    def _lines(self):
         name = self.hop.replace("_", " ")
         if self.coefficient is None:
-            return (
-                f"{name}s are too frequent, with a mean time of {self.neighbour_mean:.4g}, for a "
-                "transmission coefficient; .frame() has κ(t)"
-            )
-        kappa, passage = self.coefficient, self.passage_time
-        fraction = f"fraction of {name}s that are passages  {kappa.value:.5f} ± {kappa.stderr:.2g}"
-        if passage is None:
-            return fraction
-        return (
-            f"{fraction}\n"
-            f"mean time between hops, exact  {self.exact_mean:.6g}\n"
-            f"mean time between passages  {passage.value:.6g} ± {passage.stderr:.2g}"
-        )
+            why = f"too frequent, with a mean time of {self.neighbour_mean:.4g}; .frame() has κ(t)"
+            lines = [(f"{name}s", why)]
+        else:
+            lines = [(f"fraction of {name}s that are passages", _with_error(self.coefficient))]
+        if self.passage_time is not None:
+            lines += [
+                ("mean time between hops, exact", f"{self.exact_mean:.6g}"),
+                ("mean time between passages", _with_error(self.passage_time)),
+            ]
+        return pd.DataFrame(lines, columns=["quantity", "value"])
 
-    __repr__ = __str__
+
+def _with_error(estimate):
+    return f"{estimate.value:.6g} ± {estimate.stderr:.2g}"
 
 
 def passages_of(scene):
