@@ -118,8 +118,6 @@ MUTANTS = [
     ("twodiscs_paper/studies/distributions/measure.py", "one of two tests of a plateau", 'min(rate["p"], of["trend"]["p"]) > LEVEL', 'max(rate["p"], of["trend"]["p"]) > LEVEL'),
     ("twodiscs_paper/studies/agreement/measure.py", "error of a mean square", "math.sqrt(2 / len(tests))", "math.sqrt(1 / len(tests))"),
     ("twodiscs_paper/studies/agreement/measure.py", "independent counts of a bin", "fraction * (1 - fraction)", "fraction"),
-    ("twodiscs_paper/pipeline/documents/formats.py", "largest with its sign", "abs(row[column]) for column", "row[column] for column"),
-    ("twodiscs_paper/pipeline/documents/formats.py", "two rows in place of one", "len(rows) > 1 and", "len(rows) > 2 and"),
     ("twodiscs_paper/configuration/request.py", "one seed for all scenes", "stream_seed(self.seed, self.name, stage", 'stream_seed(self.seed, "", stage'),
     ("theory/weighted.py", "kinks of a thick shell", "np.clip([0.0, *touches, float(thickness)], 0.0", "np.clip([0.0, float(thickness)], 0.0"),
     ("theory/exact.py", "range of a disc in the free fraction", "else 2 * radius)\n        for axis in scene.axes", "else radius)\n        for axis in scene.axes"),

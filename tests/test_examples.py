@@ -13,6 +13,7 @@ import shlex
 import subprocess
 import sys
 from collections import Counter
+from decimal import ROUND_CEILING, Context
 from functools import cache
 
 import pytest
@@ -28,7 +29,6 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.configuration import load
 from twodiscs_paper.configuration.load import read
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.documents.formats import rounded_up
 from twodiscs_paper.pipeline.results import verdict
 
 PAGES = [
@@ -253,7 +253,7 @@ def agreement(folder, scene):
     points = json.loads((folder / scene.name / "points" / "dynamics.json").read_text())
     events = sum(point["events"] for point in points.values())
     independent = sum(row["independent"] for row in rows)
-    largest = rounded_up(max(compared))
+    largest = Context(prec=2, rounding=ROUND_CEILING).create_decimal(max(compared))
     counts = f"{len(points)} | {len(compared)} | {independent} | {largest} | {events:.1e}"
     counts = counts.replace("e+0", "e").replace("e+", "e")
     return f"| {scene.box.width:g} × {scene.box.height:g} | {counts} |"

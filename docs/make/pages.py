@@ -22,7 +22,7 @@ from twodiscs.model.checks import InputError
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs_paper.catalogue import STUDIES, TABLES
 from twodiscs_paper.configuration.schema import document, schema
-from twodiscs_paper.pipeline.documents.numbers import PaperNumbers
+from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
 
 INTRODUCTION = """\
 Tables are CSV files with one row per statement. Floats are written with all their digits,

@@ -1,17 +1,17 @@
-"""The manuscript: it prints the numbers that it is given, and compiles from any part of them."""
+"""The manuscript: it prints the numbers of its tables, and compiles from any part of them."""
 
 import re
 import shutil
 from pathlib import Path
 
 import pytest
+from typst import TypstError
 
+from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import FIGURES
 from twodiscs.figures.kit import style
-from twodiscs.model.checks import InputError
-from twodiscs_paper.catalogue import STUDY_FIGURES
+from twodiscs_paper.catalogue import STUDY_FIGURES, STUDY_TABLES
 from twodiscs_paper.pipeline.documents import manuscript
-from twodiscs_paper.pipeline.documents.formats import Printed
 
 PAPER = Path(__file__).resolve().parents[2] / "paper"
 SOURCE = (PAPER / "paper.typ").read_text()
@@ -150,15 +150,6 @@ def test_figures_are_only_spoken_of_where_they_are():
 
 # How it compiles ----------------------------------------------------------------------------------
 
-NAMES = re.findall(r'#?(?:number|has)\("(\w+)"\)', SOURCE)
-CELLS = {"agreement": 7, "rates": 9, "powers": 6, "errata": 7}
-NUMBERS = {name: Printed(7.5, "$7.5$") for name in NAMES} | {
-    f"{table}/scene0/{i}": Printed(None, f"cell {i}")
-    for table, n in CELLS.items()
-    for i in range(n)
-}
-NUMBERS |= {f"agreement/scene{i}/box": NUMBERS["agreement/scene0/0"] for i in range(1, 7)}
-
 
 @pytest.fixture(scope="session")
 def page(tmp_path_factory):
@@ -170,62 +161,66 @@ def page(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def paper(tmp_path_factory, page):
-    """Return a function that typesets the manuscript: its bytes.
+def paper(tmp_path_factory, page, tables_of):
+    """Return a function that typesets the manuscript from the expected tables.
 
-    ``figures`` are those of a scene and ``common`` the others; ``text`` is another template.
+    It returns the bytes and {name: text} of the numbers. ``figures`` are those of a scene and
+    ``common`` the others; the ``empty`` tables have no rows. ``edit`` is (file, old text, new text)
+    for a file of the results or of the manuscript.
     """
 
     def make(
-        numbers=NUMBERS, figures=tuple(FIGURES), common=tuple(STUDY_FIGURES), scenes=1, text=None
+        figures=tuple(FIGURES), common=tuple(STUDY_FIGURES), scenes=1, empty=(), edit=("", "", "")
     ):
         tmp_path = tmp_path_factory.mktemp("paper")
-        folder = tmp_path / "results"
-        names = [f"scene{i}" for i in range(scenes)]
-        shown = {folder / name: figures for name in names} | {folder: common}
+        results, folder = tmp_path / "results", tmp_path / "elsewhere"
+        names = ["paper", "other", "third"][:scenes]
+        tables_of(results, dict.fromkeys(names, "paper"), empty)
+        shown = {results / name: figures for name in names} | {results: common}
         for own, some in shown.items():
-            (own / "figures").mkdir(parents=True)
+            (own / "figures").mkdir()
             for name in some:
                 shutil.copy(page, own / "figures" / f"{name}.pdf")
-        template = tmp_path / "elsewhere" / "paper.typ"
-        template.parent.mkdir()
-        for source in PAPER.iterdir():
-            if source.is_file():
-                shutil.copy(source, template.parent)
+        shutil.copytree(PAPER, folder, ignore=shutil.ignore_patterns("expected", "shards"))
         shutil.copy(PAPER.parent / "CITATION.cff", tmp_path)
-        if text:
-            template.write_text(text)
-        contents = {
-            "configuration": "0123456789abcdef",
-            "figures": list(common),
-            "results": str(folder),
-            "scenes": [
-                {"width": 1.5, "height": 1.0, "name": name, "figures": list(figures)}
-                for name in names
-            ],
-        }
-        output = tmp_path / "paper.pdf"
-        manuscript.typeset(str(template), str(output), contents, numbers)
-        return output.read_bytes()
+        file, old, new = edit
+        if file:
+            text = (tmp_path / file).read_text()
+            assert text.count(old) == 1
+            (tmp_path / file).write_text(text.replace(old, new))
+        one = {"width": 1.5, "height": 1.0, "figures": figures, "tables": list(SCENE_TABLES)}
+        output = tmp_path / "results" / "paper.pdf"
+        numbers = manuscript.typeset(
+            folder / "paper.typ",
+            output,
+            scenes=[one | {"name": name} for name in names],
+            figures=common,
+            seed=1908,
+            configuration="0123456789abcdef",
+        )
+        return output.read_bytes(), {number["name"]: number["text"] for number in numbers}
 
     return make
 
 
 @pytest.fixture(scope="module")
 def unchanged(paper):
-    """Return the manuscript from ``NUMBERS``."""
+    """Return the manuscript and its numbers as they are."""
     return paper()
 
 
 def test_it_is_the_same_bytes_again_and_has_no_date(paper, unchanged):
     assert paper() == unchanged
-    assert unchanged.startswith(b"%PDF")
-    assert b"CreationDate" not in unchanged
+    assert unchanged[0].startswith(b"%PDF")
+    assert b"CreationDate" not in unchanged[0]
 
 
-@pytest.mark.parametrize("name", ["tests_largest", "rates/scene0/3", "agreement/scene0/0"])
-def test_a_number_is_printed_as_its_text_says(paper, unchanged, name):
-    assert paper(NUMBERS | {name: Printed(7.5, "$8.5$")}) != unchanged
+def test_a_number_is_that_of_its_table(paper, unchanged):
+    cell = "third_virial,,,,,,0.782004437"
+    edited = paper(edit=("results/agreement.csv", cell, cell.replace("0.782", "0.882")))
+    assert edited[0] != unchanged[0]
+    changed = {name: text for name, text in edited[1].items() if text != unchanged[1][name]}
+    assert changed == {"third_virial": "$0.882004438$"}
 
 
 @pytest.mark.parametrize("start", [0, 1])
@@ -233,41 +228,24 @@ def test_a_missing_figure_leaves_no_dangling_reference(paper, start):
     paper(figures=list(FIGURES)[start::2], common=list(STUDY_FIGURES)[start::2])
 
 
-def test_it_compiles_without_figures_without_numbers_and_with_many_scenes(paper):
+def test_it_compiles_without_figures_without_rows_and_with_many_scenes(paper):
     paper(figures=())
-    paper(numbers={})
+    _, numbers = paper(empty=[*SCENE_TABLES, *STUDY_TABLES])
+    assert "tests" not in numbers
+    assert numbers["seed"] == "1908"
     paper(scenes=3)
 
 
-def test_a_mistake_in_the_template_is_one_sentence(paper):
-    with pytest.raises(ValueError, match="does not compile: unknown variable: nothing"):
-        paper(text="#nothing")
-
-
-def test_figures_and_tables_are_those_of_scenes_and_those_of_all():
-    files = [
-        "a/results/box/figures/model.pdf",
-        "a/results/box/check.csv",
-        "a/results/tails.csv",
-        "a/results/figures/tails.pdf",
-    ]
-    boxes = {"box": (1.5, 1.0), "long": (3.0, 1.0)}
-    assert manuscript.contents_of(files, boxes, "a/results/paper.pdf") == {
-        "results": "a/results",
-        "figures": ["tails"],
-        "scenes": [
-            {"name": "box", "width": 1.5, "height": 1.0}
-            | {"figures": ["model"], "tables": ["check"]},
-            {"name": "long", "width": 3.0, "height": 1.0, "figures": [], "tables": []},
-        ],
-    }
-
-
-@pytest.mark.parametrize("text", ["1.5", "1.5x", "1x2x3", "axb"])
-def test_a_box_that_is_none_is_one_sentence(text):
-    assert manuscript.box_sides("1.5x1.0") == (1.5, 1.0)
-    with pytest.raises(InputError, match=r"must be as 1\.5x1\.0, not '"):
-        manuscript.box_sides(text)
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("paper.typ", '#number("more_discs_width")', '#number("third_viral")'),
+        ("published.yaml", "ours: third_virial", "ours: third_viral"),
+    ],
+)
+def test_a_misspelt_name_stops_the_compiler(paper, file, old, new):
+    with pytest.raises(TypstError, match='does not contain key "third_viral"'):
+        paper(edit=(f"elsewhere/{file}", old, new))
 
 
 def test_what_captions_explain_alike_is_split_off(tmp_path):

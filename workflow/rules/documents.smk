@@ -22,13 +22,15 @@ if MAIN:
         """The manuscript; every number in it is read from these results."""
         input:
             template=source("paper/paper.typ"),
-            long_run=source("paper/long_run/far/mean_times.csv"),
-            long_passages=source("paper/long_run/passages/passages.csv"),
-            long_tails=source("paper/long_run/tails/tails.csv"),
             texts=[
                 source("paper/results.typ"),
+                source("paper/numbers.typ"),
+                source("paper/read.typ"),
                 source("paper/references.bib"),
                 source("paper/published.yaml"),
+                source("paper/long_run/far/mean_times.csv"),
+                source("paper/long_run/passages/passages.csv"),
+                source("paper/long_run/tails/tails.csv"),
                 source("CITATION.cff"),
             ],
             figures=[
@@ -57,19 +59,29 @@ if MAIN:
             f"{RESULTS}/benchmarks/paper.tsv"
         localrule: True
         params:
-            boxes=[
-                f"{scene.name}={scene.box.width}x{scene.box.height}"
-                for scene in CONFIGURATION.plain
-            ],
-            seed=CONFIGURATION.seed,
-            configuration=CONFIGURATION.configuration_hash(),
+            contents={
+                "scenes": [
+                    {
+                        "name": scene.name,
+                        "width": scene.box.width,
+                        "height": scene.box.height,
+                        "tables": list(CONFIGURATION.tables(scene.name)),
+                        "figures": list(CONFIGURATION.figures(scene.name)),
+                    }
+                    for scene in CONFIGURATION.plain
+                ],
+                "figures": [
+                    name
+                    for study in STUDIES.values()
+                    if study.shared
+                    for name in study.figures
+                ],
+                "seed": CONFIGURATION.seed,
+                "configuration": CONFIGURATION.configuration_hash(),
+            },
             code=code("twodiscs_paper.pipeline.documents.manuscript"),
-        shell:
-            "python -P -m twodiscs_paper.pipeline.documents.manuscript {input.figures:q} {input.drawn:q} {input.tables:q}"
-            " {input.studied:q} --template {input.template:q} --boxes {params.boxes} --seed {params.seed}"
-            " --long-runs long_run={input.long_run:q} long_passages={input.long_passages:q} long_tails={input.long_tails:q}"
-            " --configuration {params.configuration} --numbers {output.numbers:q}"
-            " --output {output.pdf:q} > {log:q} 2>&1"
+        script:
+            "../scripts/paper.py"
 
 
 # Snakemake's own report is written after a build: profiles/default/config.yaml.

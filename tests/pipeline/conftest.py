@@ -1,0 +1,34 @@
+"""Tables of the default configuration for tests of the manuscript."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from twodiscs_paper.catalogue import STUDY_TABLES, TABLES
+
+EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"
+
+#: Tables with seconds in them, which are not kept.
+TIMED = ("cost", "accuracy_cost")
+
+
+@pytest.fixture(scope="session")
+def tables_of():
+    """Return a function that writes the tables of a build to a folder.
+
+    ``scenes`` are {name in the folder: name in the expected results}. Tables that are not expected
+    and the ``empty`` ones, {name}, have no rows.
+    """
+
+    def write(folder, scenes, empty=()):
+        for own, kept in scenes.items() | {(".", ".")}:
+            (folder / own).mkdir(parents=True, exist_ok=True)
+            for path in (EXPECTED / kept).glob("*.csv"):
+                if path.stem not in empty:
+                    shutil.copy(path, folder / own)
+            for name in {*empty, *TIMED} & TABLES.keys():
+                if (name in STUDY_TABLES) == (own == "."):
+                    TABLES[name].write(folder / own / f"{name}.csv", [])
+
+    return write
