@@ -47,7 +47,7 @@ rule mine:
 #: the usual one counts in its place, and the two errors of the energy have no meaning.
 QUICKER = (
     (
-        "passages/table.py",
+        "passages/study.py",
         "rows = [row for part in tables.values() for row in part]",
         "assert all(tables.values())\n"
         "        names = {'paper': 'six', 'long': 'walls', None: None}\n"
@@ -62,12 +62,12 @@ QUICKER = (
     ("passages/measure.py", "(1.0, 0.3, 0.1, 0.03, 0.01), 8, 128", "(1.0, 0.3, 0.1), 8, 32"),
     ("passages/measure.py", "LIMIT_BLOCKS = 512", "LIMIT_BLOCKS = 64"),
     (
-        "more_discs/table.py",
+        "more_discs/study.py",
         "list(measure.rows(events, samples, seed))",
         "MoreDiscs.read('paper/expected/more_discs.csv')",
     ),
     (
-        "stability/table.py",
+        "stability/study.py",
         "[cls.empty(**row) for row in measure.rows(box, seed, ordinary, hard)]",
         "cls.read('paper/expected/stability.csv')",
     ),
