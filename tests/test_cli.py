@@ -213,7 +213,8 @@ def test_a_run_is_a_line_of_snakemake(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = build.command("my.yaml", ["volume", "results/check.passed"], Path("/a/Snakefile"))
     assert words == [
-        *("snakemake", "--snakefile", "/a/Snakefile", "--cores", "all", "--no-hooks"),
+        *("snakemake", "--snakefile", "/a/Snakefile"),
+        *("--workflow-profile", "/a/profiles/default", "--cores", "all", "--no-hooks"),
         *("--configfile", "my.yaml", "--", "volume", "results/check.passed"),
     ]
     monkeypatch.chdir(build.snakefile().parent)

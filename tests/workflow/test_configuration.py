@@ -44,7 +44,7 @@ def test_a_file_that_cannot_be_read(unbuilt, tmp_path):
     folder.configuration.write_text("results: a\nseed: caf\udce9\n", errors="surrogateescape")
     run = folder.snakemake("-n", passes=False)
     assert run.returncode != 0
-    said = "Configuration: config/config.yaml, line 2: must be UTF-8, not the byte 0xe9"
+    said = "Configuration: config/config.yaml: must be UTF-8, which has no byte 0xe9 here"
     assert said in run.stderr.splitlines()
     assert "Traceback" not in run.stdout + run.stderr
 

@@ -1,5 +1,6 @@
 """``twodiscs run``: what it plans for a new configuration, and the lines that it prints."""
 
+import json
 import os
 import re
 import subprocess
@@ -8,6 +9,7 @@ import sys
 import pytest
 from checkout import Checkout, first
 
+from twodiscs_paper.configuration.load import read
 from twodiscs_paper.configuration.new import new
 
 
@@ -52,3 +54,16 @@ def test_a_job_is_a_line(place):
     done = run(place, "results/mine/grid.csv").stderr.splitlines()
     assert done[-1] == "1 of 1: exact scene=mine, table=grid"
     assert len(done) <= 2  # Snakemake names its profile before it knows of our lines
+
+
+def test_files_of_another_project_in_the_folder_are_not_read(place):
+    """Its configuration and its profile have the names of ours."""
+    for name, text in {
+        "config/config.yaml": "{seed: 42, results: theirs, samples: samples.tsv}\n",
+        "profiles/default/config.yaml": "no-such-option: true\n",
+    }.items():
+        (place.path / name).parent.mkdir(parents=True, exist_ok=True)
+        (place.path / name).write_text(text)
+    run(place, "results/configuration.json")
+    written = json.loads((place.path / "results/configuration.json").read_text())
+    assert written == read(place.path / "my.yaml")

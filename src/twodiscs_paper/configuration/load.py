@@ -41,6 +41,9 @@ def read(path):
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise ConfigError(f"{path}, line {mark.line + 1}: {error.problem}") from None
+    except UnicodeDecodeError as error:
+        byte = error.object[error.start]
+        raise ConfigError(f"{path}: must be UTF-8, which has no byte {byte:#x} here") from None
     # A value such as the date 2001-13-41 is an error of Python, and so are very deep lists.
     except (yaml.YAMLError, ArithmeticError, LookupError, ValueError, RecursionError) as error:
         raise ConfigError(f"{path}: {error}") from None

@@ -7,9 +7,10 @@ from twodiscs_paper.configuration.model import Model
 #: The first lines of the page.
 TITLE = "The configuration"
 INTRODUCTION = """\
-`snakemake` reads `config/config.yaml`, or only OTHER.yaml with `--configfile OTHER.yaml`. Lengths \
-are in any one unit, masses are one and the total energy is 1/2, so times are lengths over a speed \
-of one. A block with a name and a box is a complete scene: all other keys have a default.\
+`snakemake` reads `config.yaml`. With `--configfile OTHER.yaml` it reads only OTHER.yaml if that \
+file has `scenes`; if not, the keys of OTHER.yaml replace those of `config.yaml`. Lengths are in \
+any one unit, masses are one and the total energy is 1/2, so times are lengths over a speed of \
+one. A block with a name and a box is a complete scene: all other keys have a default.\
 """
 
 

@@ -68,8 +68,11 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
                 f"a target must be one of {', '.join(TARGETS)}, or the path of a file of results, "
                 f"not {target!r}{hint}"
             )
-    here = Path("Snakefile")
-    found = [] if here.exists() and here.samefile(snakefile) else ["--snakefile", str(snakefile)]
+    here, found = Path("Snakefile"), []
+    if not (here.exists() and here.samefile(snakefile)):
+        # Snakemake would first look for a profile in this folder.
+        profile = snakefile.with_name("profiles") / "default"
+        found = ["--snakefile", str(snakefile), "--workflow-profile", str(profile)]
     words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
