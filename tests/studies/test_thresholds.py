@@ -85,7 +85,7 @@ def test_noise_is_in_the_errors():
     found = {"exponent": [], "coefficient": []}
     for noise in rng.standard_normal((200, len(RADII))):
         times = due * (1 + 1e-3 * noise)
-        for row in thresholds.fits(law, "mean_time", RADII, times, 1e-3 * due, due):
+        for row in thresholds.fits({}, law, "mean_time", RADII, times, 1e-3 * due, due):
             if row["form"] == "reduced":
                 found[row["parameter"]].append(row)
     for fits in found.values():
@@ -182,10 +182,9 @@ def test_without_times_there_are_first_passages(box, read, tmp_path):
 
 
 def test_the_share_of_mean_times_from_strips_is_told():
-    fit = {"event": "vertical_hop", "points": 4, "parameter": "exponent", "z": 3.0}
-    fit = Thresholds.empty(**fit)
-    times = [{"starts": starts} for starts in ("strip", "invariant", "strip", "strip")]
-    row = thresholds.strips(fit, times)
-    assert row.keys() == fit.keys()
-    assert (row["parameter"], row["estimate"], row["z"]) == ("strips", 0.75, None)
-    assert (row["event"], row["points"]) == ("vertical_hop", 4)
+    rows = times_of("horizontal_hop", RADII)
+    for row, starts in zip(rows, ("strip", "invariant", "strip"), strict=False):
+        row["starts"] = starts
+    row = fitted(rows)["mean_time", "plain", "strips"]
+    assert (row["estimate"], row["points"]) == (2 / len(RADII), len(RADII))
+    assert "z" not in row

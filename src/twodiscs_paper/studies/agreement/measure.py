@@ -7,9 +7,10 @@ from itertools import groupby
 import numpy as np
 
 from twodiscs.model.scene import Scene
-from twodiscs.points.estimates import density_of_chains_at_zero, sums_of_others
+from twodiscs.points.estimates import Estimate, density_of_chains_at_zero, sums_of_others
 from twodiscs.theory import exact
 from twodiscs.theory.many.three import integrals
+from twodiscs_paper.study import row
 
 #: The pairs of events whose scores are correlated.
 PAIRS = (("right_wall", "top_wall"), ("vertical_hop", "disc_collision"))
@@ -32,12 +33,12 @@ def scores(tests):
     """Yield the rows on the scores of ``tests`` (see ``normal_tests``) of all scenes."""
     if not tests:
         return
-    mean_square = statistics.fmean(row["z"] ** 2 for row in tests)
-    error = math.sqrt(2 / len(tests))
-    yield {
-        "quantity": "mean_square", "count": len(tests), "estimate": mean_square, "stderr": error
-    }  # fmt: skip
-    z = {(row["scene"], row["radius"], row["quantity"]): row["z"] for row in tests}
+    number = len(tests)
+    mean_square = Estimate(
+        statistics.fmean(one["z"] ** 2 for one in tests), math.sqrt(2 / number), number
+    )
+    yield row({}, mean_square, quantity="mean_square", count=number)
+    z = {(one["scene"], one["radius"], one["quantity"]): one["z"] for one in tests}
     for event, other in PAIRS:
         pairs = [
             (value, z[scene, radius, f"{other}_time"])
@@ -45,9 +46,11 @@ def scores(tests):
             if quantity == f"{event}_time" and (scene, radius, f"{other}_time") in z
         ]
         if len(pairs) > 2:
-            correlation = statistics.correlation(*zip(*pairs, strict=True))
-            row = {"quantity": "correlation", "event": event, "other": other}
-            yield row | {"count": len(pairs), "estimate": correlation}
+            found = {
+                "count": len(pairs),
+                "estimate": statistics.correlation(*zip(*pairs, strict=True)),
+            }
+            yield row(found, quantity="correlation", event=event, other=other)
 
 
 def error_ratio(bins):
@@ -56,45 +59,44 @@ def error_ratio(bins):
     ``bins`` are rows of hop_histogram.csv.
     """
     ratios = []
-    for row in bins:
-        if row["count"] >= WELL_FILLED:
-            fraction = row["count"] / row["intervals"]
-            independent = math.sqrt(fraction * (1 - fraction) / row["intervals"])
-            ratios.append(row["stderr"] * (row["right"] - row["left"]) / independent)
-    return {"quantity": "error_ratio", "count": len(ratios), "estimate": max([1.0, *ratios])}
+    for one in bins:
+        if one["count"] >= WELL_FILLED:
+            fraction = one["count"] / one["intervals"]
+            independent = math.sqrt(fraction * (1 - fraction) / one["intervals"])
+            ratios.append(one["stderr"] * (one["right"] - one["left"]) / independent)
+    return row({}, quantity="error_ratio", count=len(ratios), estimate=max([1.0, *ratios]))
 
 
 def densities(scene, bins):
     """Yield the rows on the density at zero of a ``scene``, from the first two equal bins."""
-    equal = [row for row in bins if row["bins"] == "equal"]
-    for (event, radius), found in groupby(equal, key=lambda row: (row["event"], row["radius"])):
+    equal = [one for one in bins if one["bins"] == "equal"]
+    for (event, radius), found in groupby(equal, key=lambda one: (one["event"], one["radius"])):
         first = [*found][:2]
-        if len(first) == 2 and all(row["stderr"] for row in first):
+        if len(first) == 2 and all(one["stderr"] for one in first):
             value, error = density_of_chains_at_zero(
-                [row["density"] for row in first], [row["stderr"] for row in first]
+                [one["density"] for one in first], [one["stderr"] for one in first]
             )
-            row = {"quantity": "density_at_zero", "scene": scene, "event": event}
-            yield row | {"radius": radius, "count": 2, "estimate": value, "stderr": error}
+            start = {"scene": scene, "event": event, "radius": radius, "count": 2}
+            yield row(start, quantity="density_at_zero", estimate=value, stderr=error)
 
 
 def tests_of_effects(rows):
-    """Return the row on the tests among the ``rows`` of effects.csv, or None without tests.
+    """Yield the row on the tests among the ``rows`` of effects.csv, if there are tests.
 
     If a count is the sum of other counts, its mean time is not an independent test.
     """
-    judged = [row for row in rows if row["z"] is not None]
+    judged = [one for one in rows if one["z"] is not None]
     tests = []
-    for _, some in groupby(judged, key=lambda row: (row["scene"], row["radius"])):
-        of_event = {row["quantity"].removesuffix("_time"): row for row in some}
+    for _, some in groupby(judged, key=lambda one: (one["scene"], one["radius"])):
+        of_event = {one["quantity"].removesuffix("_time"): one for one in some}
         summed = sums_of_others(
-            {e: row["count"] for e, row in of_event.items() if row["starts"] == "invariant"}
+            {e: one["count"] for e, one in of_event.items() if one["starts"] == "invariant"}
         )
-        tests += [row for event, row in of_event.items() if event not in summed]
-    if not tests:
-        return None
-    possible = sum(row["status"] != "impossible" for row in tests)
-    largest = max(abs(row["z"]) for row in tests)
-    return {"quantity": "effects", "count": possible, "estimate": largest}
+        tests += [one for event, one in of_event.items() if event not in summed]
+    if tests:
+        possible = sum(one["status"] != "impossible" for one in tests)
+        largest = max(abs(one["z"]) for one in tests)
+        yield row({}, quantity="effects", count=possible, estimate=largest)
 
 
 #: Ranges A × B of the centres in units of σ, in which three discs in a row have room.
@@ -117,11 +119,11 @@ def third_virial():
         clusters.append(three / 6 - one * two / 2 + one**3 / 3)
     bulk = np.linalg.solve(equations, clusters)[0]
     second = math.pi / 2
-    return {"quantity": "third_virial", "estimate": float(2 * (2 - bulk / second**2))}
+    return row({}, quantity="third_virial", estimate=float(2 * (2 - bulk / second**2)))
 
 
 def rows(tables):
-    """Yield the rows of agreement.csv, without their empty cells.
+    """Yield the rows of agreement.csv.
 
     ``tables`` has the rows of <scene>/check, <scene>/hop_histogram and effects.
     """
@@ -130,14 +132,16 @@ def rows(tables):
         scene, _, name = path.rpartition("/")
         if scene:
             by_name[name][scene] = found
-    check = by_name["check"].items()
     yield from scores(
-        [row | {"scene": name} for name, found in check for row in normal_tests(found)]
+        [
+            one | {"scene": scene}
+            for scene, found in by_name["check"].items()
+            for one in normal_tests(found)
+        ]
     )
     histograms = by_name["hop_histogram"]
-    yield error_ratio([row for found in histograms.values() for row in found])
+    yield error_ratio([one for found in histograms.values() for one in found])
     for scene, found in histograms.items():
         yield from densities(scene, found)
-    if row := tests_of_effects(tables["effects"]):
-        yield row
+    yield from tests_of_effects(tables["effects"])
     yield third_virial()

@@ -36,12 +36,12 @@ class Agreement(Table):
         ),
     }
 
-    @classmethod
-    def rows(cls, tables):
+    @staticmethod
+    def rows(tables):
         """Return the rows for the ``tables`` (see ``measure.rows``)."""
         from twodiscs_paper.studies.agreement import measure
 
-        return [cls.empty(**row) for row in measure.rows(tables)]
+        return measure.rows(tables)
 
 
 def _reads(configuration):

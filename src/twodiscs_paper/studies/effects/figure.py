@@ -18,7 +18,7 @@ from twodiscs.figures.kit.style import (
     new_figure,
 )
 from twodiscs.model.box import Box
-from twodiscs_paper.studies.effects.curves import SHOWN_EVENTS
+from twodiscs_paper.studies.effects.measure import SHOWN_EVENTS
 
 #: Inches: widths of the figure, of a panel of times, of the panel of costs and of its names;
 #: margins and gaps; heights of the panels of curves and of residuals, and of the legend.

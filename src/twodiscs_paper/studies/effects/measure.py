@@ -5,6 +5,7 @@ compared with the exact mean times of plain discs in the same box.
 """
 
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,20 +13,24 @@ import numpy as np
 from twodiscs.dynamics.ensemble import REPLICAS, new_rows, put_state, state_at
 from twodiscs.dynamics.law import law_of
 from twodiscs.dynamics.two.path import time_to_next
+from twodiscs.figures.kit import curves
+from twodiscs.figures.kit.limits import limits
 from twodiscs.model.box import Box
-from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.model.radii import key, stream_seed
-from twodiscs.model.scene import check_scene
 from twodiscs.points import estimates
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.starts import draw_any_starts, origins
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
+from twodiscs_paper.study import row
 
 #: Blocks of ``REPLICAS`` starts that are followed until their discs meet, and the times at which
 #: the starts without a meeting are counted.
 BLOCKS = 256
 TIMES = (1e2, 1e3, 1e4)
+
+#: The events whose exact curves are shown, a panel each.
+SHOWN_EVENTS = ("vertical_hop", "disc_collision", "any_wall")
 
 #: Discs with chaotic motion meet within this many mean times, except for a fraction e^−20.
 MEAN_TIMES = 20
@@ -57,13 +62,12 @@ def survivors(scene, times, blocks, seed):
     """Return how many starts of a ``Scene`` have no meeting of the discs by each of ``times``.
 
     The result is a list of integers, from ``blocks`` × ``REPLICAS`` starts of the invariant
-    measure. Raises ``InputError`` for anything that is not a ``Scene``, for ``times`` that do not
-    ascend, and for a number out of range.
+    measure. The times ascend.
     """
-    law, (draw, prism) = law_of(check_scene(scene)), origins(scene)
-    values = check_ascending("times", times)
-    blocks, seed = check_integer("blocks", blocks), np.uint64(check_integer("seed", seed, 0))
-    counts = follow_survivors(seed, 0, blocks, REPLICAS, np.array(values), law, draw, prism)
+    law, (draw, prism) = law_of(scene), origins(scene)
+    counts = follow_survivors(
+        np.uint64(seed), 0, blocks, REPLICAS, np.array(times), law, draw, prism
+    )
     return [int(n) for n in counts]
 
 
@@ -76,6 +80,12 @@ KEPT = (
 )  # fmt: skip
 
 
+def plain_time(box, radius, event):
+    """Return the exact mean time of plain discs in the same box, None if there is none."""
+    plain = Box(box.width, box.height)
+    return exact.mean_times(plain.scene(radius))[event] if plain.fits(radius) else None
+
+
 def rows(tables, scenes, seed, blocks=BLOCKS):
     """Yield the rows of effects.csv.
 
@@ -86,72 +96,76 @@ def rows(tables, scenes, seed, blocks=BLOCKS):
     for name, parameters in scenes.items():
         box, times = Box(**parameters), tables[f"{name}/mean_times"]
         start = {"scene": name, "width": box.width, "height": box.height}
-        for row in times:
-            yield start | _mean_time_row(box, row)
+        for time in times:
+            event = time["event"]
+            yield row(
+                start | {column: time[column] for column in KEPT},
+                effects=json.dumps(box.effects),
+                quantity=f"{event}_time",
+                plain=plain_time(box, time["radius"], event),
+            )
         if "moment_of_inertia" in box.effects:
-            for radius in dict.fromkeys(row["radius"] for row in times):
-                for row in _survivors_rows(name, box.scene(radius), seed, blocks):
-                    yield start | row
+            for radius in dict.fromkeys(time["radius"] for time in times):
+                rough = box.scene(radius)
+                for scene in (rough, replace(rough, moment_of_inertia=None)):
+                    yield from share_rows(start, scene, seed, blocks)
 
 
-def _survivors_rows(name, rough, seed, blocks):
-    """Yield the rows on starts without a meeting, for rough discs and for smooth discs.
+def share_rows(start, scene, seed, blocks):
+    """Yield the rows on the share of starts without a meeting by each of ``TIMES``.
 
-    A scene has no rows unless chaotic discs meet well before the first of ``TIMES``.
+    A scene has no rows unless chaotic discs meet well before the first of them. Smooth discs have a
+    law at long times t: by Palm's relation their share is C/(2τt²), if times between collisions
+    have the mean τ and the tail C/t³.
     """
-    for scene in (rough, replace(rough, moment_of_inertia=None)):
-        if MEAN_TIMES * exact.mean_times(scene)["disc_collision"] <= TIMES[0]:
-            stream = stream_seed(seed, name, "unmet", key(scene.radius))
-            counts = survivors(scene, TIMES, blocks, stream)
-            for time, count in zip(TIMES, counts, strict=True):
-                yield _survivors_row(scene, blocks * REPLICAS, time, count)
+    if MEAN_TIMES * exact.mean_times(scene)["disc_collision"] > TIMES[0]:
+        return
+    starts, box = blocks * REPLICAS, Box(scene.width, scene.height)
+    stream = stream_seed(seed, start["scene"], "unmet", key(scene.radius))
+    for time, count in zip(TIMES, survivors(scene, TIMES, blocks, stream), strict=True):
+        share = estimates.binomial_estimate(count, starts, 1.0)
+        enough = count >= estimates.MIN_EVENTS
+        yield row(
+            start,
+            effects=json.dumps(scene.effects),
+            radius=scene.radius,
+            quantity="never_met_share",
+            plain=share_law(box.scene(scene.radius), time) if box.fits(scene.radius) else None,
+            estimate=share and share.value,
+            stderr=share.stderr if enough else None,
+            count=count,
+            replicas=starts,
+            duration=time,
+            status="sampled" if enough else "too-few" if count else "none-seen",
+            starts="invariant",
+            share=1.0,
+            copies=1,
+        )
 
 
-def _plain(box, radius):
-    """Return the plain ``Scene`` in a box with the same sides, or None if its discs do not fit."""
-    plain = Box(box.width, box.height)
-    return plain.scene(radius) if plain.fits(radius) else None
-
-
-def _mean_time_row(box, row):
-    plain = _plain(box, row["radius"])
-    return {name: row[name] for name in KEPT} | {
-        "effects": json.dumps(box.effects),
-        "quantity": f"{row['event']}_time",
-        "plain": exact.mean_times(plain)[row["event"]] if plain else None,
-    }
-
-
-def _law(plain, time):
-    """Return the fraction of starts of smooth discs without a meeting by a long ``time`` t.
-
-    By Palm's relation it is C/(2τt²), if times between collisions have the mean τ and the tail
-    C/t³.
-    """
+def share_law(plain, time):
+    """Return the share of starts of plain discs without a meeting by a long ``time``."""
     mean = exact.mean_times(plain)["disc_collision"]
     return tails.tail_constant(plain, "disc_collision") / (2 * mean * time**2)
 
 
-def _survivors_row(scene, starts, time, count):
-    """Return the row on the fraction of ``starts`` without a meeting by ``time``."""
-    plain = _plain(Box.of(scene), scene.radius)
-    fraction = estimates.binomial_estimate(count, starts, 1.0)
-    enough = count >= estimates.MIN_EVENTS
-    return {
-        "effects": json.dumps(scene.effects),
-        "radius": scene.radius,
-        "quantity": "never_met_share",
-        "exact": None,
-        "plain": plain and _law(plain, time),
-        "estimate": fraction and fraction.value,
-        "stderr": fraction.stderr if enough else None,
-        "z": None,
-        "count": count,
-        "replicas": starts,
-        "duration": time,
-        "status": "sampled" if enough else "too-few" if count else "none-seen",
-        "test": None,
-        "starts": "invariant",
-        "share": 1.0,
-        "copies": 1,
-    }
+# The curves ---------------------------------------------------------------------------------------
+
+
+def curve_rows(scenes):
+    """Yield the rows of effects_curves.csv, for ``scenes`` in boxes with the same sides."""
+    boxes = {name: Box(**parameters) for name, parameters in scenes.items()}
+    first = next(iter(boxes.values()))
+    others = [radius for radius, _ in limits(Box(first.width, first.height))]
+    for name, box in boxes.items():
+        radii, times = curves.exact_curves(box, others)
+        for i, radius in enumerate(map(float, radii)):
+            for event in SHOWN_EVENTS:
+                plain = plain_time(box, radius, event) if radius > 0 else None
+                ratio = float(times[f"{event}_time"][i]) / (plain or math.nan)
+                yield {
+                    "scene": name,
+                    "radius": None if math.isnan(radius) else radius,
+                    "event": event,
+                    "ratio": None if math.isnan(ratio) else ratio,
+                }

@@ -63,7 +63,7 @@ class Effects(Table):
         """Return the rows of ``scenes`` (see ``measure.rows``)."""
         from twodiscs_paper.studies.effects import measure
 
-        return list(measure.rows(tables, scenes, seed))
+        return measure.rows(tables, scenes, seed)
 
 
 class EffectsCurves(Table):
@@ -84,10 +84,10 @@ class EffectsCurves(Table):
 
     @staticmethod
     def rows(scenes):
-        """Yield the rows of ``scenes``, {name: parameters of a box}."""
-        from twodiscs_paper.studies.effects import curves
+        """Return the rows of ``scenes``, {name: parameters of a box}."""
+        from twodiscs_paper.studies.effects import measure
 
-        yield from curves.rows(scenes)
+        return measure.curve_rows(scenes)
 
 
 class EffectsCost(Table):

@@ -18,6 +18,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.sampling.many import initial, measures
 from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
+from twodiscs_paper.study import row
 
 #: The box per disc, 0.75 × 1: two discs have the box 1.5 × 1.
 WIDTH_PER_DISC, HEIGHT = 0.75, 1.0
@@ -66,6 +67,9 @@ def _time(scene, event, rate, error=0.0):
 
 
 def _deviate(value, error, other, spread=0.0):
+    """Return how many errors two values are apart, None if one of them is missing or exact."""
+    if value is None or other is None:
+        return None
     size = math.hypot(error, spread)
     return (value - other) / size if size else None
 
@@ -88,7 +92,7 @@ def _of_scene(scene, events, samples, seed):
     known = methods.measures(scene)
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in FEWER
-    sampled, spread = (
+    sampled, errors_of_samples = (
         (rates(scene, part) for part in measures.sample(scene, samples, seed))
         if has_samples
         else ({}, {})
@@ -100,24 +104,19 @@ def _of_scene(scene, events, samples, seed):
     }  # fmt: skip
     for event in SHELLS:
         time, _ = _time(scene, event, true.get(event))
-        estimate, estimate_error = _time(scene, event, sampled.get(event), spread.get(event))
-        simulated, error = _time(scene, event, found[event], errors[event])
-        reference, uncertain = (time, 0.0) if known else (estimate, estimate_error)
-        z = (
-            None
-            if simulated is None or reference is None
-            else _deviate(simulated, error, reference, uncertain)
-        )
-        sampled_z = _deviate(estimate, estimate_error, time) if time and estimate else None
-        yield start | {
-            "event": event, "exact": time, "monte_carlo": estimate,
-            "monte_carlo_stderr": estimate_error, "monte_carlo_z": sampled_z, "dynamics": simulated,
-            "dynamics_stderr": error, "z": z,
-        }  # fmt: skip
+        sampled_time, spread = _time(scene, event, sampled.get(event), errors_of_samples.get(event))
+        counted_time, error = _time(scene, event, found[event], errors[event])
+        reference = (time, 0.0) if known else (sampled_time, spread)
+        yield row(
+            start, event=event, exact=time,
+            monte_carlo=sampled_time, monte_carlo_stderr=spread,
+            monte_carlo_z=_deviate(sampled_time, spread, time),
+            dynamics=counted_time, dynamics_stderr=error,
+            z=_deviate(counted_time, error, *reference),
+        )  # fmt: skip
     total = virial_sum(scene, found)
-    yield start | {
-        "event": "virial", "exact": 1.0,
-        "monte_carlo": virial_sum(scene, sampled) if has_samples else None,
-        "monte_carlo_stderr": None, "monte_carlo_z": None, "dynamics": total,
-        "dynamics_stderr": virial_error, "z": _deviate(total, virial_error, 1.0),
-    }  # fmt: skip
+    yield row(
+        start, event="virial", exact=1.0,
+        monte_carlo=virial_sum(scene, sampled) if has_samples else None,
+        dynamics=total, dynamics_stderr=virial_error, z=_deviate(total, virial_error, 1.0),
+    )  # fmt: skip

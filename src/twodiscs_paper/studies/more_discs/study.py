@@ -65,7 +65,7 @@ class MoreDiscs(Table):
         """Return the rows from about ``events`` and ``samples`` for each scene."""
         from twodiscs_paper.studies.more_discs import measure
 
-        return list(measure.rows(events, samples, seed))
+        return measure.rows(events, samples, seed)
 
 
 def _parameters(configuration):

@@ -16,8 +16,9 @@ import numpy as np
 from twodiscs.comparison.scores import chi2_p
 from twodiscs.model.box import Box
 from twodiscs.model.events import EVENTS
-from twodiscs.points.estimates import LinearFit
+from twodiscs.points.estimates import Estimate, LinearFit
 from twodiscs.theory.laws import leading_law
+from twodiscs_paper.study import row
 
 #: Fits take radii within this relative distance of the limit, without another limit in between.
 WIDTH = 0.2
@@ -25,59 +26,58 @@ WIDTH = 0.2
 #: The fewest points for a fit.
 FEWEST = 3
 
-#: The columns that a fit uses.
+#: The columns that a fit uses, and those that tell one fit from another.
 COLUMNS = ("radius", "estimate", "stderr", "exact")
+OF_FIT = (
+    "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points", "nearest",
+    "farthest",
+)  # fmt: skip
 
 
-def fits(law, quantity, radii, times, errors, exact):
-    """Yield the fits to ``times`` at ``radii`` as rows of thresholds.csv, without scene and event.
+def fits(start, law, quantity, radii, times, errors, exact):
+    """Yield the fits to ``times`` at ``radii`` as rows of thresholds.csv.
 
-    ``errors`` are standard errors of the times, ``exact`` the exact mean times. Fits to mean times
-    are compared with the same fits to the exact curve; first passages have no exact curve.
-    Coefficients are fitted at the exact power, to mean times only. Yields nothing for fewer than
-    three points.
+    ``start`` has the columns that name scene and event. ``errors`` are standard errors of the
+    times, ``exact`` the exact mean times. Fits to mean times are compared with the same fits to the
+    exact curve; first passages have no exact curve. Coefficients are fitted at the exact power, to
+    mean times only. Yields nothing for fewer than three points.
     """
     if len(radii) < FEWEST:
         return
     radii, times, errors, exact = (np.array(v, float) for v in (radii, times, errors, exact))
-    x, y, relative = np.log(law.limit - radii), np.log(times), errors / times
-    regular = np.log(exact / law(radii))
+    x, relative = np.log(law.limit - radii), errors / times
+    regular, deltas = np.log(exact / law(radii)), np.exp(x)
+    start = start | {
+        "quantity": quantity, "limit_radius": law.limit, "points": len(x),
+        "nearest": float(deltas.min()), "farthest": float(deltas.max()),
+    }  # fmt: skip
     for form, factor in (("plain", np.zeros(len(x))), ("reduced", regular)):
-        curve = np.log(exact) - factor
-        yield from _fit(law, quantity, form, x, y - factor, relative, curve)
+        y, curve = np.log(times) - factor, None
+        if quantity == "mean_time":
+            curve = np.log(exact) - factor
+        yield from _fit(start | {"form": form}, law, x, y, relative, curve)
 
 
-def _fit(law, quantity, form, x, y, errors, curve):
-    """Yield the rows of one fit."""
-    deltas = np.exp(x)
-    fit = {"quantity": quantity, "form": form, "limit_radius": law.limit, "points": len(x)}
-    fit |= {"nearest": float(deltas.min()), "farthest": float(deltas.max())}
+def _fit(start, law, x, y, errors, curve):
+    """Yield the rows of one fit, and of the same fit to the exact ``curve`` if there is one."""
     line = LinearFit(x, y, errors)
-    slope, error, chi2 = line.slope.value, line.slope.stderr, line.chi2
-    due = LinearFit(x, curve, errors).slope.value if quantity == "mean_time" else None
-    yield fit | _row("exponent", slope, error, due, law.power, chi2, len(x) - 2)
-    if due is None:
+    due = None if curve is None else LinearFit(x, curve, errors).slope.value
+    yield _row(start, "exponent", line.slope, due, law.power, line.chi2, len(x) - 2)
+    if curve is None:
         return
     weights = 1 / errors**2
     constant, due = (weights @ (v - law.power * x) / weights.sum() for v in (y, curve))
     chi2 = weights @ (y - constant - law.power * x) ** 2
-    value, error = math.exp(constant), math.exp(constant) / math.sqrt(weights.sum())
-    due = math.exp(due)
-    yield fit | _row("coefficient", value, error, due, law.coefficient, chi2, len(x) - 1)
+    value = math.exp(constant)
+    found = Estimate(value, value / math.sqrt(weights.sum()), len(x))
+    yield _row(start, "coefficient", found, math.exp(due), law.coefficient, float(chi2), len(x) - 1)
 
 
-def _row(parameter, value, error, curve, law, chi2, degrees):
-    return {
-        "parameter": parameter,
-        "estimate": float(value),
-        "stderr": float(error),
-        "curve": None if curve is None else float(curve),
-        "law": float(law),
-        "z": None if curve is None else float((value - curve) / error),
-        "chi2": float(chi2),
-        "degrees": degrees,
-        "p": chi2_p(chi2, degrees),
-    }
+def _row(start, parameter, found, curve, law, chi2, degrees):
+    """Return the row on a parameter that was ``found``, against its value for the exact curve."""
+    z = None if curve is None else (found.value - curve) / found.stderr
+    cells = {"law": float(law), "z": z, "chi2": chi2, "degrees": degrees}
+    return row(start, found, parameter=parameter, curve=curve, p=chi2_p(chi2, degrees), **cells)
 
 
 def start(box, law):
@@ -89,25 +89,17 @@ def start(box, law):
 def near(box, law, rows):
     """Return the ``rows`` with a standard error and near enough to the limit of the ``law``."""
     low = start(box, law)
-    return [row for row in rows if low < row["radius"] < law.limit and row["stderr"]]
+    return [one for one in rows if low < one["radius"] < law.limit and one["stderr"]]
 
 
 def passages(distributions, name, event):
     """Return the rows of distributions.csv on the mean first passages of a scene, without a cut."""
     wanted = name, event, "first_passage", None
     return [
-        row
-        for row in distributions
-        if (row["scene"], row["event"], row["quantity"], row["last"]) == wanted
+        one
+        for one in distributions
+        if (one["scene"], one["event"], one["quantity"], one["last"]) == wanted
     ]
-
-
-def strips(fit, times):
-    """Return the row with the share of the ``times`` behind a row ``fit`` that are from strips."""
-    share = sum(row["starts"] == "strip" for row in times) / len(times)
-    names = "scene", "width", "height", "event", "quantity", "form", "limit_radius", "points"
-    kept = {name: fit[name] for name in (*names, "nearest", "farthest")}
-    return dict.fromkeys(fit) | kept | {"parameter": "strips", "estimate": share}
 
 
 def rows(tables, scenes):
@@ -124,16 +116,18 @@ def rows(tables, scenes):
             if law is None:
                 continue
             times = tables.get(f"{name}/mean_times", [])
-            measured = {"mean_time": [row for row in times if row["event"] == event]}
+            measured = {"mean_time": [one for one in times if one["event"] == event]}
             if law.power < 0:
                 measured["first_passage"] = [
-                    row | {"exact": row["exact_mean"]}
-                    for row in passages(tables["distributions"], name, event)
+                    one | {"exact": one["exact_mean"]}
+                    for one in passages(tables["distributions"], name, event)
                 ]
             for quantity, found in measured.items():
                 kept = near(box, law, found)
-                values = [[row[c] for row in kept] for c in COLUMNS]
-                fitted = [start | {"event": event} | row for row in fits(law, quantity, *values)]
+                values = [[one[c] for one in kept] for c in COLUMNS]
+                fitted = [*fits(start | {"event": event}, law, quantity, *values)]
                 yield from fitted
                 if fitted and quantity == "mean_time":
-                    yield strips(fitted[0], kept)
+                    strips = sum(one["starts"] == "strip" for one in kept) / len(kept)
+                    same = {name: fitted[0][name] for name in OF_FIT}
+                    yield row(same, parameter="strips", estimate=strips)

@@ -60,7 +60,7 @@ class Thresholds(Table):
         """Return the rows of ``scenes`` (see ``measure.rows``)."""
         from twodiscs_paper.studies.thresholds import measure
 
-        return list(measure.rows(tables, scenes))
+        return measure.rows(tables, scenes)
 
 
 def _reads(configuration):
