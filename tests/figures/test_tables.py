@@ -144,8 +144,6 @@ def _passages():
         middle = [math.sqrt(_scaled(a) * _scaled(b)) for a, b in pairwise(own)]
         due = [(x, r["estimate"], r["stderr"]) for x, r in zip(middle, steps, strict=True)]
         yield "friction", "exponent", *look, due
-    lattice = of(rows, quantity="diffusion", method="lattice")
-    yield "diffusion", "lattice", style.GREEN, "^", _columns(lattice, "swap")
 
 
 def _long_files(rows):

@@ -1,13 +1,10 @@
-"""Passages near the threshold: against exact laws, between estimators, and on the lattice.
+"""Passages near the threshold: against exact laws and between estimators.
 
 Statistical comparisons allow five standard errors: with some 20 of them a false alarm comes in
 fewer than 2e-5 of all seeds.
 """
 
-import json
 import math
-from collections import Counter
-from pathlib import Path
 
 import numba
 import numpy as np
@@ -24,20 +21,11 @@ from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.sampling.starts import state_in
 from twodiscs.theory import exact
-from twodiscs_paper.configuration.load import load
-from twodiscs_paper.pipeline.results import verdict
-from twodiscs_paper.studies.passages import (
-    figure,
-    figure_diffusion,
-    figure_transmission,
-    fits,
-    measure,
-)
-from twodiscs_paper.studies.passages.models import exclusion, file
-from twodiscs_paper.studies.passages.study import STUDY, Passages
+from twodiscs_paper.studies.passages import figure, figure_diffusion, figure_transmission, measure
+from twodiscs_paper.studies.passages.models import file
+from twodiscs_paper.studies.passages.study import Passages
 
 BOX, HOP = Box(1.5, 1.0), "horizontal_hop"
-EXPECTED = Path(__file__).resolve().parents[2] / "paper" / "expected"
 
 
 def test_thresholds_are_those_before_the_box_is_full():
@@ -68,6 +56,11 @@ def test_errors_of_the_slope_are_those_of_its_spread():
     assert chi2.cdf(square, len(scores)) > 5e-7
 
 
+def complete(row):
+    """Return a row with its empty cells."""
+    return dict.fromkeys(Passages.columns) | row
+
+
 def power_rows(power, sizes, inertia=None, seed=None):
     """Return rows of κ or 1 − κ that fall as a power of the distance, with noise from a seed."""
     rng, rows = np.random.default_rng(seed), []
@@ -78,7 +71,7 @@ def power_rows(power, sizes, inertia=None, seed=None):
         kappa = value + noise if inertia else 1 - value - noise
         row = {"quantity": "coefficient", "distance": 2.0**-n, "estimate": kappa, "stderr": error}
         row |= {"scene": "paper", "event": HOP, "discs": 2, "moment_of_inertia": inertia}
-        rows.append(Passages.empty(**row))
+        rows.append(complete(row))
     return rows
 
 
@@ -88,7 +81,7 @@ def test_a_power_is_fitted_to_the_last_octaves():
     rough = power_rows(0.5, {4: 0.01, 3: 0.02}, inertia=0.5)
     alone = power_rows(0.5, {4: 0.01}, inertia=1.0)
     beyond = [row | {"estimate": 1.01, "event": "vertical_hop"} for row in smooth]
-    first, second = fits.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
+    first, second = measure.fits([*smooth[::-1], *far, *rough, *alone, *beyond])
     assert first["estimate"] == pytest.approx(1 / 3)
     assert (first["distance"], first["replicas"]) == (2.0**-8, 5)
     # Five equal errors at distances of one octave: Σ(x − x̄)² is 10 (ln 2)².
@@ -101,7 +94,7 @@ def test_a_power_is_fitted_to_the_last_octaves():
 def test_errors_of_the_fitted_power_are_those_of_its_spread():
     sizes, scores = {4: 0.01, 5: 0.03, 6: 0.01, 7: 0.02, 8: 0.04}, []
     for seed in range(200):
-        (row,) = fits.fits(power_rows(0.38, sizes, seed=seed))
+        (row,) = measure.fits(power_rows(0.38, sizes, seed=seed))
         scores.append((row["estimate"] - 0.38) / row["stderr"])
     square = sum(z**2 for z in scores)
     assert chi2.sf(square, len(scores)) > 5e-7
@@ -134,67 +127,6 @@ def test_first_passages_take_the_time_between_passages():
     kappa = plateau(kappa, gap, mean, of_clusters)
     assert abs(kappa.value - due) <= 5 * math.hypot(error, kappa.stderr) + gap / mean
     assert 5 * error + gap / mean < 0.25
-
-
-# The lattice ------------------------------------------------------------------------------------
-
-
-def test_free_walks_and_single_files_are_exact():
-    """D = 1 where neighbours always swap, so that D/(ν ℓ²) = 1/2, and F √t where they never do.
-
-    At t = 1024 the difference from the law of √t is of the order of 1/√t = 3 %.
-    """
-    free = exclusion.diffusion(1.0, 64, 1)
-    assert abs(free.value - 0.5) <= 5 * free.stderr
-    assert free.stderr < 0.02
-    file = exclusion.single_file(64, 2)
-    assert abs(file.value - exclusion.SINGLE_FILE) <= 5 * file.stderr + 0.03
-
-
-def test_rare_swaps_make_a_random_walk():
-    """The trial had 0.93(2) for p = 0.1; a law D ∝ τ^(−1/2) would have 3 times that of p = 1."""
-    found = exclusion.diffusion(0.1, 64, 3)
-    assert abs(found.value - 0.93) <= 5 * math.hypot(found.stderr, 0.02)
-
-
-def test_particles_move_by_one_site():
-    """At most one site by an exchange; none where none is made, and the same for the same seed."""
-    moved, passed = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
-    assert moved[0, 0] == passed[0, 0] == 0
-    # Most exchanges are with empty sites.
-    assert 0 < passed[0, 1] < moved[0, 1] < 2
-    again = exclusion.displacements(0.3, [2.0**-20, 1.0], 2, 4)
-    np.testing.assert_array_equal(again, (moved, passed))
-    assert not np.array_equal(exclusion.displacements(0.3, [1.0], 2, 5)[0, 0], moved[0, 1:])
-    assert not exclusion.displacements(0.0, [8.0], 2, 4)[1].any()
-
-
-def test_places_and_displacements_on_the_lattice_have_the_same_diffusion():
-    """With the term ∝ √t removed from both: five standard errors of the difference."""
-    swap, time = 0.3, 64.0
-    moved, passed = exclusion.displacements(swap, [time / 4, time], 128, 6)
-    by_moves, by_places = (
-        (x[:, 1] - 2 * x[:, 0]) / time for x in (moved, passed / exclusion.DENSITY**2)
-    )
-    apart = mean_of(by_moves - by_places)
-    assert abs(apart.value) < 5 * apart.stderr
-
-
-@pytest.mark.parametrize(
-    ("call", "said"),
-    [
-        (lambda: exclusion.displacements(1.5, [1.0], 2, 1), "swap must be a probability"),
-        (lambda: exclusion.diffusion(0.0, 2, 1), "swap must be a probability above 0"),
-        (lambda: exclusion.displacements(0.5, [1.0], 1, 1), "rings must be an integer"),
-        (lambda: exclusion.displacements(0.5, [], 2, 1), "times must ascend"),
-    ],
-)
-def test_bad_requests_are_refused(call, said):
-    with pytest.raises(ValueError, match=said):
-        call()
-
-
-# The table and the figure -----------------------------------------------------------------------
 
 
 # A file of discs ----------------------------------------------------------------------------------
@@ -388,7 +320,7 @@ def test_the_measured_density_is_the_limit_of_long_waves():
 
 
 def joined(name, box, inertias=(0.5,)):
-    """Return the rows of all parts that there are for a box; all that are due are among them."""
+    """Return the rows of all parts that there are for a box."""
     own, parts = {"name": name, "box": box, "events": 2**18, "seed": 1}, []
     for hop in measure.thresholds(box):
         some = inertias if hop == [*measure.thresholds(box)][-1] else (0.5,)
@@ -398,36 +330,9 @@ def joined(name, box, inertias=(0.5,)):
     if box.fits(blocked := 0.28 * box.height):
         given = {"name": name, "box": box, "blocked": blocked, "seed": 1}
         parts.append({"part": "in_long_file", **given})
-    parts += [{"part": part, "seed": 1} for part in ("on_lattice", "in_the_limit")]
-    rows = Passages.rows({i: Passages.part(**given) for i, given in enumerate(parts)})
-    due = [row for given in parts for row in measure.due(**given)]
-    assert not [said for said in verdict.study_failures(rows, due) if "is missing" in said]
-    return rows
-
-
-#: The kinds of rows that every build has.
-ALWAYS = {
-    ("correlation", "hops"), ("slope", "hops"), ("last_exponent", "fit"), ("rate", "states"),
-    ("diffusion", "hops"), ("diffusion", "states"), ("diffusion", "lattice"),
-    ("displacement", "states"), ("single_file", "states"), ("single_file", "lattice"),
-    ("amplitude", "limit"),
-}  # fmt: skip
-
-
-def test_all_rows_that_every_build_has_are_due():
-    """κ without friction is due, too, except the one that is next to its limit."""
-    due = [*STUDY.due(load(json.loads((EXPECTED / "configuration.json").read_text("utf-8"))))]
-    rows = Passages.read(EXPECTED / "passages.csv")
-    rows = [row for row in rows if row["friction"] is None or row["quantity"] != "coefficient"]
-    found = Counter(tuple((name, row[name]) for name in due[0]) for row in rows)
-    more = [dict(row) for row in (found - Counter(tuple(row.items()) for row in due)).elements()]
-    assert not [row for row in more if (row["quantity"], row["method"]) in ALWAYS]
-    kappa = Counter(
-        (row["scene"], row["event"], row["moment_of_inertia"])
-        for row in more
-        if row["quantity"] == "coefficient"
-    )
-    assert {*kappa.values()} <= {1}
+    parts.append({"part": "in_the_limit", "seed": 1})
+    found = [complete(row) for given in parts for row in Passages.part(**given)]
+    return [complete(row) for row in Passages.rows({"all": found})]
 
 
 @pytest.fixture
@@ -435,8 +340,8 @@ def small(monkeypatch):
     """Make the study one of few distances and hops."""
     for name, value in {
         "SMOOTH": range(6, 9), "ROUGH": range(6, 9), "RING": range(3, 4),
-        "MOST_HOPS": 2**12, "SWAPS": (1.0, 0.3), "MORE_RINGS": 4,
-        "LIMIT_BLOCKS": 4, "FILES": (4,), "MOST_FILES": 2**8, "FILE_SAMPLES": 2**16,
+        "MOST_HOPS": 2**12, "LIMIT_BLOCKS": 4, "FILES": (4,), "MOST_FILES": 2**8,
+        "FILE_SAMPLES": 2**16,
         "LONG_FILE": 24, "LONG_REPLICAS": 8, "OPEN": (3,), "RECORDS": 64,
     }.items():  # fmt: skip
         monkeypatch.setattr(measure, name, value)
@@ -477,7 +382,7 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
     with style.context():
         _, between = figure.draw(BOX, {"passages": rows}).axes
         collapse, _, _ = figure_transmission.draw(BOX, {"passages": rows}).axes
-        ring, _, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
+        ring, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
     names = [text.get_text() for text in ring.get_legend().get_texts()]
     assert {"4 smooth discs", "24 with friction"} <= {*names}
     # Displacements in units of ℓ², at times in units of h and the thermal speed.
@@ -518,18 +423,18 @@ def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):
     """Along a ring of its width the discs would be jammed before they cannot pass."""
     rows = joined("square", Box(1.0, 4.0))
     events = {row["event"] for row in rows}
-    assert events == {"vertical_hop", "swap", None}
+    assert events == {"vertical_hop", None}
     with style.context():
-        lattice = [row for row in rows if row["event"] == "swap"]
+        limit = [row for row in rows if row["method"] == "limit"]
         for module in (figure, figure_transmission, figure_diffusion):
-            for some in (rows, lattice, []):
+            for some in (rows, limit, []):
                 assert module.draw(Box(1.0, 4.0), {"passages": some})
 
 
 def test_scores_have_the_errors_of_both_estimates():
     near = measure.NearThreshold("a", BOX.scene(0.24), HOP, 5, 1)
     two, five = Estimate(2.0, 0.3, 100), Estimate(5.0, 0.4, 100)
-    row = near.make_row("plateau", "hops", two, 1.0, five)
+    row = near.row("plateau", "hops", two, 1.0, five)
     assert (row["z"], row["reference_stderr"]) == (pytest.approx(-6), 0.4)
 
 
@@ -591,7 +496,7 @@ def test_rows_with_friction():
         octaves = math.log(before["distance"] / after["distance"])
         assert slope["stderr"] == pytest.approx(math.sqrt(square) / octaves)
     assert len(slopes) == 2
-    assert list(fits.fits([Passages.empty(**row) for row in rows])) == []
+    assert list(measure.fits([complete(row) for row in rows])) == []
 
 
 def test_discs_that_diffuse_pass_as_a_long_neck_says():

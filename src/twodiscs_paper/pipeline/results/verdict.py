@@ -24,8 +24,8 @@ from twodiscs_paper.configuration.load import load
 
 #: The columns that identify a row of a study, as far as its table has them.
 NAMES = (
-    "scene", "discs", "event", "quantity", "method", "moment_of_inertia", "friction", "swap",
-    "radius", "time",
+    "scene", "discs", "event", "quantity", "method", "moment_of_inertia", "friction", "radius",
+    "time",
 )  # fmt: skip
 
 #: The columns of an estimate and its error, and of its reference and its error: the first pair that

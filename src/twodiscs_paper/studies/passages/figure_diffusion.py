@@ -1,4 +1,4 @@
-"""How fast discs diffuse by hops: on a ring, in long files, and in a single file on a lattice."""
+"""How fast discs diffuse by hops: on a ring and in long files."""
 
 import math
 
@@ -29,9 +29,9 @@ from twodiscs_paper.studies.passages.figure import (
 from twodiscs_paper.studies.passages.measure import ONE_INERTIA
 from twodiscs_paper.studies.passages.models import file
 
-#: Inches: the width of the figure, heights of the panels of the ring, its residuals and the
-#: lattice, the gap, the margin above.
-WIDTH, RING, RESIDUALS, LATTICE, GAP, TOP = 7.0, 1.9, 0.8, 1.15, 0.42, 0.22
+#: Inches: the width of the figure, heights of the panels of the ring and its residuals, the gap,
+#: the margin above.
+WIDTH, RING, RESIDUALS, GAP, TOP = 7.0, 2.6, 1.1, 0.42, 0.22
 
 #: Short files of more than two discs.
 FILES = {4: (SKY, "P"), 8: (BLACK, "D")}
@@ -41,9 +41,6 @@ SMOOTH_FILE, KICKED_FILE, ROUGH_FILE = (GREEN, "^"), (PURPLE, "v"), (VERMILLION,
 
 #: Looks of distances in a collapse.
 OPEN = ((BLUE, "o"), (VERMILLION, "s"), (PURPLE, "D"))
-
-#: The line of a random walk, at 1.
-RANDOM_WALK = {"color": BLACK, "lw": 0.7, "ls": (0, (4, 2))}
 
 #: {quantity: colour, marker, name} of residuals.
 RESIDUAL_LOOKS = {
@@ -56,12 +53,10 @@ RESIDUAL_LOOKS = {
 def draw(box, tables):
     """Draw the rows of passages.csv on diffusion; the ring has the box of the first scene."""
     rows = tables["passages"]
-    middle = panels.BOTTOM + LATTICE + GAP
-    upper = middle + RESIDUALS + panels.GAP
+    upper = panels.BOTTOM + RESIDUALS + panels.GAP
     figure = new_figure(upper + RING + TOP, WIDTH)
     ring = panels.add_panel(figure, upper, RING, name="ring")
-    lower = panels.add_panel(figure, middle, RESIDUALS, name="residuals")
-    lattice = panels.add_panel(figure, panels.BOTTOM, LATTICE, name="lattice")
+    lower = panels.add_panel(figure, panels.BOTTOM, RESIDUALS, name="residuals")
     half = (upper + RING - panels.BOTTOM - GAP) / 2
     right = WIDTH - COLUMN + panels.LEFT
     moved = panels.add_panel(figure, panels.BOTTOM + half + GAP, half, right, name="moved")
@@ -75,14 +70,6 @@ def draw(box, tables):
     long_files = [row for row in rows if row["quantity"] in LONG]
     _moved(moved, long_files)
     _collapse(collapse, rows)
-    swaps = select(rows, quantity="diffusion", method="lattice")
-    x, y, error = columns(swaps, "swap", "estimate", "stderr")
-    points(lattice, x, y, error, (GREEN, "^"), "single file on a lattice")
-    lattice.axhline(1, **RANDOM_WALK)
-    lattice.set(xscale="log", xlim=(0.005, 1.4), ylim=(0, None))
-    lattice.xaxis.set_major_formatter("{x:g}")
-    lattice.set(xlabel="probability $p$ of a swap", ylabel=r"$D/(\nu\,\ell^2)$")
-    lattice.legend(loc="lower left")
     for axes in (ring, lower):
         axes.set(xlim=(0.01, 0.2))
     ring.tick_params(which="both", labelbottom=False)
@@ -100,13 +87,12 @@ def caption(shown):
     correlations of hops (open symbols) and by displacements (dots), for four and eight discs by
     displacements, and for long files by the order of the discs. With friction, all velocities are
     drawn anew at random times, at a rate γ. (b) Residuals z in standard errors, from the exact
-    rate, between two estimators, or of F from theory. (c) The same ratio for a single file on a
-    lattice, whose neighbours swap with the probability p. (d) Mean square displacement of a tagged
+    rate, between two estimators, or of F from theory. (c) Mean square displacement of a tagged
     disc in a long file on a ring, blocked (r = 0.28 h, full symbols) and open (δ = 1/8). Units are
     ℓ² and the thermal speed. Black lines are theory of the blocked files at long times, without a
     free parameter: sound, until it has gone around half of the ring, and damped sound. Rough discs
     (I = 1/2, blocked) lose their momentum to the walls, too, but have no such line. Grey lines add
-    what hops do to the file of places, as the order of the discs has it. (e) Files with
+    what hops do to the file of places, as the order of the discs has it. (d) Files with
     friction: displacements in units of F√t×, at times over t× = (F/2D)², where single file and hops
     contribute equally. The line is √u + u with u = t/t×. Error bars are one standard error.
     """
@@ -139,7 +125,7 @@ def _ring(axes, rows):
             name = f"{own[0]['discs']} {'with friction' if kicked else 'smooth discs'}"
             points(axes, x, y, error, look, name)
     axes.plot([], [], ls="", marker=".", color=BLACK, markersize=3, label="by displacements")
-    axes.axhline(1, **RANDOM_WALK)
+    axes.axhline(1, color=BLACK, lw=0.7, ls=(0, (4, 2)))
     axes.set(xscale="log", ylim=(0, None), ylabel=r"diffusion $D/(\nu\,\ell^2)$")
     axes.legend(loc="center left", bbox_to_anchor=(0, 0.4), ncols=2, fontsize=6.5)
 

@@ -31,13 +31,13 @@ from twodiscs.dynamics.ensemble import REPLICAS as STARTS
 from twodiscs.dynamics.two import strip
 from twodiscs.dynamics.two.passages import REPLICAS, cluster_sizes, hop_sums
 from twodiscs.model.box import Box
-from twodiscs.model.checks import check_integer
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.points import strata
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
 from twodiscs.theory import exact, tails
-from twodiscs_paper.studies.passages.models import exclusion, file, limit
+from twodiscs_paper.studies.passages.models import file, limit
+from twodiscs_paper.study import row
 
 #: Distances below the radius where the hop becomes blocked: halved from the first to the last.
 SMOOTH, ROUGH, RING = range(3, 15), range(3, 10), range(3, 7)
@@ -91,12 +91,14 @@ SINGLE, HOPPED = (8, 32), (16, 32)
 #: The number of discs on the ring whose rate of hops is sampled.
 SAMPLED_FILE = 8
 
-#: Probabilities of swaps on the lattice; numbers of rings for runs longer than ``LONG`` and for
-#: shorter runs.
-SWAPS, RINGS, MORE_RINGS, LONG = (1.0, 0.3, 0.1, 0.03, 0.01), 8, 128, 1000
-
 #: Blocks of pairs of discs for c.
 LIMIT_BLOCKS = 512
+
+#: The number of distances in a fit, each half of the one before: four octaves.
+LAST = 5
+
+#: The columns that identify one hop, near one threshold, of discs with one moment of inertia.
+HOP = ("scene", "width", "height", "event", "discs", "moment_of_inertia")
 
 
 def thresholds(box):
@@ -136,13 +138,30 @@ def slope_time(scene, hop):
     return time if found else None, density
 
 
+def compared(found, reference, blocks=None):
+    """Return the cells of a comparison of an ``Estimate`` with a ``reference``.
+
+    The reference is an exact number, or an ``Estimate`` by another method. If the error comes from
+    a number of independent ``blocks``, the deviate follows Student's law.
+    """
+    if not isinstance(reference, Estimate):
+        reference = Estimate(reference, 0.0, 1)
+    z = (found.value - reference.value) / math.hypot(found.stderr, reference.stderr)
+    return {
+        "reference": reference.value,
+        "reference_stderr": reference.stderr or None,
+        "z": student_deviate(z, blocks - 1) if blocks else z,
+        "test": "normal",
+    }
+
+
 class NearThreshold:
     """One kind of hop at one radius: its measurements and their rows."""
 
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
-        self.row = {
+        self.start = {
             "scene": name,
             "width": scene.width,
             "height": scene.height,
@@ -162,24 +181,15 @@ class NearThreshold:
         kind += f" {self.scene.friction}" if self.scene.friction else ""
         return seed_of(self.scene, self.hop, f"{self.name} {kind}", self.seed, what)
 
-    def make_row(self, quantity, method, estimate, time=None, reference=None, events=None):
+    def row(self, quantity, method, found, time=None, reference=None, events=None):
         """Return a row; ``reference`` is an exact number, or an ``Estimate`` by another method.
 
-        If the method is ``states``, the error comes from ``estimate.n`` independent blocks.
+        If the method is ``states``, the error comes from ``found.n`` independent blocks.
         """
-        row = self.row | {"quantity": quantity, "method": method, "time": time, "events": events}
-        row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
-        if reference is None:
-            return row
-        if not isinstance(reference, Estimate):
-            reference = Estimate(reference, 0.0, 1)
-        z = (estimate.value - reference.value) / math.hypot(estimate.stderr, reference.stderr)
-        return row | {
-            "reference": reference.value,
-            "reference_stderr": reference.stderr or None,
-            "z": student_deviate(z, estimate.n - 1) if method == "states" else z,
-            "test": "normal",
-        }
+        cells = {"quantity": quantity, "method": method, "time": time, "events": events}
+        if reference is not None:
+            cells |= compared(found, reference, found.n if method == "states" else None)
+        return row(self.start, found, replicas=found.n, **cells)
 
     def clusters(self, blocks):
         """Return (κ or None, its rows)."""
@@ -201,8 +211,8 @@ class NearThreshold:
             return None, []
         time = Estimate(self.mean / kappa.value, self.mean * kappa.stderr / kappa.value**2, kappa.n)
         return kappa, [
-            self.make_row("coefficient", "clusters", kappa, gap, events=events),
-            self.make_row("passage_time", "clusters", time, gap),
+            self.row("coefficient", "clusters", kappa, gap, events=events),
+            self.row("passage_time", "clusters", time, gap),
         ]
 
     def curve(self, blocks, kappa):
@@ -215,10 +225,10 @@ class NearThreshold:
             if time == gap:
                 own.append(estimate)
             else:
-                yield self.make_row("correlation", "hops", estimate, time)
+                yield self.row("correlation", "hops", estimate, time)
         flat = plateau(own[0], gap, self.mean, of_order) if kappa else None
         if flat:
-            yield self.make_row("plateau", "hops", flat, gap, kappa, events)
+            yield self.row("plateau", "hops", flat, gap, kappa, events)
 
     def slope(self, blocks):
         """Yield the row of −dκ/dt at 0⁺ against its exact value 2 p(0⁺), for plain scenes.
@@ -237,7 +247,7 @@ class NearThreshold:
         value = (4 * (1 - early.value) - (1 - late.value)) / (2 * time)
         error = math.hypot(4 * early.stderr, late.stderr) / (2 * time)
         estimate = Estimate(value, error, early.n + late.n)
-        yield self.make_row("slope", "hops", estimate, time, 2 * density)
+        yield self.row("slope", "hops", estimate, time, 2 * density)
 
     def diffusion(self, events):
         """Yield the rows of the rate of hops and of D/(ν ℓ²), on a ring."""
@@ -246,7 +256,7 @@ class NearThreshold:
         blocks = blocks_for(self.scene, 2.0**-self.halvings, around, events)
         sums, simulated = hop_sums(self.scene, self.hop, [around], blocks, self._seed("times"))
         (correlated,) = by_time(sums)
-        yield self.make_row("diffusion", "hops", correlated, around, events=simulated)
+        yield self.row("diffusion", "hops", correlated, around, events=simulated)
         time = max(around, self.mean)
         blocks = int(min(max(events / (rate * 2 * time), FEWEST), MOST_HOPS)) // REPLICAS
         sums, simulated = hop_sums(
@@ -254,10 +264,10 @@ class NearThreshold:
         )
         per_time = sums / (REPLICAS * time)
         counted = mean_of(per_time[:, 2, 1] / 2)
-        yield self.make_row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
+        yield self.row("rate", "states", counted, 2 * time, 1 / self.mean, simulated)
         # Displacements in the second half of the time no longer depend on the start.
         moved = mean_of((per_time[:, 1, 1] - per_time[:, 1, 0]) * self.mean)
-        yield self.make_row("diffusion", "states", moved, 2 * time, correlated)
+        yield self.row("diffusion", "states", moved, 2 * time, correlated)
 
     def rate(self, blocks):
         """Return the row of the rate of hops, counted in its strip."""
@@ -268,7 +278,7 @@ class NearThreshold:
         per_time = around.fraction / (2 * around.time)
         mean, error = (per_time * part for part in strata.stratified_mean(fractions, *sums))
         found = Estimate(mean, error, blocks * STARTS)
-        return self.make_row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
+        return self.row("rate", "states", found, 2 * around.time, 1 / self.mean, int(events))
 
 
 def one_hop(name, box, hop, halvings, inertia, events, seed):
@@ -304,12 +314,12 @@ def exponents(measured):
             continue
         errors = [k.stderr / v for k, v in zip((before, kappa), values, strict=True)]
         slope = Estimate(math.log2(values[0] / values[1]), math.hypot(*errors) / math.log(2), 2)
-        yield near.make_row("exponent", "fit", slope)
+        yield near.row("exponent", "fit", slope)
     if len(measured) > 2:
         x = [-near.halvings * math.log(2) for near, _ in measured]
         y = [math.log(near.mean / kappa.value) for near, kappa in measured]
         errors = [kappa.stderr / kappa.value for _, kappa in measured]
-        yield measured[-1][0].make_row("passage_exponent", "fit", LinearFit(x, y, errors).slope)
+        yield measured[-1][0].row("passage_exponent", "fit", LinearFit(x, y, errors).slope)
 
 
 def one_friction(name, box, friction, halvings, events, seed):
@@ -332,7 +342,7 @@ def one_friction(name, box, friction, halvings, events, seed):
             error = math.hypot(*(k.stderr / k.value for k in (far, kappa)))
             slope = -math.log2(times[1] / times[0]) / octaves
             estimate = Estimate(slope, error / math.log(2) / octaves, 2)
-            yield near.make_row("local_exponent", "fit", estimate)
+            yield near.row("local_exponent", "fit", estimate)
         before = (near, kappa) if kappa else None
 
 
@@ -348,7 +358,7 @@ def one_file(name, box, discs, events, seed):
     for n in RING:
         pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
         scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
-        row = {
+        start = {
             "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
             "event": "horizontal_hop", "discs": discs, "radius": scene.radius,
             "distance": 2.0**-n, "method": "states",
@@ -360,12 +370,9 @@ def one_file(name, box, discs, events, seed):
         price = 2 * time * exact.event_rate(pair) * (discs / 2) ** 0.5
         replicas = int(min(max(events / price, FEWEST_FILES), MOST_FILES))
         moved, hops = file.diffusion(scene, time, replicas, streams[1])
-        z = (hops.value - sampled.value) / math.hypot(hops.stderr, sampled.stderr)
-        counted = {"estimate": hops.value, "stderr": hops.stderr, "z": z, "test": "normal"}
-        reference = {"reference": sampled.value, "reference_stderr": sampled.stderr}
-        row |= {"time": 2 * time, "replicas": moved.n}
-        yield row | counted | reference | {"quantity": "rate"}
-        yield row | {"quantity": "diffusion", "estimate": moved.value, "stderr": moved.stderr}
+        cells = {"time": 2 * time, "replicas": moved.n}
+        yield row(start, hops, quantity="rate", **cells, **compared(hops, sampled))
+        yield row(start, moved, quantity="diffusion", **cells)
 
 
 def one_long_file(name, box, radius, friction, known, seed, inertia=None):
@@ -394,10 +401,9 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
         kind = friction if inertia is None else f"rough {inertia}"
         return seed_of(scene, "horizontal_hop", name, seed, f"long file {kind} {what}")
 
-    def make_row(quantity, method, estimate, lag=None, **more):
-        time = None if lag is None else lag * STEP * unit
-        row = start | {"quantity": quantity, "method": method, "time": time} | more
-        return row | {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
+    def make_row(quantity, method, found, lag=None, **more):
+        more["time"] = None if lag is None else lag * STEP * unit
+        return row(start, found, quantity=quantity, method=method, replicas=found.n, **more)
 
     places = file.recorded(scene, STEP * unit, RECORDS, LONG_REPLICAS, stream("states"), rate)
     numbers = file.order(places, scene.width)
@@ -429,11 +435,8 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
         due = (law(SINGLE[1]) - law(SINGLE[0])) / root
         # F is ∝ √S.
         error = due * variance.stderr / variance.value / 2 if variance else 0.0
-        z = (found.value - due) / math.hypot(found.stderr, error)
-        yield make_row(
-            "single_file", "states", found, SINGLE[1], reference=due,
-            reference_stderr=error or None, z=student_deviate(z, found.n - 1), test="normal",
-        )  # fmt: skip
+        cells = compared(found, Estimate(due, error, 1), found.n)
+        yield make_row("single_file", "states", found, SINGLE[1], **cells)
     if is_open:
         hops = known.get("rate")
         if hops is None:
@@ -452,36 +455,10 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
         yield make_row("diffusion", "order", Estimate(ratio, error, walked.n), HOPPED[1])
 
 
-def on_lattice(seed):
-    """Yield the rows of the single file on a lattice."""
-    start = {"event": "swap", "method": "lattice"}
-
-    def make_row(quantity, swap, estimate, reference=None, **more):
-        row = start | {"quantity": quantity, "swap": swap} | more
-        row |= {"estimate": estimate.value, "stderr": estimate.stderr, "replicas": estimate.n}
-        if reference is not None:
-            z = student_deviate((estimate.value - reference) / estimate.stderr, estimate.n - 1)
-            row |= {"reference": reference, "z": z, "test": "normal"}
-        return row
-
-    file = exclusion.single_file(MORE_RINGS, seed)
-    yield make_row("single_file", 0.0, file, time=exclusion.WITHOUT)
-    for number, swap in enumerate(SWAPS, 1):
-        time = exclusion.run_time(swap)
-        rings = RINGS if time > LONG else MORE_RINGS
-        diffusion = exclusion.diffusion(swap, rings, seed + number)
-        free = exclusion.DENSITY if swap == 1 else None
-        rate = {"exact_mean": 1 / (2 * exclusion.DENSITY * swap), "time": time}
-        yield make_row("diffusion", swap, diffusion, free, **rate)
-
-
 def in_the_limit(seed):
     """Yield the row of c, the number of 1 − κ = c σ^(2/3) ε^(1/3)/A for smooth discs."""
     c = limit.amplitude(LIMIT_BLOCKS, seed)
-    yield {
-        "discs": 2, "quantity": "amplitude", "method": "limit",
-        "estimate": c.value, "stderr": c.stderr, "replicas": c.n,
-    }  # fmt: skip
+    yield row({"discs": 2, "quantity": "amplitude", "method": "limit"}, c, replicas=c.n)
 
 
 def near_threshold(name, box, hop, inertias, events, seed):
@@ -520,20 +497,101 @@ def in_long_file(name, box, blocked, seed):
     for radius in (blocked, *(radius_at(box.height / 4, n) for n in OPEN)):
         found = {}
         for friction in (None, FRICTION):
-            for row in one_long_file(name, box, radius, friction, {**found}, seed):
-                if row["quantity"] in ("density", "rate"):
-                    parts = (row[part] for part in ("estimate", "stderr", "replicas"))
-                    found[row["quantity"]] = Estimate(*parts)
-                yield row
+            for one in one_long_file(name, box, radius, friction, {**found}, seed):
+                if one["quantity"] in ("density", "rate"):
+                    parts = (one[part] for part in ("estimate", "stderr", "replicas"))
+                    found[one["quantity"]] = Estimate(*parts)
+                yield one
     yield from one_long_file(name, box, blocked, None, {}, seed, ONE_INERTIA)
 
 
-#: The parts of passages.csv, and those of them whose work does not depend on the number of events.
-PARTS = (
-    near_threshold, on_ring, with_friction, in_file, in_long_file, on_lattice, in_the_limit,
-)  # fmt: skip
-PARTS = {part.__name__: part for part in PARTS}
-FIXED = ("in_long_file", "on_lattice", "in_the_limit")
+# Long runs --------------------------------------------------------------------------------------
+
+
+def at_distances(one):
+    """Yield pairs (``NearThreshold``, pause) of a threshold ``one`` of a long run.
+
+    The ``pauses`` of the configuration are over that of the build.
+    """
+    box = Box(one["width"], one["height"])
+    for halvings in range(one["first"], one["last"] + 1):
+        scene = scene_at(box, one["hop"], halvings)
+        near = NearThreshold(one["name"], scene, one["hop"], halvings, one["seed"])
+        for pause in one.get("pauses", [1]):
+            yield near, pause * quiet_time(scene, near.hop)
+
+
+def cluster_counts(one):
+    """Return {"events", "of", "sizes"} for each of the distances of a threshold ``one``.
+
+    ``sizes`` are pairs [n, how many of the hops are in a cluster of n], without those of none;
+    "of" is how many sizes are told apart.
+    """
+    found, blocks = [], -(-one["hops"] // REPLICAS)
+    for near, gap in at_distances(one):
+        sizes, events = cluster_sizes(near.scene, near.hop, gap, blocks, near.cluster_seed)
+        pairs = [[n, int(hops)] for n, hops in enumerate(sizes) if hops]
+        found.append({"events": int(events), "of": len(sizes), "sizes": pairs})
+    return found
+
+
+def cluster_rows(one, counts):
+    """Return the rows of passages.csv on a threshold ``one`` from its ``cluster_counts``."""
+    measured, found = [], []
+    for (near, gap), count in zip(at_distances(one), counts, strict=True):
+        sizes = np.zeros(count["of"], np.int64)
+        for n, hops in count["sizes"]:
+            sizes[n] = hops
+        kappa, own = near.of_sizes(sizes, count["events"], gap)
+        measured.append((near, kappa))
+        found += own
+    if "pauses" in one:  # at one distance
+        return found
+    found += exponents(measured)
+    return [*found, *fits(found)]
+
+
+def long_run(thresholds):
+    """Yield the rows of many hops at ``thresholds``, at distances that no build goes down to."""
+    for one in thresholds:
+        yield from cluster_rows(one, cluster_counts(one))
+
+
+# The table --------------------------------------------------------------------------------------
+
+
+def fits(rows):
+    """Yield the fitted powers of ``rows`` of passages.csv.
+
+    The power is fitted to 1 − κ for smooth discs, and to κ for rough discs, both without friction.
+    A fit takes the last ``LAST`` distances of a hop. A hop has no fit if it has fewer than two
+    distances, or if a value is not positive.
+    """
+    hops = {}
+    for one in rows:
+        if one["quantity"] == "coefficient" and one["friction"] is None:
+            hops.setdefault(tuple(one[name] for name in HOP), []).append(one)
+    for found in hops.values():
+        last = sorted(found, key=lambda one: -one["distance"])[-LAST:]
+        is_rough = last[0]["moment_of_inertia"] is not None
+        values = [one["estimate"] if is_rough else 1 - one["estimate"] for one in last]
+        if len(last) < 2 or min(values) <= 0:
+            continue
+        x = [math.log(one["distance"]) for one in last]
+        y = [math.log(value) for value in values]
+        errors = [one["stderr"] / value for one, value in zip(last, values, strict=True)]
+        kept = {name: last[-1][name] for name in (*HOP, "radius", "distance", "exact_mean")}
+        slope = LinearFit(x, y, errors).slope
+        yield row(kept, slope, quantity="last_exponent", method="fit", replicas=len(last))
+
+
+#: The parts of passages.csv.
+PARTS = {
+    part.__name__: part
+    for part in (
+        near_threshold, on_ring, with_friction, in_file, in_long_file, in_the_limit, long_run,
+    )
+}  # fmt: skip
 
 
 def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=None, **_):
@@ -543,7 +601,7 @@ def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=No
     cluster could have more than ``MOST_MERGED`` passages.
     """
 
-    def row(quantity, method, radius, discs=2, inertia=None, event=hop, of=name):
+    def one(quantity, method, radius, discs=2, inertia=None, event=hop, of=name):
         return {
             "scene": of, "event": event, "discs": discs, "radius": radius,
             "moment_of_inertia": inertia, "quantity": quantity, "method": method,
@@ -557,45 +615,30 @@ def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=No
             halvings, known = SMOOTH if inertia is None else ROUGH, 0
             for n in halvings:
                 scene = scene_at(box, hop, n, moment_of_inertia=inertia)
-                yield from [row("correlation", "hops", scene.radius, inertia=inertia)] * len(TIMES)
+                yield from [one("correlation", "hops", scene.radius, inertia=inertia)] * len(TIMES)
                 if inertia is None and slope_time(scene, hop)[0] is not None:
-                    yield row("slope", "hops", scene.radius)
+                    yield one("slope", "hops", scene.radius)
                 if quiet_time(scene, hop) * exact.passing_rate(scene, hop) < 0.9 * MOST_MERGED:
-                    yield row("coefficient", "clusters", scene.radius, inertia=inertia)
+                    yield one("coefficient", "clusters", scene.radius, inertia=inertia)
                     if inertia is None:
-                        yield row("plateau", "hops", scene.radius)
+                        yield one("plateau", "hops", scene.radius)
                     known += 1
             if known > 1:
-                yield row("last_exponent", "fit", scene.radius, inertia=inertia)
+                yield one("last_exponent", "fit", scene.radius, inertia=inertia)
     elif part == "on_ring":
         for radius, inertia in product(radii(RING), (None, ONE_INERTIA)):
             for kind in (("diffusion", "hops"), ("diffusion", "states"), ("rate", "states")):
-                yield row(*kind, radius, inertia=inertia)
+                yield one(*kind, radius, inertia=inertia)
     elif part == "with_friction":
-        yield from (row("rate", "states", *radii(halvings[:1])) for halvings in KICKED.values())
+        yield from (one("rate", "states", *radii(halvings[:1])) for halvings in KICKED.values())
     elif part == "in_file":
         for radius, discs, what in product(radii(RING), FILES, ("rate", "diffusion")):
-            yield row(what, "states", radius, discs)
+            yield one(what, "states", radius, discs)
     elif part == "in_long_file":
         for radius in (blocked, *radii(OPEN)):
-            yield row("single_file", "states", radius, LONG_FILE)
-            yield from [row("displacement", "states", radius, LONG_FILE)] * 2 * len(LAGS)
-        rough = row("displacement", "states", blocked, LONG_FILE, ONE_INERTIA)
+            yield one("single_file", "states", radius, LONG_FILE)
+            yield from [one("displacement", "states", radius, LONG_FILE)] * 2 * len(LAGS)
+        rough = one("displacement", "states", blocked, LONG_FILE, ONE_INERTIA)
         yield from [rough] * len(LAGS)
-    elif part == "on_lattice":
-        for what in ("single_file", *["diffusion"] * len(SWAPS)):
-            yield row(what, "lattice", None, None, event="swap")
     else:
-        yield row("amplitude", "limit", None, event=None)
-
-
-def rows(part, seed, events=1, **given):
-    """Return the rows of a ``part`` of passages.csv, without their empty cells.
-
-    An estimate may take about ``events`` wall and disc events. Every estimate has its own random
-    streams, derived from the ``seed``.
-    """
-    check_integer("seed", seed, 0), check_integer("events", events)
-    if part not in FIXED:
-        given["events"] = events
-    return PARTS[part](seed=seed, **given)
+        yield one("amplitude", "limit", None, event=None)

@@ -25,16 +25,16 @@ AS_ESTIMATE = partial(Column, float, "as estimate")
 class Passages(Table):
     """
     One row per quantity of the hops of one kind at one radius: which of them are passages, how fast
-    they make discs diffuse along a ring, and the same for a single file on a lattice.
+    they make discs diffuse along a ring.
     """
 
     columns = {
-        "scene": TEXT("the scene; empty for the lattice"),
+        "scene": TEXT("the scene; empty for the limit of any hop"),
         "width": WIDTH,
         "height": HEIGHT,
         "periodic": TEXT("axes without walls; empty if both have walls"),
-        "event": TEXT("the hop; swap on the lattice; empty for the limit of any hop"),
-        "discs": COUNT("number of discs; empty for the lattice"),
+        "event": TEXT("the hop; empty for the limit of any hop"),
+        "discs": COUNT("number of discs"),
         "radius": RADIUS,
         "distance": NUMBER(
             "(r_c − r)/r_c, the relative distance below the radius r_c at which the hop becomes "
@@ -48,7 +48,6 @@ class Passages(Table):
             "1/time",
             "rate γ of kicks, at which all velocities are drawn anew; empty without friction",
         ),
-        "swap": NUMBER("probability that neighbours on the lattice swap"),
         "exact_mean": TIME("exact mean time τ between hops, in both directions together"),
         "quantity": TEXT(
             "correlation: C(t) = 1 + 2⟨Σ s_0 s_k⟩ of the directions of hops, between walls the "
@@ -71,8 +70,8 @@ class Passages(Table):
         "method": TEXT(
             "clusters: odd clusters over hops; hops: initial states on the surface of the hop; "
             "states: initial states of the invariant measure; order: by the order of the discs in "
-            "a file; insertion: Monte Carlo for a ring of 8 discs; fit: to other rows; lattice: "
-            "exclusion process; limit: the motion in the limit ε → 0"
+            "a file; insertion: Monte Carlo for a ring of 8 discs; fit: to other rows; limit: the "
+            "motion in the limit ε → 0"
         ),
         "time": TIME("t; for clusters, the time without a hop that ends a cluster"),
         "estimate": Column(float, "time, 1/time or none", "estimate"),
@@ -90,19 +89,19 @@ class Passages(Table):
     }
 
     @staticmethod
-    def part(**given):
-        """Yield the rows of a part of the table, with the arguments of ``measure.rows``."""
+    def part(part, **given):
+        """Return the rows of a part of the table, one of ``measure.PARTS``."""
         from twodiscs_paper.studies.passages import measure
 
-        yield from (Passages.empty(**row) for row in measure.rows(**given))
+        return measure.PARTS[part](**given)
 
     @staticmethod
     def rows(tables):
         """Return the rows of all parts, one part after the other, and the fits to them."""
-        from twodiscs_paper.studies.passages import fits
+        from twodiscs_paper.studies.passages import measure
 
         rows = [row for part in tables.values() for row in part]
-        return rows + [Passages.empty(**row) for row in fits.fits(rows)]
+        return [*rows, *measure.fits(rows)]
 
 
 #: Moments of inertia of rough discs, for the last hop of the first box and for
@@ -131,7 +130,7 @@ def _parts(configuration):
         if first and scene.box.fits(blocked := BLOCKED * scene.box.height):
             alone = {"name": scene.name, "box": scene.box.parameters(), "blocked": blocked} | seed
             parts["in_long_file"] = {"part": "in_long_file"} | alone
-    return parts | {part: {"part": part} | seed for part in ("on_lattice", "in_the_limit")}
+    return parts | {"in_the_limit": {"part": "in_the_limit"} | seed}
 
 
 def _due(configuration):

@@ -35,7 +35,6 @@ from twodiscs.dynamics.many.lockstep import (
     new_spins,
     take_spins,
 )
-from twodiscs.model.checks import check_ascending, check_integer
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.many import initial, measures
@@ -99,11 +98,9 @@ def diffusion(scene, time, replicas, seed):
     """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
 
     D follows from the displacements between ``time`` and twice ``time``, ν from all hops until
-    then. There are ``replicas`` independent initial states (rounded up to whole lanes). Raises
-    ``InputError`` for numbers out of range.
+    then. There are ``replicas`` independent initial states (rounded up to whole lanes).
     """
-    (time,) = check_ascending("time", [time])
-    replicas = -(-check_integer("replicas", replicas, 2) // LANES) * LANES
+    replicas = -(-replicas // LANES) * LANES
     states = initial.states(scene, replicas, seed)
     squares, crossings = np.zeros((replicas, 2)), np.zeros(replicas)
     follow(states, LANES, np.array([time, 2 * time]), law_of(scene), squares, crossings)
@@ -121,7 +118,7 @@ def sampled_rate(scene, samples, seed):
         rates(scene, part)["horizontal_hop"] for part in measures.sample(scene, samples, seed)
     )
     share = 2 / scene.discs  # two discs take part in a hop
-    return Estimate(share * found, share * error, check_integer("samples", samples))
+    return Estimate(share * found, share * error, samples)
 
 
 # Long files -------------------------------------------------------------------------------------

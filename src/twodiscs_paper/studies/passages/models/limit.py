@@ -18,7 +18,6 @@ import math
 
 import numpy as np
 
-from twodiscs.model.checks import check_integer
 from twodiscs.points.estimates import mean_of
 from twodiscs.sampling.jit import compiled, inlined
 from twodiscs.sampling.streams import open_stream, uniform
@@ -125,7 +124,6 @@ def amplitude(blocks, seed, near=ADIABATIC):
     """Return c as an ``Estimate``, from ``blocks`` blocks of ``PAIRS`` pairs.
 
     ``near`` is the separation, in units of (ε σ²)^(1/3), below which invariants are taken as kept;
-    c is the limit for small ones. Raises ``InputError`` for integers out of range.
+    c is the limit for small ones.
     """
-    blocks, seed = check_integer("blocks", blocks, 2), check_integer("seed", seed, 0)
     return mean_of(returns(np.uint64(seed), 0, blocks, float(near)))
