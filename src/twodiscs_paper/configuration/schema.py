@@ -61,7 +61,8 @@ def _section(node, path):
             "none: the key is required" if name in node.get("required", ()) else _default(child)
         )
         unit = child.get("unit", "–")
-        cells = (f"`{name}`", child["description"], child["allowed"], unit, default)
+        meaning = " ".join(child["description"].split())
+        cells = (f"`{name}`", meaning, child["allowed"], unit, default)
         lines.append(f"| {' | '.join(cells)} |")
         inner = f"{path}.{name}".lstrip(".")
         if "properties" in child:
