@@ -73,7 +73,7 @@ rule effects_curves:
         parameters=json.dumps({"scenes": boxes(CONFIGURATION)}),
         code=code(
             "twodiscs_paper.pipeline.jobs.study",
-            "twodiscs_paper.studies.effects.curves",
+            "twodiscs_paper.studies.effects.study",
         ),
     shell:
         "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
