@@ -33,9 +33,9 @@ test: .venv/ready
 
 docs: .venv/ready
 	rm -rf build/site
-	$(IN_VENV) python docs/make/website.py build/docs
 	@# A warning, as of a dead link, is an error.
-	$(IN_VENV) sphinx-build --fail-on-warning --keep-going --quiet --fresh-env build/docs build/site
+	$(IN_VENV) sphinx-build --conf-dir docs/make --doctree-dir build/doctrees --fresh-env \
+	  --fail-on-warning --keep-going --quiet . build/site
 
 # The exact packages of requirements.lock, then this one; again whenever either list changes. uv puts them
 # there: the one that is installed, or that of the lock, which pip brings. Where uv cannot, pip does it all.

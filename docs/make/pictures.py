@@ -2,24 +2,22 @@
 
     python docs/make/pictures.py results docs
 
-draws them from a finished build, to which ``snakemake explorer`` has added. ``pdftoppm`` takes the
-first page of the manuscript, ``chromium`` the top of the report and the explorer.
+draws them from a finished build of config/config.yaml.
 """
 
-import json
 import re
-import subprocess
+import sys
+from importlib import import_module
 from pathlib import Path
 from shutil import copyfile
-from tempfile import TemporaryDirectory
 
-from PIL import Image
+from twodiscs.figures.kit import style
+from twodiscs.model.box import Box
+from twodiscs_paper.catalogue import ENTRIES, TABLES
 
-from twodiscs.arguments import Parser, run
-from twodiscs.figures.kit import panels, style
-from twodiscs_paper.configuration.load import load
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES, draw_figure
-from twodiscs_paper.pipeline.jobs.study import read_tables
+#: The box of the pictures and its scene, the first of config/config.yaml.
+BOX = Box(1.5, 1.0)
+SCENE = "paper"
 
 #: {picture: (figure, number of the panel, abscissa if it is written beneath another panel)}
 PANELS = {
@@ -33,39 +31,29 @@ PANELS = {
     "more_discs": ("more_discs", 0, "number of discs $N$"),
 }
 
-#: Drawings that are shown whole.
-WHOLE = ("model",)
-
-#: Inches: the height of a picture, and its margins as in figures; two dots are a pixel shown.
-HEIGHT, TOP, DPI = 2.5, 0.3, 200
+#: Inches of a picture from bottom to top, the place of its panel, dots per inch: two are a pixel.
+HEIGHT, PLACE, DPI = 2.5, (0.16, 0.18, 0.8, 0.7), 200
 
 
-#: The script that brings the explorer to the moment of its picture.
-AT_A_HOP = """
-runs.advance(2e7);
-while (!(drawn.time > 3 && drawn.flash && drawn.time - drawn.flash.since < 0.05)) move(0.02);
-state.paused = true;
-draw();
-renew();
-"""
+def draw(name, results):
+    """Return a figure of the tables in a folder of results, None if one of them is missing."""
+    entry, tables = ENTRIES[name], {}
+    for table in (*entry.tables, *entry.main_tables):
+        paths = [Path(results, SCENE, f"{table}.csv"), Path(results, f"{table}.csv")]
+        path = next(filter(Path.exists, paths), None)
+        if path is None:
+            return None
+        tables[table] = TABLES[table].read(path)
+    return import_module(entry.module).draw(box=BOX, tables=tables, **entry.options)
 
 
-def tables_of(name, results):
-    """Return {name: rows} of the tables of the figure ``name``, in the folders ``results``."""
-    names = (*ENTRIES[name].tables, *ENTRIES[name].main_tables)
-    paths = [f"{n}={f / n}.csv" for n in names for f in results if (f / f"{n}.csv").exists()]
-    return read_tables(paths)
-
-
-def alone(figure, number, abscissa):
+def keep_panel(figure, number, abscissa):
     """Leave one panel of a figure, as wide as a column."""
     kept = figure.axes[number]
     for axes in figure.axes:
         axes.set_visible(axes is kept)
     figure.set_size_inches(style.COLUMN, HEIGHT)
-    across, up = style.COLUMN - panels.LEFT - panels.RIGHT, HEIGHT - panels.BOTTOM - TOP
-    corner = panels.LEFT / style.COLUMN, panels.BOTTOM / HEIGHT
-    kept.set_position((*corner, across / style.COLUMN, up / HEIGHT))
+    kept.set_position(PLACE)
     for text in kept.texts:
         text.set_text(re.sub(r"\([a-z]\) ?", "", text.get_text()))
     for legend in figure.legends:
@@ -77,56 +65,17 @@ def alone(figure, number, abscissa):
         kept.tick_params(labelbottom=True)
 
 
-def first_pages(results, output):
-    """Take pictures of the first page of the manuscript and of the top of the report."""
-    page = output / "paper"
-    subprocess.run(
-        ["pdftoppm", "-png", "-r", "80", "-singlefile", results / "paper.pdf", page], check=True
-    )
-    photograph(results / "report.html", output / "report.png", "1060,1120")
-
-
-def photograph(page, picture, size):
-    """Take a picture of the HTML file ``page`` in a window of ``size``, "width,height"."""
-    subprocess.run(
-        [
-            *("chromium", "--headless", "--no-sandbox", "--hide-scrollbars"),
-            *(f"--window-size={size}", f"--screenshot={picture}", page.resolve().as_uri()),
-        ],
-        check=True,
-        capture_output=True,
-    )
-
-
-def explorer(results, output):
-    """Take a picture of the explorer after a few million events, at a hop, in 256 colours."""
-    text = (results / "explorer.html").read_text(encoding="utf-8")
-    with TemporaryDirectory() as folder:
-        page, picture = Path(folder, "explorer.html"), Path(folder, "explorer.png")
-        page.write_text(text.replace("</body>", f"<script>{AT_A_HOP}</script></body>"), "utf-8")
-        photograph(page, picture, "1280,1100")
-        with Image.open(picture) as image:
-            image.convert("RGB").quantize(256).save(output / "explorer.png", optimize=True)
-
-
-def main():
-    parser = Parser(description=__doc__.split("\n")[0])
-    parser.add_argument("results", type=Path, help="the folder of a finished build")
-    parser.add_argument("output", type=Path, help="where the pictures go")
-    options = parser.parse_args()
-    configuration = json.loads((options.results / "configuration.json").read_text(encoding="utf-8"))
-    scene = load(configuration).main
-    folders = (options.results / scene.name, options.results)
-    with style.context():
-        for picture, (name, *panel) in (PANELS | {name: (name,) for name in WHOLE}).items():
-            figure = draw_figure(name, tables_of(name, folders), scene.box)
-            if panel:
-                alone(figure, *panel)
-            figure.savefig(options.output / f"{picture}.png", dpi=DPI, metadata={"Software": None})
-    copyfile(folders[0] / "figures" / "animation.gif", options.output / "animation.gif")
-    first_pages(options.results, options.output)
-    explorer(options.results, options.output)
+def main(results, output):
+    """Draw the pictures from the folder ``results`` into the folder ``output``."""
+    figures = {"model": draw("model", results)}
+    for picture, (name, number, abscissa) in PANELS.items():
+        figures[picture] = draw(name, results)
+        keep_panel(figures[picture], number, abscissa)
+    for picture, figure in figures.items():
+        figure.savefig(Path(output, f"{picture}.png"), dpi=DPI, metadata={"Software": None})
+    copyfile(Path(results, SCENE, "figures/animation.gif"), Path(output, "animation.gif"))
 
 
 if __name__ == "__main__":
-    run(main)
+    with style.context():
+        main(*sys.argv[1:])

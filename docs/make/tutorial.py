@@ -1,6 +1,6 @@
 """The tutorial: docs/python.md is its source, a notebook and the outputs on the page are made.
 
-    python docs/make/tutorial.py docs/python.md docs/tutorial.ipynb
+    python docs/make/tutorial.py
 
 runs the blocks of Python one after the other, puts what each prints or returns as a block of text
 after it, and writes the same as a notebook.
@@ -13,7 +13,8 @@ from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
-from twodiscs.arguments import Parser, run
+import nbformat
+from nbformat import v4
 
 #: A block of Python, and the text beneath it.
 BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```text\n.*?```\n)?", re.DOTALL)
@@ -34,8 +35,6 @@ def outputs(code, names):
 
 def tutorial(page):
     """Return (the text of the page with renewed outputs, the notebook) of the text of a page."""
-    from nbformat import v4
-
     parts, cells, names, end = [], [], {}, 0
     for number, block in enumerate(BLOCK.finditer(page), 1):
         before, code = page[end : block.start()], block[1].rstrip("\n")
@@ -60,18 +59,8 @@ def tutorial(page):
     return "".join([*parts, page[end:]]), notebook
 
 
-def main():
-    import nbformat
-
-    parser = Parser(description=__doc__.split("\n")[0])
-    parser.add_argument("page", type=Path)
-    parser.add_argument("notebook", type=Path)
-    options = parser.parse_args()
-    text, notebook = tutorial(options.page.read_text(encoding="utf-8"))
-    nbformat.validate(notebook)
-    options.page.write_text(text, encoding="utf-8", newline="\n")
-    options.notebook.write_text(nbformat.writes(notebook), encoding="utf-8", newline="\n")
-
-
 if __name__ == "__main__":
-    run(main)
+    page, kept = Path("docs/python.md"), Path("docs/tutorial.ipynb")
+    text, notebook = tutorial(page.read_text(encoding="utf-8"))
+    page.write_text(text, encoding="utf-8", newline="\n")
+    nbformat.write(notebook, kept)

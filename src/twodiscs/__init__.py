@@ -69,7 +69,10 @@ if TYPE_CHECKING:
         "top_wall",
         "any_wall",
     ]
-    Hop = Literal["vertical_hop", "horizontal_hop"]
+    Hop = Literal[
+        "vertical_hop",
+        "horizontal_hop",
+    ]
     Quantity = Literal[
         "volume",
         "vertical_hop_area",
@@ -79,8 +82,8 @@ if TYPE_CHECKING:
         "top_wall_area",
         "any_wall_area",
     ]
-    Axis = Literal["x", "y", "z"]
     # end of names
+    Axis = Literal["x", "y", "z"]
 
 
 __version__ = "0.2.0"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pages import described_table, described_tables
+from made import described_table
 
 from twodiscs.comparison import frames
 from twodiscs.comparison.scene_tables import SCENE_TABLES
@@ -72,20 +72,16 @@ def test_every_table_and_every_column_say_what_they_mean(table):
 
 
 def test_every_column_is_described_on_a_line_of_its_own():
-    shown = [described_tables()]
     for name, table in EVERY_TABLE.items():
         assert table.name() == name
-        assert f"| `{name}.csv` | {table.meaning()} |\n" in shown[0]
-        text = described_table(name, table)
-        shown.append(text)
-        assert text.startswith(f"# {name}.csv\n\n{table.meaning()}\n")
-        for name_of_column, column in table.columns.items():
-            meaning = column.meaning.replace("|", "\\|").replace("<", "&lt;")
-            assert f"| `{name_of_column}` | {column.unit or '–'} | {meaning} |\n" in text
-    for text, bars in zip(shown, [3] + [4] * len(EVERY_TABLE), strict=True):
-        for line in text.splitlines():
-            if line.startswith("|"):
-                assert line.replace("\\|", "").count("|") == bars
+        head, *lines = described_table(name, table).strip().splitlines()
+        assert head == f"### {name}.csv"
+        rows = [line for line in lines if line.startswith("|")][2:]
+        assert len(rows) == len(table.columns)
+        for row, (column, kind) in zip(rows, table.columns.items(), strict=True):
+            meaning = kind.meaning.replace("|", "\\|").replace("<", "&lt;")
+            assert row == f"| `{column}` | {kind.unit or '–'} | {meaning} |"
+            assert row.replace("\\|", "").count("|") == 4
 
 
 def test_every_table_of_a_scene_is_known_and_makes_its_rows():

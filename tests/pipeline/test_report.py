@@ -1,4 +1,4 @@
-"""The parts of the report: the graph of rules, the figures it opens on, its numbers."""
+"""The parts of the report: the figures it opens on, its numbers."""
 
 from base64 import b64decode
 from io import BytesIO
@@ -8,7 +8,6 @@ import pytest
 from browser import ABSENT, BROWSER, browser
 from checkout import REPOSITORY
 from PIL import Image, ImageDraw
-from rules import rules
 
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs_paper.pipeline.documents.report import (
@@ -22,26 +21,6 @@ from twodiscs_paper.pipeline.documents.report import (
     short,
 )
 from twodiscs_paper.pipeline.results.verdict import summary
-
-DOT = """digraph snakemake_dag {
-    graph[bgcolor=white, margin=0];
-	0[label = "paper", color = "0.4 0.6 0.85", style="rounded"];
-	1[label = "table", color = "0.5 0.6 0.85", style="rounded"];
-	2[label = "two_dynamics", color = "0.1 0.6 0.85", style="rounded"];
-	1 -> 0
-	2 -> 1
-	2 -> 0
-}"""
-
-
-def test_rules_stand_beneath_those_that_they_read():
-    graph = rules(DOT)
-    heights = {name: y for name, (_, y) in graph["rules"].items()}
-    assert heights["two_dynamics"] < heights["table"] < heights["paper"] < graph["height"]
-    places = graph["rules"]
-    # An arrow is left out if a chain of others replaces it.
-    chain = [("table", "paper"), ("two_dynamics", "table")]
-    assert sorted(graph["arrows"]) == sorted((places[a], places[b]) for a, b in chain)
 
 
 def test_other_figures_stand_in_for_those_that_are_not_there():
@@ -117,7 +96,7 @@ LONG = [
 def report():
     """The report of ``LONG`` scenes, each with a table."""
     files = [f"{scene['name']}/mean_times.csv" for scene in LONG]
-    shown = contents(REPOSITORY, files, LONG, "<svg></svg>")
+    shown = contents(REPOSITORY, files, LONG)
     row = {"radii": 12, "comparisons": 1234, "tests": 1234, "failed": 0, "largest": 3.21}
     wide = ["horizontal hop", "1.23456789e-06", "1.2e-12", "1.23456789e-06", "-0.12"]
     shown["measured"] = [[scene["name"], [[0.249975, [wide] * 6]]] for scene in LONG]

@@ -11,7 +11,7 @@ nbformat = pytest.importorskip("nbformat", reason="nbformat reads and writes not
 
 PAGE, NOTEBOOK = REPOSITORY / "docs" / "python.md", REPOSITORY / "docs" / "tutorial.ipynb"
 
-RENEW = "python docs/make/tutorial.py docs/python.md docs/tutorial.ipynb"
+RENEW = "python docs/make/tutorial.py"
 
 
 @pytest.fixture(scope="module")

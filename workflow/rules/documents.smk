@@ -106,7 +106,6 @@ rule report:
         ],
         configuration=rules.configuration.output.json,
         front=source("workflow/report/front.html"),
-        graph=source("workflow/report/rules.svg"),
     output:
         html=f"{RESULTS}/report.html",
     log:

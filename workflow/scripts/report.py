@@ -8,7 +8,6 @@ from twodiscs_paper.pipeline.documents.report import contents, page
 sys.stderr = open(snakemake.log[0], "w")
 folder = Path(snakemake.output.html).parent
 files = [Path(path).relative_to(folder).as_posix() for path in snakemake.input.results]
-graph = Path(snakemake.input.graph).read_text(encoding="utf-8")
 template = Path(snakemake.input.front).read_text(encoding="utf-8")
-shown = contents(folder, files, snakemake.params.scenes, graph)
+shown = contents(folder, files, snakemake.params.scenes)
 Path(snakemake.output.html).write_text(page(template, shown), encoding="utf-8")

@@ -161,11 +161,10 @@ def section(folder, paths, scenes, scene=None):
     }
 
 
-def contents(folder, files, scenes, graph):
+def contents(folder, files, scenes):
     """Return the values of the template for the ``files`` in ``folder``, relative to ``folder``.
 
-    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}]. ``graph`` is a picture of the
-    rules, as SVG text.
+    ``scenes`` are [{"name": …, "box": "1.5 × 1.0", "effects": {…}}].
     """
     by_name = {scene["name"]: scene for scene in scenes}
     paths = [path for path in map(PurePosixPath, files) if path.suffix in (".csv", ".png")]
@@ -183,7 +182,6 @@ def contents(folder, files, scenes, graph):
         "commit": commit(Path(__file__).parent),
         "date": date.today(),
         "paper": "paper.pdf" in files,
-        "graph": Markup(graph),
         "sections": sections,
         "versions": versions(),
     }

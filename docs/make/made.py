@@ -1,0 +1,174 @@
+"""The parts of the site that are made from declarations, while Sphinx reads the pages.
+
+``PAGES`` has a function for each page that is completed: it takes the text of the page and the
+folder of the site, into which pictures go, and returns the whole text.
+"""
+
+import re
+from base64 import b64decode
+from io import BytesIO
+from pathlib import Path
+
+import nbformat
+from pictures import BOX, PANELS, SCENE, draw
+
+import twodiscs
+from twodiscs.comparison import check
+from twodiscs.comparison.measured.result import Result
+from twodiscs.figures.kit import style
+from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, TABLES
+from twodiscs_paper.pipeline.documents import captions, explorer
+from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = ROOT / "paper" / "expected"
+PAPER = {"name": SCENE, "width": BOX.width, "height": BOX.height, "effects": {}}
+
+
+def contents(text, site):
+    """Return the first page with the table of contents of the site, which its margin shows."""
+    return text + Path(__file__).with_name("contents.md").read_text(encoding="utf-8")
+
+
+def tutorial(text, site):
+    """Return the tutorial with the figures of its notebook below the lines that draw them."""
+    notebook = nbformat.read(ROOT / "docs" / "tutorial.ipynb", as_version=4)
+    cells = iter([cell for cell in notebook.cells if cell.cell_type == "code"])
+
+    def with_figure(block):
+        cell = next(cells)
+        pngs = [output.get("data", {}).get("image/png") for output in cell.outputs]
+        name = f"tutorial-{cell.execution_count}.png"
+        lines = [shown(b64decode(png), name, "A figure", site) for png in pngs if png]
+        return "\n".join([block[0], *lines])
+
+    return re.sub(r"^```python\n.*?^```\n", with_figure, text, flags=re.DOTALL | re.MULTILINE)
+
+
+def shown(png, name, title, site):
+    """Write a picture into the folder of the site; return the line that shows it in a page."""
+    path = Path(site, "docs", "pictures", name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(png)
+    return f'\n<p><img src="pictures/{name}" alt="{title}" loading="lazy"></p>\n'
+
+
+def reference(text, site):
+    """Return the list of all public names with their signatures and docstrings."""
+    return re.sub(r"^\* `td\.(\w+)`\n", _described, text, flags=re.MULTILINE)
+
+
+def _described(line):
+    name, value = line[1], getattr(twodiscs, line[1])
+    if isinstance(value, type):
+        kind, below = "autoclass", ":members:"
+        if issubclass(value, Result):
+            below += "\n   :inherited-members: Mapping, Sequence"
+    elif callable(value):
+        kind, below = "autofunction", ""
+    else:
+        names = ", ".join(f"``{key}``" for key in value)
+        kind, below = "py:data", f"\n   The names that are known, in their order: {names}."
+    return f"### td.{name}\n\n```{{eval-rst}}\n.. {kind}:: twodiscs.{name}\n   {below}\n```\n\n"
+
+
+# Tables -------------------------------------------------------------------------------------------
+
+
+def tables(text, site):
+    """Return the page about results with all columns of all tables."""
+    every = TABLES | {"paper_numbers": PaperNumbers}
+    return text + "".join(described_table(name, table) for name, table in every.items())
+
+
+def described_table(name, table):
+    """Return the description of a table, its columns among it, as Markdown."""
+    rows = (
+        f"| `{column}` | {kind.unit or '–'} | {_plain(kind.meaning)} |\n"
+        for column, kind in table.columns.items()
+    )
+    more = f"\n{check.__doc__}\n" if name == "check" else ""
+    head = f"\n### {name}.csv\n\n{_plain(table.meaning())}\n{more}\n"
+    return head + "| column | unit | meaning |\n|---|---|---|\n" + "".join(rows)
+
+
+def _plain(text):
+    """Return ``text`` with what Markdown would take for a column or a tag escaped."""
+    return text.replace("|", "\\|").replace("<", "&lt;")
+
+
+# The gallery --------------------------------------------------------------------------------------
+
+#: Tables of which only some rows are expected: they give no figure.
+FEW_ROWS = {"hop_histogram", "trajectory"}
+
+#: The results that Python draws, by the tables that a figure reads.
+RESULTS = {
+    (): "td.Box(1.5, 1.0)",
+    ("mean_times",): "td.scan(1.5, 1.0, [0.1, 0.2], error=0.05, budget=1e6)",
+    ("volume",): "[td.sample(td.Scene(1.5, 1.0, r), 1e5) for r in (0.1, 0.2)]",
+    ("areas",): "[td.sample(td.Scene(1.5, 1.0, r), 1e5) for r in (0.1, 0.2)]",
+    ("trajectory",): "td.trajectory(td.Scene(1.5, 1.0, 0.2), seed=1)",
+    ("hop_histogram",): 'td.intervals(td.Scene(1.5, 1.0, 0.2), "vertical_hop", 1e5)',
+}
+
+
+def in_python(name):
+    """Return the line of Python that draws a figure, None for those of studies."""
+    if name in STUDY_FIGURES:
+        return None
+    result = RESULTS[ENTRIES[name].tables]
+    if name == "animation":
+        return f'td.animate({result}, "animation.gif")'
+    return f'td.plot({result}, figure="{name}")'
+
+
+def target(name):
+    """Return the target that builds a figure: its study, if it belongs to one, or its own name."""
+    return next((study.name for study in STUDIES.values() if name in study.figures), name)
+
+
+def picture(name, title, site):
+    """Return the lines that show a figure: drawn, or one panel of it from ``docs``, or none."""
+    panels = {figure: panel for panel, (figure, *_) in PANELS.items()}
+    if name == "animation":
+        return f"![{title}](animation.gif)"
+    if FEW_ROWS.isdisjoint(ENTRIES[name].tables):
+        with style.context():
+            if figure := draw(name, EXPECTED):
+                png = BytesIO()
+                figure.savefig(png, dpi=100, facecolor="white")
+                return shown(png.getvalue(), f"{name}.png", title, site)
+    if name in panels:
+        return f"![{title}]({panels[name]}.png)\n\nThis is one panel of the figure."
+    return "[The tutorial](python.md) shows such a figure."
+
+
+def gallery(text, site):
+    """Return the page of all figures, each with its caption and the lines that draw it."""
+    for name, entry in ENTRIES.items():
+        lines = [
+            f"## {entry.title}",
+            picture(name, entry.title, site),
+            _plain(captions.caption(entry, EXPECTED, PAPER)),
+            f"```text\nsnakemake --cores 2 {target(name)}\n```",
+        ]
+        if line := in_python(name):
+            lines.append(f"```python\n{line}\n```")
+        text += "\n" + "\n\n".join(lines) + "\n"
+    return text
+
+
+def live_explorer():
+    """Return the explorer with the points that are expected."""
+    expected = (EXPECTED / "paper").glob("*.csv")
+    return explorer.explorer((ROOT / "workflow/explorer").iterdir(), expected, [PAPER], seed=1908)
+
+
+PAGES = {
+    "README": contents,
+    "docs/python": tutorial,
+    "docs/reference": reference,
+    "docs/gallery": gallery,
+    "results/README": tables,
+}
