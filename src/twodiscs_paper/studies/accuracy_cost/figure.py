@@ -15,7 +15,6 @@ from twodiscs.figures.kit.style import (
     ORANGE,
     PURPLE,
     SIZES,
-    SKY,
     VERMILLION,
     new_figure,
 )
@@ -38,7 +37,6 @@ LOOK = {
     "balanced_shell": (BLACK, "*"),
     "surface": (GREEN, "^"),
     "lockstep": (BLUE, "o"),
-    "single_precision": (SKY, "D"),
     "scalar": (GREEN, "^"),
     "time_step": (VERMILLION, "s"),
 }
@@ -80,8 +78,8 @@ def caption(shown):
     sampler and by scrambled Sobol points. (b) Area of disc collisions by shells of thickness ε,
     whose bias (dotted) no work removes, and by shells with the ε at which bias and noise balance.
     The other two methods draw samples or Sobol points on the surface itself. (c) Mean time between
-    vertical hops by event-driven dynamics: one trajectory at a time, many in lock step, and many in
-    single precision. Time steps search for overlaps every Δt; their error ∝ Δt (dotted) does not
+    vertical hops by event-driven dynamics: one trajectory at a time, and many in lock step. Time
+    steps search for overlaps every Δt; their error ∝ Δt (dotted) does not
     fall with time. The dash-dotted line is the smallest error of time steps with any Δt. The arrow
     compares the times to an error of 1e-3. (d) Gauss quadrature along the arc against the number of
     its nodes, and exact evaluation; the legend has their processor times.
@@ -198,7 +196,6 @@ def _times(axes, rows):
     names = {
         "scalar": "events, one by one",
         "lockstep": "events, in lock step",
-        "single_precision": "in single precision",
     }
     for method, name in names.items():
         (series,) = _of(rows, "time", method, quantity=quantity).values()

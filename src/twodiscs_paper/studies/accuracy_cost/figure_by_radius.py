@@ -1,17 +1,16 @@
-"""The cost of a relative error of 1e-3 at every radius, and the failure of single precision."""
+"""The cost of a relative error of 1e-3 at every radius."""
 
 import numpy as np
 
 from twodiscs.figures.kit import panels
 from twodiscs.figures.kit.limits import limits
 from twodiscs.figures.kit.looks import LOOKS, name_of
-from twodiscs.figures.kit.style import BLACK, BLUE, GREY, SIZES, SKY, new_figure
+from twodiscs.figures.kit.style import BLACK, SIZES, new_figure
 from twodiscs.model.box import Box
 from twodiscs.theory.exact import event_rate, mean_times
 
-#: Inches: the width of the figure; heights of the panels of the times and of their ratios to a
-#: Poisson process; widths of these panels and of the panel of single precision.
-WIDTH, TIMES, RATIOS, ACROSS, SINGLE = 7.0, 1.7, 1.0, 3.72, 2.1
+#: Inches: heights of the panels of the times and of their ratios to a Poisson process.
+TIMES, RATIOS = 1.7, 1.0
 
 #: The smallest relative distance of a curve from the radius where its event ends.
 CLOSEST = 1e-3
@@ -20,16 +19,12 @@ CLOSEST = 1e-3
 def draw(box=None, *, tables):
     """Draw the rows of accuracy_cost.csv; ``box`` is not used, because the table has its own."""
     rows = tables["accuracy_cost"]
-    bottom, height = panels.BOTTOM, RATIOS + panels.GAP + TIMES
-    figure = new_figure(bottom + height + panels.TOP, WIDTH)
-    upper = bottom + RATIOS + panels.GAP
-    times = panels.add_panel(figure, upper, TIMES, width=ACROSS, name="times by radius")
-    ratios = panels.add_panel(figure, bottom, RATIOS, width=ACROSS, name="ratios")
+    upper = panels.BOTTOM + RATIOS + panels.GAP
+    figure = new_figure(upper + TIMES + panels.TOP)
+    times = panels.add_panel(figure, upper, TIMES, name="times by radius")
+    ratios = panels.add_panel(figure, panels.BOTTOM, RATIOS, name="ratios")
     _times(times, ratios, [row for row in rows if row["part"] == "radius"])
-    left = WIDTH - panels.RIGHT - SINGLE
-    single = panels.add_panel(figure, bottom, height, left, SINGLE, "single precision")
-    _single(single, rows)
-    for axes, name in zip(figure.axes, "abc", strict=True):
+    for axes, name in zip(figure.axes, "ab", strict=True):
         panels.letter(axes, name)
     return figure
 
@@ -45,9 +40,7 @@ def caption(shown):
     of pilots divided by the times of a Poisson process. Apart from the speed at that radius, this
     ratio is the variance of the number of events divided by its mean. If it is below one, as for
     hits of any wall, events are more regular than in a Poisson process. Above one they come in
-    clusters. (c) Error of the mean time between disc collisions near the largest radius, in double
-    and in single precision. Rounding lengths to 24 bits changes the distance to the largest radius
-    (dashed).
+    clusters.
     """
 
 
@@ -103,36 +96,3 @@ def _prediction(box, event, radii, counts):
     total = [event_rate(scene) for scene in scenes]
     times = [mean_times(scene)[event] / scene.multiplicity(event) for scene in scenes]
     return np.array(total) * np.array(times) / counts
-
-
-def _single(axes, rows):
-    """Draw the error of the mean time between collisions near the largest radius."""
-    looks = {
-        "lockstep": ("double precision", BLUE, "o"),
-        "single_precision": ("single precision", SKY, "D"),
-    }
-    for method, (name, colour, marker) in looks.items():
-        points = [
-            row
-            for row in rows
-            if (row["part"], row["quantity"]) == ("precision", "disc_collision_time")
-            and row["method"] == method
-        ]
-        distances, errors = ([row[key] for row in points] for key in ("setting", "error"))
-        noise = [row["spread"] for row in points]
-        axes.plot(
-            distances, errors, marker=marker, ms=SIZES[marker], mfc="white", color=colour,
-            label=name,
-        )  # fmt: skip
-    style = {"color": GREY, "alpha": 0.2, "lw": 0, "label": "statistical error"}
-    axes.fill_between(distances, noise, 1e-9, **style)
-    # Lengths have the relative error 2⁻²⁴; the distance is a small part of them.
-    distances = np.geomspace(1e-7, 1)
-    axes.plot(
-        distances, 2.0**-24 / distances, color=BLACK, lw=0.6, ls=(0, (4, 2)),
-        label=r"$2^{-24}/(1-r/r_{\mathrm{max}})$",
-    )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlim=(5e-7, 0.2), ylim=(1e-5, 1))
-    axes.set_xlabel(r"room left, $1-r/r_{\mathrm{max}}$")
-    axes.set_ylabel("relative error")
-    axes.legend(loc="upper right")

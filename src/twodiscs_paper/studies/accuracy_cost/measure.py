@@ -5,13 +5,13 @@ at several amounts of work, repeatedly with other random numbers, and its relati
 exact value is averaged over the repetitions. All methods take turns in one run on one core, so if
 the machine slows down, all methods slow down.
 
-The rows of accuracy_cost.csv have six parts:
+The rows of accuracy_cost.csv have five parts:
 
     volume, area   estimates of the volume and of the area of disc collisions
     time           mean times of all events by dynamics
     floor          the error that no amount of work removes, against ε or Δt
     radius         time to a relative error of 1e-3 in each mean time, radius by radius
-    precision      the errors of single precision
+    speed          of the engine in lock step over that of one trajectory at a time
 """
 
 import math
@@ -30,7 +30,6 @@ from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, relative_errors
 from twodiscs.dynamics.two import strip
 from twodiscs.model.box import Box
-from twodiscs.model.checks import check_integer, check_length
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import radii
 from twodiscs.model.scene import Scene
@@ -42,7 +41,8 @@ from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.theory import exact, laws, plain
 from twodiscs.theory.numerics.quadrature import gauss_legendre
 from twodiscs.theory.numerics.reference import DIGITS, MpScene, disc_collision_area, volume
-from twodiscs_paper.studies.accuracy_cost import precision, scalar, timestepping
+from twodiscs_paper.studies.accuracy_cost import scalar, timestepping
+from twodiscs_paper.study import row
 
 #: The box of all measurements, with a medium radius and with one near the largest radius.
 SCENE = Scene(1.5, 1.0, 0.2)
@@ -71,12 +71,6 @@ PAID = {"vertical_hop": (0.05, 0.2, 0.3), "horizontal_hop": (0.05, 0.15, 0.2, 0.
 
 #: The fewest counts whose error is taken from a pilot.
 FEWEST = 1000
-
-#: The relative distances below the largest radius at which single precision is measured. The
-#: factors of radii near each of them, and of trajectories longer than usual.
-ROOMS = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-NEAR = (1.0, 1.1, 1.2, 1.3)
-LONGER = (1, 8, 64)
 
 
 class Series(NamedTuple):
@@ -281,14 +275,6 @@ def by_scalar(scene, replicas, seed):
     return means, scalar.simulated_events(counts), 1
 
 
-def by_single_precision(scene, blocks, seed):
-    """Measure the mean times with the engine in single precision."""
-    duration = counting.replica_duration(scene)
-    counts = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
-    means = times(scene, scalar.COUNTED, counts, blocks * REPLICAS, duration)
-    return means, scalar.simulated_events(counts), 1
-
-
 def by_steps(step, scene, blocks, seed):
     """Measure the mean times by looking for overlaps every ``step``."""
     duration = counting.replica_duration(scene)
@@ -336,7 +322,6 @@ def series(scale):
         add(part, "exact", partial(exactly, quantity), (1,))
 
     add("time", "lockstep", by_lockstep, doubling(1, 128 * scale))
-    add("time", "single_precision", by_single_precision, doubling(1, 128 * scale))
     add("time", "scalar", by_scalar, doubling(1 << 8, (1 << 13) * scale))
     for step, most in STEPS.items():
         # Coarse steps are always run: they show the law.
@@ -379,17 +364,17 @@ def measure(all_series, repetitions):
     return results
 
 
-def row(part, quantity, radius, method, **values):
-    """Return the columns of a row of accuracy_cost.csv that are not empty."""
+def cost_row(part, quantity, radius, method, **cells):
+    """Return a row of accuracy_cost.csv."""
     box = {"width": SCENE.width, "height": SCENE.height, "radius": radius}
-    return {"part": part, "quantity": quantity, "method": method, **box, **values}
+    return row(box, part=part, quantity=quantity, method=method, **cells)
 
 
 def summary(curve, quantity, work, results):
     """Return the row of one series at one amount of work."""
     errors = [errors[quantity] for errors, _, _ in results]
     sizes = [abs(error) for error in errors]
-    return row(
+    return cost_row(
         curve.part, quantity, curve.scene.radius, curve.method,
         setting=curve.setting(work),
         work=round(median(units for _, units, _ in results)),
@@ -417,15 +402,15 @@ def with_slope(rows):
     digits per node, until rounding limits the error.
     """
     if rows[0]["method"] == "quadrature":
-        fair = [row for row in rows if row["error"] > 1e-14]
-        fit = fitted([row["work"] for row in fair], [math.log10(row["error"]) for row in fair])
+        fair = [one for one in rows if one["error"] > 1e-14]
+        fit = fitted([one["work"] for one in fair], [math.log10(one["error"]) for one in fair])
     else:
-        fair = [row for row in rows if 0.5 > row["error"] > 3 * (row.get("floor", 0.0))]
-        x = [math.log(row["work"]) for row in fair]
-        y = [math.log(row["error"]) for row in fair]
+        fair = [one for one in rows if 0.5 > one["error"] > 3 * one.get("floor", 0.0)]
+        x = [math.log(one["work"]) for one in fair]
+        y = [math.log(one["error"]) for one in fair]
         # The root mean square of R normal deviates has the relative error 1/√(2R).
         fit = fitted(x, y, 1 / math.sqrt(2 * rows[0]["repetitions"]))
-    return [row | {"slope": fit[0], "slope_stderr": fit[1]} for row in rows]
+    return [one | {"slope": fit[0], "slope_stderr": fit[1]} for one in rows]
 
 
 def work_precision(all_series, results):
@@ -447,13 +432,9 @@ def work_precision(all_series, results):
         x, y = [math.log(s) for s, _, _ in clear], [math.log(abs(e)) for _, e, _ in clear]
         slope, slope_error = fitted(x, y)
         for setting, error, stderr in values:
-            rows.append(
-                row(
-                    "floor", quantity, SCENE.radius, method,
-                    setting=setting, error=abs(error), spread=stderr, bias=error,
-                    slope=slope, slope_stderr=slope_error,
-                )
-            )  # fmt: skip
+            found = {"setting": setting, "error": abs(error), "spread": stderr, "bias": error}
+            found |= {"slope": slope, "slope_stderr": slope_error}
+            rows.append(cost_row("floor", quantity, SCENE.radius, method, **found))
     return rows
 
 
@@ -495,7 +476,7 @@ def strip_rows(scene, blocks):
         sums, events = strip.run_blocks(scene, hop, near, 1, 0, blocks)
         seconds = time.process_time() - start
         more = (strip.relative_error(strip.fractions_of(scene, hop, near), sums) / TARGET) ** 2
-        yield row(
+        yield cost_row(
             "radius", f"{hop}_time", scene.radius, "strip",
             setting=near.time, work=round(events * more), seconds=seconds * more, error=TARGET,
             repetitions=blocks * REPLICAS,
@@ -525,7 +506,7 @@ def by_radius(scale):
         for event, count, error in zip(EVENTS, sums, errors, strict=True):
             if count >= FEWEST:
                 more = (float(error) / TARGET) ** 2
-                yield row(
+                yield cost_row(
                     "radius", f"{event}_time", radius, "lockstep",
                     work=round(events * more), seconds=seconds * more, error=TARGET,
                     repetitions=blocks * REPLICAS,
@@ -539,7 +520,7 @@ def by_radius(scale):
         for event in EVENTS:
             if scene.is_possible(event):
                 events = predicted_events(scene, event)
-                yield row(
+                yield cost_row(
                     "radius", f"{event}_time", scene.radius, "poisson",
                     work=round(events), seconds=events / speed, error=TARGET,
                 )  # fmt: skip
@@ -553,79 +534,38 @@ def by_radius(scale):
             box = Box.of(scene)
             (mean,) = MeanTimes.rows(box, Theory.rows(box, [radius]), {"dynamics": [point]})
             bias = mean["estimate"] / mean["exact"] - 1
-            yield row(
+            yield cost_row(
                 "radius", f"{event}_time", radius, "paid",
                 work=point.events, seconds=seconds, error=TARGET, bias=bias, repetitions=1,
             )  # fmt: skip
 
 
-# Single precision -----------------------------------------------------------------------------
+# The table ------------------------------------------------------------------------------------
 
 
-def where_single_fails(scale):
-    """Yield the rows of the part precision.
-
-    For the mean time between disc collisions ``setting`` is the distance 1 − r/r_max. ``error`` is
-    averaged over ``NEAR`` radii, and ``spread`` is the statistical standard error at one radius.
-    For the energy ``setting`` is the number of events of a trajectory and ``error`` the root mean
-    square of its relative change.
-    """
-    blocks = math.ceil(PILOT_BLOCKS * scale / 2)
-    for room in ROOMS:
-        errors, events = {"lockstep": [], "single_precision": []}, 0
-        for seed, near in enumerate(NEAR):
-            scene = SCENE.with_radius(SCENE.largest_radius * (1 - room * near))
-            duration = counting.replica_duration(scene)
-            mean = exact.mean_times(scene)["disc_collision"]
-            expected = blocks * REPLICAS * duration / mean
-            double, products = counting.run_blocks(scene, EVENTS, seed, 0, blocks, duration)
-            single = precision.run_blocks(scene, seed, 0, blocks, duration)[0]
-            counts = double[counting.COLLISIONS], single[scalar.COLLISIONS]
-            for method, count in zip(errors, counts, strict=True):
-                errors[method].append(float(expected / count - 1))
-            events += counting.simulated_events(double)
-            noise = relative_errors(double, products, blocks * REPLICAS)[counting.COLLISIONS]
-        for method, deviations in errors.items():
-            yield row(
-                "precision", "disc_collision_time", scene.radius, method, setting=room,
-                work=events, error=math.sqrt(fmean(e * e for e in deviations)),
-                spread=float(noise), bias=fmean(deviations), repetitions=len(NEAR),
-            )  # fmt: skip
-    for longer in LONGER:
-        duration = longer * counting.replica_duration(SCENE)
-        counts, mean, error = precision.run_blocks(SCENE, 1, 0, max(1, blocks // longer), duration)
-        yield row(
-            "precision", "energy", SCENE.radius, "single_precision",
-            setting=duration * exact.event_rate(SCENE), work=scalar.simulated_events(counts),
-            error=error, bias=mean,
-        )  # fmt: skip
-
-
-def speeds(rows):
-    """Yield the rows of the part speed: how much faster an engine is than another one.
+def speed(rows):
+    """Return the row on how much faster the engine in lock step is than one trajectory at a time.
 
     Only ``rows`` of the part time count. The speed of an engine is the speed of its median run.
     """
-    runs = {}
-    for run in rows:
-        if run["part"] == "time":
-            runs.setdefault(run["method"], []).append(run)
-    for method, other in (("lockstep", "scalar"), ("single_precision", "lockstep")):
-        own, slower = (
-            median_high(run["work"] / run["seconds"] for run in runs[name])
-            for name in (method, other)
+    lockstep, scalar = (
+        median_high(
+            run["work"] / run["seconds"]
+            for run in rows
+            if (run["part"], run["method"]) == ("time", method)
         )
-        yield row("speed", "events", SCENE.radius, method, setting=own / slower)
+        for method in ("lockstep", "scalar")
+    )
+    return cost_row("speed", "events", SCENE.radius, "lockstep", setting=lockstep / scalar)
 
 
 def rows(seconds=USUAL_SECONDS, repetitions=REPETITIONS):
     """Return the rows of accuracy_cost.csv for some ``seconds`` of processor time.
 
     Every method runs its minimum work, so this takes a few seconds whatever ``seconds`` is.
-    ``repetitions`` ≥ 2. Raises ``InputError`` for a number out of range.
+    ``repetitions`` ≥ 2.
     """
-    scale = check_length("seconds", seconds) / USUAL_SECONDS
-    repetitions = check_integer("repetitions", repetitions, 2)
+    scale = seconds / USUAL_SECONDS
     all_series = series(scale)
     work_rows = work_precision(all_series, measure(all_series, repetitions))
-    return [*work_rows, *speeds(work_rows), *by_radius(scale), *where_single_fails(scale)]
+    return [*work_rows, speed(work_rows), *by_radius(scale)]

@@ -24,26 +24,25 @@ class AccuracyCost(Table):
     columns = {
         "part": TEXT(
             "volume, area, time: work and precision; floor: the error that no work removes; "
-            "radius: the cost of a relative error, radius by radius; precision: the errors of "
-            "single precision; speed: of the engines, by their median runs of the part time"
+            "radius: the cost of a relative error, radius by radius; speed: of the engines, by "
+            "their median runs of the part time"
         ),
-        "quantity": TEXT("volume, <event>_area, <event>_time or energy"),
+        "quantity": TEXT("volume, <event>_area, <event>_time or events"),
         "width": WIDTH,
         "height": HEIGHT,
         "radius": RADIUS,
         "method": TEXT(
             "rejection, conditioned, sobol, shell, balanced_shell (the best ε for the work), "
-            "surface, quadrature, closed_form, exact; lockstep, scalar, single_precision, "
-            "time_step. radius: lockstep (speed and error of a pilot), strip (the same from "
-            "starts next to a rare hop), poisson (exact rates, one speed, the noise of a Poisson "
-            "process), paid (a run to this error)"
+            "surface, quadrature, closed_form, exact; lockstep, scalar, time_step. radius: "
+            "lockstep (speed and error of a pilot), strip (the same from starts next to a rare "
+            "hop), poisson (exact rates, one speed, the noise of a Poisson process), paid (a run "
+            "to this error)"
         ),
         "setting": Column(
             float,
             "see method",
-            "ε of a shell, Δt of time steps, T of starts next to a hop. precision: 1 − r/r_max, "
-            "and for the energy the events of a trajectory. speed: events per second, divided by "
-            "the same number for scalar, for single_precision by the number for lockstep",
+            "ε of a shell, Δt of time steps, T of starts next to a hop. speed: events per second, "
+            "divided by the same number for scalar",
         ),
         "work": COUNT("samples, points, nodes, wall and disc events, or time steps"),
         "seconds": SECONDS("median processor time of one run"),
@@ -52,8 +51,7 @@ class AccuracyCost(Table):
             "radius: the wanted error"
         ),
         "spread": NUMBER(
-            "standard deviation of its size between repetitions. floor: standard error; "
-            "precision: statistical error of one run"
+            "standard deviation of its size between repetitions. floor: standard error"
         ),
         "bias": NUMBER("mean relative error with its sign"),
         "floor": NUMBER("part of the error that no work removes; 0 if it is within the noise"),
@@ -65,12 +63,12 @@ class AccuracyCost(Table):
         "slope_stderr": NUMBER("its standard error"),
     }
 
-    @classmethod
-    def rows(cls, seconds):
+    @staticmethod
+    def rows(seconds):
         """Return the rows for some ``seconds`` of processor time (see ``measure.rows``)."""
         from twodiscs_paper.studies.accuracy_cost import measure
 
-        return [cls.empty(**row) for row in measure.rows(seconds)]
+        return measure.rows(seconds)
 
 
 STUDY = Study(
