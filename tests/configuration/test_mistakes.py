@@ -6,6 +6,8 @@ from copy import deepcopy
 
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from twodiscs_paper.configuration import schema
 from twodiscs_paper.configuration.load import ConfigError, load, read
@@ -64,6 +66,7 @@ MISTAKES = [
     (top("sceness: []"), "the configuration has an unknown key 'sceness'; its keys are results, …"),
     (top("zz: 1"), f"the configuration has an unknown key 'zz'; its keys are {TOP_KEYS}"),
     (top("1: 2"), "the configuration has an unknown key 1; …"),
+    (top("null: 2"), "the configuration has an unknown key empty; its keys are results, …"),
     (top("accuracy: 1"), "the configuration has an unknown key 'accuracy'; it belongs in a scene"),
     (top("seed: -1"), "seed must be an integer from 0 to 2^63 - 1, not -1"),
     (top("seed: 1e19"), "seed must be an integer …, not '1e19'"),
@@ -319,6 +322,65 @@ def test_every_key_refuses_other_kinds_and_values_out_of_range(path, node):
         assert sentence.startswith(path.lstrip(".").replace("[]", "[0]")), sentence
         assert "\n" not in sentence
         assert len(sentence) < 500
+
+
+FULL = {
+    **{"results": "a", "seed": 1, "shard_events": 1e9, "shared": ["report"]},
+    "accuracy_cost": {"seconds": 1},
+    "scenes": [
+        {
+            "name": "one",
+            "box": {"width": 1.5, "height": 1},
+            "effects": {"periodic": "x", "mass_ratio": 2},
+            "radii": {"smallest": 0.1, "count": 2, "include": [0.2]},
+            "watch": {
+                "areas": ["any_wall"],
+                "mean_times": True,
+                "hop_histogram": {"radii": [0.1], "event": "vertical_hop"},
+                "trajectory": 0.1,
+            },
+            "accuracy": {"default": "draft", "any_wall": 0.1},
+            "monte_carlo": {"samples": 1},
+        }
+    ],
+}
+
+
+def places(value, steps=()):
+    """Yield the keys and numbers on the way to each value in a configuration."""
+    yield steps
+    if isinstance(value, dict | list):
+        for step, item in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from places(item, (*steps, step))
+
+
+def changed(value, changes, steps=()):
+    """Return a configuration with the ``changes``, {place: value}."""
+    if steps in changes:
+        return changes[steps]
+    if isinstance(value, dict):
+        return {key: changed(item, changes, (*steps, key)) for key, item in value.items()}
+    if isinstance(value, list):
+        return [changed(item, changes, (*steps, i)) for i, item in enumerate(value)]
+    return value
+
+
+JUNK = st.one_of(
+    st.sampled_from([None, True, False, "", "x", "1e3", "010", "draft", [], [[]], {}, b"x"]),
+    st.sampled_from([0, -1, 65, 1e-70, 1e70, 10**400, math.nan, math.inf, [0.1, 0.1], [None]]),
+    st.sampled_from([{5: None}, {None: 1}, {(1, 2): 3}, {"bool": 1}, {"Grid": 1}, {"radii": [1]}]),
+)
+
+
+@given(st.dictionaries(st.sampled_from([*places(FULL)]), JUNK, min_size=1, max_size=4))
+@settings(max_examples=300, deadline=None)
+def test_any_value_anywhere_is_taken_or_gets_a_sentence(changes):
+    try:
+        load(changed(FULL, changes))
+    except ConfigError as error:
+        for sentence in str(error).split("\n"):
+            assert re.match(r"the configuration |[a-z_]+", sentence), sentence
+            assert re.search(r" must | needs |unknown key|: ", sentence), sentence
 
 
 def nested(value, depth):

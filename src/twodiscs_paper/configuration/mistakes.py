@@ -8,8 +8,9 @@ from twodiscs.model import checks
 from twodiscs.model.checks import InputError, decimal_hint
 from twodiscs_paper.configuration.schema import keys
 
-#: Pydantic's errors about a key that is unknown, or that is no text.
+#: Pydantic's errors about a key: it is unknown or no text, or it is missing.
 UNKNOWN_KEY = ("extra_forbidden", "invalid_key")
+ABOUT_KEY = (*UNKNOWN_KEY, "missing")
 
 
 class ConfigError(InputError):
@@ -37,8 +38,10 @@ class _Mistake:
     @classmethod
     def of(cls, error, mapping):
         kind, location, key = error["type"], error["loc"], None
-        if kind == "missing" or kind in UNKNOWN_KEY:
+        if kind in ABOUT_KEY:
             *location, key = location
+        if kind == "invalid_key":  # its place has the key as text
+            key = error["input"]
         steps, node, value = [], keys(), mapping
         for step in location:
             known = node.get("properties", ()) if isinstance(value, Mapping) else ()
@@ -60,8 +63,8 @@ class _Mistake:
         if self.kind == "missing":  # maybe the unknown key is this one, misspelt
             return other.kind in UNKNOWN_KEY and other.steps == self.steps
         inside = other.steps[: len(self.steps)] == self.steps
-        deeper = len(other.steps) > len(self.steps) or other.key is not None
-        return self.key is None and inside and deeper
+        deeper = len(other.steps) > len(self.steps) or other.kind in ABOUT_KEY
+        return self.kind not in ABOUT_KEY and inside and deeper
 
     def sentence(self):
         """Return the sentence, without the name of the scene."""
