@@ -1,21 +1,17 @@
 """The errata: printed formulas that they call wrong are wrong, and their corrections are right.
 
-The verdicts are computed; here they are compared with those found by hand, and formulas and
-measurements are spoilt to see them turn.
+The verdicts are computed; here they are compared with those found by hand, and formulas are spoilt
+to see them turn.
 """
 
 import dataclasses
 import re
 from functools import cache
 
-import numpy as np
 import pytest
-from factory import BOX, Laws, scenes, theory_rows, written
+from factory import written
 from mpmath import mp, mpf
 
-from twodiscs.comparison.tables.mean_times import MeanTimes
-from twodiscs.comparison.tables.monte_carlo import Areas, Volume
-from twodiscs.model.box import Box
 from twodiscs.theory.numerics import reference
 from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, mean_time
 from twodiscs_paper.errata import measure as errata
@@ -70,7 +66,7 @@ def digits():
 
 @cache
 def verdicts():
-    """Return {label: row} without any measurement."""
+    """Return {label: row}."""
     return {statement.label: errata.judge(statement) for statement in STATEMENTS}
 
 
@@ -99,7 +95,6 @@ def test_whatever_is_not_right_says_what_is():
         assert (row["verdict"] == "right") == (row["severity"] is None)
         assert row["severity"] in (None, "major", "minor", "slip")
         assert (row["correction"] or "").count("`") % 2 == 0
-        assert row["decided_by"] == "theory"
 
 
 @pytest.mark.parametrize(
@@ -264,7 +259,7 @@ def test_the_intermediate_volume_is_neither_the_free_nor_the_excluded_one():
         assert not 0.9 < printed / reference.volume(q) < 1.1
         assert not 0.9 < printed / reference.excluded_volume(q) < 1.1
     assert mp.im(published.volume_intermediate(MpScene.of(3.0, 1.0, 0.3))) != 0
-    assert errata._ratio(BY_LABEL["VolumenCasoFeo"], MpScene.of(3.0, 1.0, 0.3)) is None
+    assert errata.ratio_of(BY_LABEL["VolumenCasoFeo"], MpScene.of(3.0, 1.0, 0.3)) is None
 
 
 def test_the_jump_at_a_quarter_of_the_height_comes_from_the_components_alone():
@@ -282,137 +277,12 @@ def test_the_time_left_in_long_boxes():
     assert abs(mean_time("disc_collision", q) / limit - 1) < 1e-20
 
 
-# Measurements -------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def measured():
-    """Return tables of the source's box, as drawn from the exact laws."""
-    rng = np.random.default_rng(11)
-    laws = [Laws(scene) for scene in scenes()]
-    theory = theory_rows()
-    points = {
-        "monte_carlo": [law.monte_carlo(rng, 10**9) for law in laws],
-        "dynamics": [law.dynamics(rng) for law in laws],
-    }
-    return {
-        "theory": theory,
-        "volume": Volume.rows(theory, points),
-        "areas": Areas.rows(BOX, theory, points),
-        "mean_times": MeanTimes.rows(BOX, theory, points),
-    }
-
-
-@pytest.fixture(scope="module")
-def table(measured):
-    return errata.rows(measured, BOX)
-
-
-PARTS = re.compile(r"(Monte Carlo|dynamics)(?: at [\d.]+)? (-?[\d.]+)\((\d+)\)")
-
-
-def quoted(row):
-    """Return {method: (value, error)} as quoted in a row."""
-    found = {}
-    for method, value, error in PARTS.findall(row["decided_by"]):
-        decimals = len(value.partition(".")[2])
-        found[method] = float(value), int(error) * 10.0**-decimals
-    return found
-
-
-def test_measurements_leave_the_verdicts_alone(table):
-    assert {row["label"]: row["verdict"] for row in table} == {
-        label: row["verdict"] for label, row in verdicts().items()
-    }
-
-
-def test_measured_over_printed_is_true_over_printed(table):
-    """Errors are rounded to a digit, so that 8 are at least 5: a false alarm in 10⁴ seeds."""
-    seen = 0
-    for row in table:
-        for value, error in quoted(row).values():
-            assert value == pytest.approx(1 / row["ratio"], abs=8 * error), row
-            seen += 1
-            if row["verdict"] != "right":
-                assert abs(value - 1) > 3 * error
-    assert seen > 100
-
-
-def test_all_three_decide_where_all_three_can(table):
-    rows = {row["label"]: row for row in table}
-    for label in ("volumeabd", "VolumenCasoFeo", "AreaH", "hoptau", "colltau", "impactwall"):
-        assert set(quoted(rows[label])) == {"Monte Carlo", "dynamics"}, rows[label]
-    assert "dynamics at 0.02" in rows["hoptaulimit"]["decided_by"]
-    assert "dynamics at 0.36" in rows["hop time near w/4"]["decided_by"]
-    assert "standard errors from 0" in rows["pasoraro"]["decided_by"]
-    assert rows["cambiocoor01"]["decided_by"] == "theory"
-    assert rows["AreaChoque"]["radius"] == 0.3
-
-
-def found_and_exact(measured):
-    exact = {(row["radius"], row["quantity"]): row["exact"] for row in measured["theory"]}
-    return errata.measurements(measured), exact
-
-
-def test_a_measurement_that_contradicts_the_truth_stops_everything(measured):
-    found, exact = found_and_exact(measured)
-    place = "vertical_hop_area", 0.2
-    error = found[place]["dynamics"][1]
-    for label in ("AreaH", "A_hopp"):
-        for shift in (-8, 8):
-            wrong = {**found[place], "dynamics": (1 + shift * error, error)}
-            with pytest.raises(ValueError, match="dynamics must agree with the truth, but finds"):
-                errata.judge(BY_LABEL[label], {**found, place: wrong}, exact)
-        bad_luck = {**found[place], "dynamics": (1 + 5 * error, error)}
-        row = errata.judge(BY_LABEL[label], {**found, place: bad_luck}, exact)
-        assert row["verdict"] == verdicts()[label]["verdict"]
-
-
-def test_exact_values_that_are_not_stop_everything(measured):
-    found, exact = found_and_exact(measured)
-    exact[0.2, "right_wall_area"] *= 1 + 1e-9
-    with pytest.raises(ValueError, match=r"theory\.csv must have right_wall_area"):
-        errata.judge(BY_LABEL["areax1p"], found, exact)
-
-
-def test_rough_measurements_decide_nothing(measured):
-    rough = [{**row, "stderr": 0.03 * row["exact"]} for row in measured["volume"]]
-    few = [{**row, "stderr": None} for row in measured["volume"]]
-    for rows in (rough, few, []):
-        assert errata.measurements({"volume": rows}) == {}
-    assert errata.judge(BY_LABEL["volumeabd"], {}, {})["decided_by"] == "theory"
-
-
-def test_another_box_leaves_it_to_theory(measured, monkeypatch):
-    labels = ("volumeabd", "AreaH", "hoptaulimit")
-    monkeypatch.setattr(errata, "STATEMENTS", [BY_LABEL[label] for label in labels])
-    for tables, box in ((measured, Box(3.0, 1.0)), ({}, BOX), (measured, Box(1.0, 1.5))):
-        assert errata.rows(tables, box) == [verdicts()[label] for label in labels]
-    (row, *_) = errata.rows({"volume": measured["volume"]}, BOX)
-    assert set(quoted(row)) == {"Monte Carlo"}
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "text"),
-    [
-        (0.99964, 0.00031, "0.9996(3)"),
-        (1.0, 0.00096, "1.000(1)"),
-        (2.5, 0.12, "2.5(1)"),
-        (4713.3, 12.4, "4713(12)"),
-        (-0.00005766, 1.4e-8, "-0.00005766(1)"),
-    ],
-)
-def test_errors_in_brackets(value, error, text):
-    assert errata.format_value(value, error) == text
-
-
 # The table ----------------------------------------------------------------------------------------
 
 
-def test_the_table_is_written(tmp_path, monkeypatch, measured):
+def test_the_table_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(errata, "STATEMENTS", STATEMENTS[:6])
-    found = written(tmp_path, Errata, tables=measured, box=BOX)
-    assert found == errata.rows(measured, BOX)
+    assert written(tmp_path, Errata) == errata.rows()
 
 
 def test_every_statement_says_where():

@@ -128,13 +128,10 @@ def test_what_is_read_is_a_table_of_a_scene_or_of_a_study_before(study, default)
 
 
 def test_studies_read_only_what_there_is(default):
-    """A scene that measures no times has no part in the thresholds, and the errata do without."""
+    """A scene that measures no times has no part in the thresholds."""
     scene = {"name": "paper", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     little = load({"scenes": [scene | {"radii": [0.1]}]})
     assert STUDIES["thresholds"].reads(little) == {"distributions": (None, "distributions")}
-    assert STUDIES["errata"].reads(little) == {
-        name: ("paper", name) for name in ("theory", "volume")
-    }
     found = STUDIES["thresholds"].reads(default)
     assert found["paper/mean_times"] == ("paper", "mean_times")
 

@@ -13,8 +13,7 @@ from twodiscs.theory.numerics import reference
 from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, largest_radius, mean_time
 from twodiscs_paper.errata import published
 
-#: The regimes of formulas: boxes and radii (width, height, radius). The first is reported, unless
-#: the tables have a radius near it.
+#: The regimes of formulas: boxes and radii (width, height, radius). The first is reported.
 REGIMES = {
     "all-hops": ((1.5, 1.0, 0.2), (1.5, 1.0, 0.05), (1.5, 1.0, 0.24), (3.0, 1.0, 0.1)),
     "vertical-hops": ((1.5, 1.0, 0.3), (1.5, 1.0, 0.26), (1.5, 1.0, 0.37), (3.0, 1.0, 0.4)),

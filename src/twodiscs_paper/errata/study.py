@@ -1,4 +1,4 @@
-"""Corrections to the source, with the evidence for each."""
+"""Corrections to the source: printed formulas against quadrature to fifty digits."""
 
 from twodiscs.comparison.tables.base import LENGTH, NUMBER, TEXT, Table
 from twodiscs_paper.study import Study
@@ -29,34 +29,20 @@ class Errata(Table):
             "the radius does not matter, or if another box decides"
         ),
         "correction": TEXT("the right formula, or a remark; formulas stand between backticks"),
-        "decided_by": TEXT(
-            "theory (quadrature to 50 digits), and each method that can distinguish printed from "
-            "true, with its ratio measured/printed and the error of the last digit (if 0 is "
-            "printed, its distance from 0). With the exact volume, areas and times measure each "
-            "other; if only a part is printed, the rest is taken as exact; the ratio for a limit "
-            "is measured at the given radius and carried over by theory"
-        ),
     }
 
     @staticmethod
-    def rows(tables, box):
-        """Return the rows in the order of the source (see ``measure.rows``)."""
+    def rows():
+        """Return the rows in the order of the source."""
         from twodiscs_paper.errata import measure
 
-        return measure.rows(tables, box)
-
-
-def _reads(configuration):
-    main, wanted = configuration.main, ("theory", "volume", "areas", "mean_times")
-    return {name: (main.name, name) for name in wanted if name in main.tables}
+        return measure.rows()
 
 
 STUDY = Study(
     "errata",
-    builds="which formulas of the source are right, with the evidence",
+    builds="which formulas of the source are right",
     tables=(Errata,),
     seconds=3.0,
     order=1,
-    parameters=lambda configuration: {"box": configuration.main.box.parameters()},
-    reads=_reads,
 )

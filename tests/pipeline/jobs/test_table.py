@@ -103,8 +103,7 @@ def test_a_mistake_of_a_study_keeps_its_place(run, monkeypatch):
 
 
 def test_a_study_reads_tables_and_its_parameters(run, capsys):
-    given = json.dumps({"box": BOX.parameters()})
-    assert run(study, "errata", "--parameters", given, "--output", "errata.csv") == 0
+    assert run(study, "errata", "--output", "errata.csv") == 0
     with open("errata.csv", newline="") as file:
         assert len([*csv.DictReader(file)]) > 10
     drawn = "--output", "largest_radius.pdf", "largest_radius.png"
