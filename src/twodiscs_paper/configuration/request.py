@@ -217,7 +217,7 @@ class Configuration:
         return folders | {f"effects/{scene.name}": scene for scene in self.effect_scenes}
 
     def table(self, name, scene=None):
-        """Return the path of a table of a ``scene``, or without a scene of a shared table."""
+        """Return the path of a table of a ``scene``, or without a scene of a study."""
         return "/".join(filter(None, (self.results, scene, f"{name}.csv")))
 
     def tables(self, scene):
