@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twodiscs_paper.pipeline.results.verify import differences, renew
 
-job = snakemake  # noqa: F821
+job = snakemake
 results, expected = Path(job.input.configuration).parent, Path(job.params.expected)
 if job.rule.endswith("renew"):
     renew(results, expected, job.input.tables, job.params.points)
