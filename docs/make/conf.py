@@ -27,8 +27,7 @@ exclude_patterns = [".*", "build", "src", "tests", "workflow", "results/[!R]*"]
 
 html_theme = "furo"
 html_title = f"{project} {release}"
-html_static_path = ["site.css"]
-html_css_files = ["site.css"]
+html_css_files = html_static_path = ["site.css"]
 html_copy_source = False
 html_math_renderer = "mathml"
 pygments_dark_style = "monokai"
@@ -41,9 +40,10 @@ myst_heading_anchors = 4
 # The script that draws diagrams is a part of the site, see docs.yml. Without it a page shows their
 # text: no page asks another server for anything.
 if (made.ROOT / "build/mermaid").is_dir():
-    html_static_path.append("../../build/mermaid")
+    html_static_path = [*html_static_path, "../../build/mermaid"]
 mermaid_use_local = "mermaid.esm.min.mjs"
 mermaid_fullscreen = False
+mermaid_height = "auto"
 
 numpydoc_show_class_members = False
 

@@ -13,7 +13,6 @@ import nbformat
 from pictures import BOX, PANELS, SCENE, draw
 
 import twodiscs
-from twodiscs.comparison import check
 from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, TABLES
@@ -36,11 +35,12 @@ def tutorial(text, site):
     cells = iter([cell for cell in notebook.cells if cell.cell_type == "code"])
 
     def with_figure(block):
-        cell = next(cells)
-        pngs = [output.get("data", {}).get("image/png") for output in cell.outputs]
-        name = f"tutorial-{cell.execution_count}.png"
-        lines = [shown(b64decode(png), name, "A figure", site) for png in pngs if png]
-        return "\n".join([block[0], *lines])
+        cell, lines = next(cells), block[0]
+        for output in cell.outputs:
+            if png := output.get("data", {}).get("image/png"):
+                name = f"tutorial-{cell.execution_count}.png"
+                lines += shown(b64decode(png), name, "A figure", site)
+        return lines
 
     return re.sub(r"^```python\n.*?^```\n", with_figure, text, flags=re.DOTALL | re.MULTILINE)
 
@@ -87,8 +87,7 @@ def described_table(name, table):
         f"| `{column}` | {kind.unit or '–'} | {_plain(kind.meaning)} |\n"
         for column, kind in table.columns.items()
     )
-    more = f"\n{check.__doc__}\n" if name == "check" else ""
-    head = f"\n### {name}.csv\n\n{_plain(table.meaning())}\n{more}\n"
+    head = f"\n### {name}.csv\n\n{_plain(table.meaning())}\n\n"
     return head + "| column | unit | meaning |\n|---|---|---|\n" + "".join(rows)
 
 
@@ -130,32 +129,28 @@ def target(name):
 
 def picture(name, title, site):
     """Return the lines that show a figure: drawn, or one panel of it from ``docs``, or none."""
-    panels = {figure: panel for panel, (figure, *_) in PANELS.items()}
-    if name == "animation":
-        return f"![{title}](animation.gif)"
+    panels = {figure: f"{panel}.png" for panel, (figure, *_) in PANELS.items()}
     if FEW_ROWS.isdisjoint(ENTRIES[name].tables):
         with style.context():
             if figure := draw(name, EXPECTED):
                 png = BytesIO()
                 figure.savefig(png, dpi=100, facecolor="white")
                 return shown(png.getvalue(), f"{name}.png", title, site)
+    if name == "animation":
+        return f"![{title}](animation.gif)"
     if name in panels:
-        return f"![{title}]({panels[name]}.png)\n\nThis is one panel of the figure."
+        return f"![{title}]({panels[name]})\n\nThis is one panel of the figure."
     return "[The tutorial](python.md) shows such a figure."
 
 
 def gallery(text, site):
     """Return the page of all figures, each with its caption and the lines that draw it."""
     for name, entry in ENTRIES.items():
-        lines = [
-            f"## {entry.title}",
-            picture(name, entry.title, site),
-            _plain(captions.caption(entry, EXPECTED, PAPER)),
-            f"```text\nsnakemake --cores 2 {target(name)}\n```",
-        ]
+        caption = _plain(captions.caption(entry, EXPECTED, PAPER))
+        text += f"\n## {entry.title}\n\n{picture(name, entry.title, site)}\n\n{caption}\n"
+        text += f"\n```text\nsnakemake --cores 2 {target(name)}\n```\n"
         if line := in_python(name):
-            lines.append(f"```python\n{line}\n```")
-        text += "\n" + "\n\n".join(lines) + "\n"
+            text += f"\n```python\n{line}\n```\n"
     return text
 
 

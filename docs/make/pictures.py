@@ -9,7 +9,6 @@ import re
 import sys
 from importlib import import_module
 from pathlib import Path
-from shutil import copyfile
 
 from twodiscs.figures.kit import style
 from twodiscs.model.box import Box
@@ -73,7 +72,6 @@ def main(results, output):
         keep_panel(figures[picture], number, abscissa)
     for picture, figure in figures.items():
         figure.savefig(Path(output, f"{picture}.png"), dpi=DPI, metadata={"Software": None})
-    copyfile(Path(results, SCENE, "figures/animation.gif"), Path(output, "animation.gif"))
 
 
 if __name__ == "__main__":

@@ -47,8 +47,7 @@ def tutorial(page):
         if value is not None:
             data = {"image/png": b64encode(png()).decode()} if png else {"text/plain": repr(value)}
             found.append(v4.new_output("execute_result", data, execution_count=number))
-        if before.strip():
-            cells.append(v4.new_markdown_cell(before.strip()))
+        cells += [v4.new_markdown_cell(before.strip())] if before.strip() else []
         cells.append(v4.new_code_cell(code, execution_count=number, outputs=found))
         end = block.end()
     cells.append(v4.new_markdown_cell(page[end:].strip()))
