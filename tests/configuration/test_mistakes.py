@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from twodiscs_paper.configuration import schema
 from twodiscs_paper.configuration.load import ConfigError, load, read
+from twodiscs_paper.configuration.model import Model
 
 GOOD = {"scenes": [{"name": "one", "box": {"width": 1.5, "height": 1}}]}
 
@@ -151,6 +152,10 @@ MISTAKES = [
     (
         scene("watch: {hop_histogram: {radii: [0.24999999], event: horizontal_hop}}"),
         "scenes[0].watch.hop_histogram must keep to … at 0.24999999 each one takes 3.9e+14 events",
+    ),
+    (
+        scene("watch: {hop_histogram: {radii: [0.1], event_budget: 1e5}}"),
+        "scenes[0].watch.hop_histogram must keep to … 65536 intervals fit into …, 100000; at 0.1 …",
     ),
     (scene("watch: {trajectory: 0.5}"), "scenes[0].watch.trajectory: radius 0.5 does not fit: …"),
     (
@@ -305,12 +310,23 @@ def with_value(path, value):
     return found
 
 
-def beyond(node):
-    """Return the numbers next to the ends of the range of a node."""
-    ends = {"minimum": -1, "maximum": 1, "exclusiveMinimum": 0, "exclusiveMaximum": 0}
+def limits(node, names):
+    """Return the limits of the range of a node that have these names."""
     forms = [node, *node.get("anyOf", ())]
-    found = [(form[end], sign) for form in forms for end, sign in ends.items() if end in form]
-    return [limit + sign * max(1, limit) for limit, sign in found]
+    return [form[name] for form in forms for name in names if name in form]
+
+
+def beyond(node):
+    """Return numbers outside the range of a node."""
+    below = (limit - max(1, limit) for limit in limits(node, ["minimum"]))
+    above = (limit + max(1, limit) for limit in limits(node, ["maximum"]))
+    return [*below, *above, *limits(node, ["exclusiveMinimum", "exclusiveMaximum"])]
+
+
+@pytest.mark.parametrize(("path", "node"), list(keys_of(schema.keys())))
+def test_the_ends_of_a_range_are_in_it(path, node):
+    for value in limits(node, ["minimum", "maximum"]):
+        Model.model_validate(with_value(path, value))
 
 
 @pytest.mark.parametrize(("path", "node"), list(keys_of(schema.keys())))
