@@ -18,8 +18,7 @@ class Study:
 
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
-    ``timed`` tables hold seconds, which differ from run to run. A study that is not ``shared`` is
-    built on request only; the manuscript includes all others. Pages list studies by their
+    ``timed`` tables hold seconds, which differ from run to run. Pages list studies by their
     ``order``. If a study has a function ``due``, the scores z in its first table are part of the
     check. The function yields the rows that a ``Configuration`` requires, each as {column: value}.
     """
@@ -35,7 +34,6 @@ class Study:
     parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()
-    shared: bool = True
     due: Callable | None = None
 
 

@@ -190,8 +190,7 @@ def test_what_is_built_once_is_forecast_if_asked_for(quick, names):
 
 def test_all_that_is_built_once_has_a_time(rows):
     shared = {row["stage"]: row for row in of(rows, scene="all")}
-    studies = [name for name, study in STUDIES.items() if study.shared]
-    assert {*studies, *forecast.DOCUMENTS, "compile", "total"} == {*shared}
+    assert {*STUDIES, *forecast.DOCUMENTS, "compile", "total"} == {*shared}
     assert all(row["startup"] > 0 for row in shared.values())
 
 

@@ -19,7 +19,7 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.theory import exact
 from twodiscs_paper.studies.stability import figure, figure_runs
 from twodiscs_paper.studies.stability import measure as stability
-from twodiscs_paper.studies.stability.study import LongRuns, Stability
+from twodiscs_paper.studies.stability.study import Stability
 
 PAPER = Box(1.5, 1.0)
 BOXES = [
@@ -71,7 +71,7 @@ def test_all_radii_fit_and_ordinary_ones_visit_every_regime(box):
 
 def test_a_row_passes_within_its_bounds():
     def passed(value, **more):
-        return stability.row("theory", "volume", "h/4", value, **more)["passed"]
+        return stability.judged({}, "volume", value, **more)["passed"]
 
     assert passed(1.0) is None
     assert passed(None, high=1.0) is None
@@ -262,11 +262,9 @@ def test_table_and_figure_of_any_box(box, quick, tmp_path):
 def test_the_figure_says_how_long_runs_are():
     runs = [("ordinary", 0.2, 50_000_000), ("tiny", 1e-9, 1_000_000)]
     rows = [
-        Stability.empty(
-            **stability.row("dynamics", "energy_error", case, 0.0, high=1e-12),
-            radius=radius,
-            count=count,
-        )
+        dict.fromkeys(Stability.columns)
+        | stability.start_of("dynamics", case, radius)
+        | stability.judged({}, "energy_error", 0.0, high=1e-12, count=count)
         for case, radius, count in runs
     ]
     with style.context():
@@ -279,27 +277,3 @@ def test_a_table_without_rows_is_drawn_empty(tmp_path):
     with style.context():
         for module in (figure, figure_runs):
             style.save(module.draw(PAPER, {"stability": []}), tmp_path / "figure.png")
-
-
-def test_long_runs_are_the_rows_on_dynamics(quick, tmp_path):
-    rows = written(tmp_path, LongRuns, **GIVEN)
-    assert {row["part"] for row in rows} == {"dynamics"}
-    assert {row["quantity"] for row in rows} == {
-        "energy_error", "smallest_gap", "excess", "lanes_lost"
-    }  # fmt: skip
-    assert len(rows) == 4 * len(stability.hard_radii(PAPER))
-    assert rows[0]["count"] >= 2000
-
-
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        ({"seed": -1}, "seed must be an integer from 0"),
-        ({"ordinary": 0}, "ordinary must be an integer from 1"),
-        ({"hard": 1e6}, "hard must be an integer of at least 1, not 1000000.0"),
-    ],
-)
-def test_mistakes_are_named_before_anything_is_computed(change, sentence):
-    for table in (Stability, LongRuns):
-        with pytest.raises(ValueError, match=sentence):
-            table.rows(**GIVEN | change)

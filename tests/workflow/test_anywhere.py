@@ -94,7 +94,7 @@ def test_no_shell_reads_the_name_of_a_folder_as_a_command(own, tmp_path):
 
 def test_every_path_in_a_shell_line_is_quoted(tmp_path):
     """Of jobs that take longer: what their lines are, from a folder with such a name."""
-    targets = "all", "explorer", "benchmark", "effects", "long_runs"
+    targets = "all", "explorer", "benchmark", "effects"
     dry = "--dry-run", "--forceall", "--printshellcmds", "--", *targets
     lines = fresh(tmp_path / "a b $(touch X)").snakemake(*dry).stdout
     shells = [line for line in lines.splitlines() if "Shell command:" in line]

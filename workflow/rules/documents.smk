@@ -73,7 +73,6 @@ if MAIN:
                 "figures": [
                     name
                     for study in STUDIES.values()
-                    if study.shared
                     for name in study.figures
                 ],
                 "seed": CONFIGURATION.seed,

@@ -149,11 +149,6 @@ if MAIN:
         input:
             CONFIGURATION.study("thresholds"),
 
-    rule long_runs:
-        """`stability` of the dynamics over ten times the events."""
-        input:
-            CONFIGURATION.study("long_runs"),
-
     rule more_discs:
         """Mean times of three to 64 discs."""
         input:

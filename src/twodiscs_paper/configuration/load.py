@@ -8,12 +8,12 @@ import yaml
 from pydantic import ValidationError
 
 from twodiscs.model.checks import InputError, format_number
+from twodiscs_paper.catalogue import STUDIES
 from twodiscs_paper.configuration.mistakes import ConfigError, describe, name_of_scene, sentences
 from twodiscs_paper.configuration.model import (
     ABOUT_PLAIN,
     BUILT_ONCE,
     DECIMAL,
-    NAMED_STUDIES,
     Model,
 )
 from twodiscs_paper.configuration.request import Configuration
@@ -117,7 +117,7 @@ def load(mapping):
 
 def _built_once(asked):
     """Return the names in ``shared`` with all that the manuscript reads, in the order of keys."""
-    wanted = {*asked, *(NAMED_STUDIES if "paper" in asked else ())}
+    wanted = {*asked, *(STUDIES if "paper" in asked else ())}
     return tuple(name for name in BUILT_ONCE if name in wanted)
 
 

@@ -24,10 +24,8 @@ from twodiscs_paper.catalogue import STUDIES
 #: A decimal number. YAML 1.1 has others: it reads 010 as 8 and 1:30 as 90.
 DECIMAL = re.compile(r"[-+]?(0|[1-9]\d*|\d*\.\d+|\d+\.\d*)(e[-+]?\d+)?", re.IGNORECASE)
 
-#: The studies that a configuration may name, those about scenes without effects, and the documents.
-NAMED_STUDIES = tuple(study.name for study in STUDIES.values() if study.shared)
-ABOUT_PLAIN = (*(name for name in NAMED_STUDIES if STUDIES[name].about_plain), "paper")
-BUILT_ONCE = (*NAMED_STUDIES, "paper", "report")
+ABOUT_PLAIN = (*(name for name, study in STUDIES.items() if study.about_plain), "paper")
+BUILT_ONCE = (*STUDIES, "paper", "report")
 
 #: The most events that any budget allows.
 MOST_EVENTS = 10**15

@@ -276,10 +276,10 @@ class Configuration:
 
     def studied(self, kind):
         """Return all "tables", or "figures" as PDF, of the studies that the manuscript reads."""
-        read = [study for study in STUDIES.values() if study.shared]
+        studies = STUDIES.values()
         if kind == "tables":
-            return [self.table(table.name()) for study in read for table in study.tables]
-        return [f"{self.results}/figures/{name}.pdf" for one in read for name in one.figures]
+            return [self.table(table.name()) for study in studies for table in study.tables]
+        return [f"{self.results}/figures/{name}.pdf" for study in studies for name in study.figures]
 
     def configuration_hash(self):
         """Return 16 hexadecimal digits of the configuration with every default filled in."""

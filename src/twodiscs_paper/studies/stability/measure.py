@@ -20,7 +20,7 @@ from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS, find_events, new_rows, put_state, state_at
 from twodiscs.dynamics.law import after_event, contact_quotient, law_of, wall_quotient
 from twodiscs.dynamics.two.path import advance
-from twodiscs.model.checks import LARGEST_INTEGER, check_integer
+from twodiscs.model.checks import LARGEST_INTEGER
 from twodiscs.model.events import EVENTS, HOPS
 from twodiscs.model.radii import shortest_decimal
 from twodiscs.points import estimates
@@ -31,6 +31,7 @@ from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
 from twodiscs.theory import exact, laws
 from twodiscs.theory.numerics.reference import DIGITS, exact_numbers
+from twodiscs_paper.study import row
 
 #: Spacing of doubles at 1.
 EPSILON = 2.0**-52
@@ -48,6 +49,9 @@ COVERAGE_BOUNDS = 0.92, 0.98
 
 #: The largest |z| that passes.
 LARGEST_Z = 5.0
+
+#: The quantities of theory.
+QUANTITIES = "volume", "areas", "mean_times"
 
 #: Proposals for a measured share, and for an estimate of volume and areas.
 SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
@@ -83,11 +87,11 @@ SEPARATION, FORGOTTEN, PILOT = 1e-8, 100, 200
 REPETITIONS = 800
 
 
-def row(part, quantity, case, value, low=None, high=None, z=None, **more):
-    """Return the columns of a row of stability.csv that are not empty, and the bounds.
+def judged(start, quantity, value, low=None, high=None, z=None, **cells):
+    """Return a row of stability.csv on a measured ``value``, and whether it passes.
 
-    ``passed`` is whether the value is within ``low`` and ``high`` and |z| ≤ 5, as far as these are
-    given. Without any of them, or without a value, ``passed`` is None.
+    It passes if it is within ``low`` and ``high`` and |z| ≤ 5, as far as these are given. Without
+    any of them, or without a value, ``passed`` is empty.
     """
     passed = None
     if value is not None and any(bound is not None for bound in (low, high, z)):
@@ -96,8 +100,13 @@ def row(part, quantity, case, value, low=None, high=None, z=None, **more):
             and (high is None or value <= high)
             and (z is None or abs(z) <= LARGEST_Z)
         )
-    columns = {"part": part, "quantity": quantity, "case": case, "value": value, **more}
-    return columns | {"low": low, "high": high, "z": z, "passed": passed}
+    bounds = {"low": low, "high": high, "z": z, "passed": passed}
+    return row(start | bounds, quantity=quantity, value=value, **cells)
+
+
+def start_of(part, case, radius=None, distance=None):
+    """Return the cells that rows on one radius have in common."""
+    return {"part": part, "case": case, "radius": radius, "distance": distance}
 
 
 def other_seed(seed, i):
@@ -187,20 +196,16 @@ def theory_rows(box):
         if case == "largest radius" and abs(distance) < 1e-12:
             continue
         scene = box.scene(radius)
-        volume, areas, times = exact_numbers(scene)
+        true = exact_numbers(scene)
+        stable = {"volume": exact.volume(scene)}, exact.areas(scene), exact.mean_times(scene)
         closed = laws.closed_form(scene)
-        for quantity, method, values, true in (
-            ("volume", "stable", {"volume": exact.volume(scene)}, volume),
-            ("areas", "stable", exact.areas(scene), areas),
-            ("mean_times", "stable", exact.mean_times(scene), times),
-            ("volume", "closed-form", {"volume": closed["volume"]}, volume),
-            ("areas", "closed-form", closed["areas"], areas),
-        ):
-            yield row(
-                "theory", quantity, case, relative_error(values, true), method=method,
-                radius=radius, distance=distance,
-                high=THEORY_BOUND if method == "stable" else None,
-            )  # fmt: skip
+        plain = {"volume": closed["volume"]}, closed["areas"]
+        start = start_of("theory", case, radius, distance)
+        for quantity, values, due in zip(QUANTITIES, stable, true, strict=True):
+            error = relative_error(values, due)
+            yield judged(start, quantity, error, high=THEORY_BOUND, method="stable")
+        for quantity, values, due in zip(QUANTITIES, plain, true, strict=False):
+            yield judged(start, quantity, relative_error(values, due), method="closed-form")
 
 
 # Sampling ---------------------------------------------------------------------------------------
@@ -220,15 +225,11 @@ def sampling_rows(box, seed):
             scene, ["volume"], SHARE_PROPOSALS, SHELL, other_seed(seed, i)
         )
         hits, samples = point.quantities["volume"].hits, point.samples
-        yield row(
-            "sampling", "accepted_share", case, prism, method="prism", radius=radius,
-            distance=distance,
-        )  # fmt: skip
-        yield row(
-            "sampling", "accepted_share", case, hits / samples, method="conditioned", radius=radius,
-            distance=distance, count=samples, exact=due, low=ACCEPTED_BOUND,
-            z=scores.binomial_z(hits, samples, due)[0],
-        )  # fmt: skip
+        start = start_of("sampling", case, radius, distance)
+        yield judged(start, "accepted_share", prism, method="prism")
+        z, _ = scores.binomial_z(hits, samples, due)
+        found = {"method": "conditioned", "count": samples, "exact": due}
+        yield judged(start, "accepted_share", hits / samples, low=ACCEPTED_BOUND, z=z, **found)
 
 
 def estimate_rows(box, seed):
@@ -242,13 +243,11 @@ def estimate_rows(box, seed):
             scene, quantities, ESTIMATE_PROPOSALS, SHELL, other_seed(seed, i)
         )
         theory, points = Theory.rows(box, [radius]), {"monte_carlo": [point]}
+        start = start_of("estimates", case, radius, distance) | {"method": "conditioned"}
         for found in Volume.rows(theory, points) + Areas.rows(box, theory, points):
-            yield row(
-                "estimates", found["quantity"], case, found["estimate"], method="conditioned",
-                radius=radius, distance=distance, count=found["samples"],
-                exact=found["expectation"], stderr=found["stderr"], z=found["z"],
-                status=found["status"],
-            )  # fmt: skip
+            kept = {"stderr": found["stderr"], "z": found["z"], "status": found["status"]}
+            kept |= {"count": found["samples"], "exact": found["expectation"]}
+            yield judged(start, found["quantity"], found["estimate"], **kept)
 
 
 # Times of events --------------------------------------------------------------------------------
@@ -336,7 +335,8 @@ def time_rows(box, seed, cases=400):
     for case, flights in approaches(2 * radius, generator, cases).items():
         errors = [contact_error(*state, 2 * radius) for state in flights]
         known = [error for error in errors if error is not None]
-        yield row("times", "contact_time", case, max(known), count=len(known), high=TIME_BOUND)
+        start = start_of("times", case)
+        yield judged(start, "contact_time", max(known), high=TIME_BOUND, count=len(known))
 
     half = box.width / 2 - radius
     for case, powers in (("from anywhere", (-12, 0)), ("velocity almost 0", (-323, -307))):
@@ -346,7 +346,9 @@ def time_rows(box, seed, cases=400):
             wall_error(float(position), float(velocity), half)
             for position, velocity in zip(positions, velocities, strict=True)
         ]
-        yield row("times", "wall_time", case, max(errors), count=cases, high=TIME_BOUND)
+        yield judged(
+            start_of("times", case), "wall_time", max(errors), high=TIME_BOUND, count=cases
+        )
 
 
 # Long runs --------------------------------------------------------------------------------------
@@ -404,7 +406,7 @@ def run(scene, number, seed):
     Keys: events; energy_error, the largest |E − 1/2|; smallest_gap, the smallest |Δx| − σ, and
     excess, the largest distance of a centre beyond its range, both in ``box_units``; lanes_lost.
     """
-    per_lane = -(-check_integer("number", number) // LANES)
+    per_lane = -(-number // LANES)
     windows = -(-per_lane // WINDOW)
     window = -(-per_lane // windows)
     law = law_of(scene)
@@ -425,21 +427,8 @@ def run(scene, number, seed):
     }
 
 
-def _checked(seed, ordinary, hard):
-    """Return the three as integers; raise ``InputError`` for one that is out of range."""
-    return (
-        check_integer("seed", seed, 0),
-        check_integer("ordinary", ordinary),
-        check_integer("hard", hard),
-    )
-
-
 def dynamics_rows(box, seed, ordinary, hard):
-    """Yield the errors in runs of ``ordinary`` events, and of ``hard`` events at hard radii.
-
-    Raises ``InputError`` for a number out of range.
-    """
-    seed, ordinary, hard = _checked(seed, ordinary, hard)
+    """Yield the errors in runs of ``ordinary`` events, and of ``hard`` events at hard radii."""
     bounds = {
         "energy_error": {"high": ENERGY_BOUND},
         "smallest_gap": {"low": GAP_BOUND},
@@ -449,11 +438,9 @@ def dynamics_rows(box, seed, ordinary, hard):
     for i, (case, distance, radius) in enumerate(hard_radii(box)):
         number = ordinary if case == "ordinary" else hard
         found = run(box.scene(radius), number, other_seed(seed, i))
+        start = start_of("dynamics", case, radius, distance) | {"count": found["events"]}
         for quantity, bound in bounds.items():
-            yield row(
-                "dynamics", quantity, case, float(found[quantity]), radius=radius,
-                distance=distance, count=found["events"], **bound,
-            )  # fmt: skip
+            yield judged(start, quantity, float(found[quantity]), **bound)
 
 
 # Reversal ---------------------------------------------------------------------------------------
@@ -565,18 +552,16 @@ def reversal_rows(box, seed):
             factors = growth(starts, forgotten, measured, SEPARATION, law)
             return mean_of(np.log(factors[np.isfinite(factors)]) / measured)
 
+        there, back = (start_of("reversal", case, radius) for case in ("separation", "return"))
         expected = exponent(FORGOTTEN, PILOT).value
         if expected < digits / LONGEST:
-            yield row("reversal", "events_retraced", "return", None, radius=radius, status="long")
+            yield judged(back, "events_retraced", None, status="long")
             continue
         expected = digits / expected
         first = round(FITTED * expected)
         rate = exponent(first, round(expected) - first)
         predicted = digits / rate.value
-        yield row(
-            "reversal", "exponent", "separation", rate.value, radius=radius, stderr=rate.stderr,
-            count=REVERSED,
-        )  # fmt: skip
+        yield judged(there, "exponent", rate.value, stderr=rate.stderr, count=REVERSED)
 
         log_errors = {}  # the logarithm of the error of return by the number of events
         numbers = sorted({max(1, round(share * expected)) for share in SHARES})
@@ -586,28 +571,25 @@ def reversal_rows(box, seed):
             off = np.maximum(return_errors(starts, number, law), 2.0**-56)
             log_errors[number] = log = mean_of(np.log(off))
             value = math.exp(log.value)
-            yield row(
-                "reversal", "return_error", "return", value, radius=radius, count=number,
-                stderr=value * log.stderr,
-            )  # fmt: skip
+            yield judged(back, "return_error", value, count=number, stderr=value * log.stderr)
 
         fitted = [
             (n, e.value, e.stderr) for n, e in log_errors.items() if first <= n <= round(expected)
         ]
         slope = LinearFit(*zip(*fitted, strict=True)).slope
-        yield row(
-            "reversal", "exponent", "return", slope.value, radius=radius, exact=rate.value,
-            stderr=slope.stderr, count=REVERSED,
-            z=(slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr),
-        )  # fmt: skip
+        z = (slope.value - rate.value) / math.hypot(slope.stderr, rate.stderr)
+        found = {"exact": rate.value, "stderr": slope.stderr, "count": REVERSED}
+        yield judged(back, "exponent", slope.value, z=z, **found)
         logs = [log.value for log in log_errors.values()]
-        yield row(
-            "reversal", "events_retraced", "return",
+        yield judged(
+            back,
+            "events_retraced",
             float(np.interp(math.log(RETRACED), logs, numbers)),
-            radius=radius, count=REVERSED, exact=predicted,
             low=predicted - math.log(ROUNDINGS * long) / rate.value,
             high=predicted + math.log(ROUNDINGS) / rate.value,
-        )  # fmt: skip
+            count=REVERSED,
+            exact=predicted,
+        )
 
 
 # Error bars -------------------------------------------------------------------------------------
@@ -627,40 +609,31 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
             counting.run_blocks(scene, EVENTS, seed, block, block + 1, duration)
             for block in range(repetitions)
         ]
+        start = start_of("coverage", "ordinary", radius) | {"count": repetitions}
         for e, event in enumerate(EVENTS):
             if times[event] is None:
                 continue
             moments = [(int(sums[e]), int(products[e, e]), REPLICAS) for sums, products in blocks]
             if sum(estimates.has_error_bar(*m) for m in moments) < repetitions / 2:
-                yield row(
-                    "coverage", event, "ordinary", None, radius=radius, count=repetitions,
-                    status="too-few",
-                )  # fmt: skip
+                yield judged(start, event, None, status="too-few")
                 continue
             intervals = [
                 estimates.mean_time(*m, scene.multiplicity(event) * duration) for m in moments
             ]
-            covered = sum(i is not None and i.covers(times[event]) for i in intervals)
-            yield row(
-                "coverage", event, "ordinary", covered / repetitions, radius=radius,
-                count=repetitions, exact=0.95, stderr=math.sqrt(0.95 * 0.05 / repetitions),
-                low=low, high=high, status="counted",
-            )  # fmt: skip
+            share = sum(i is not None and i.covers(times[event]) for i in intervals) / repetitions
+            found = {"exact": 0.95, "stderr": math.sqrt(0.95 * 0.05 / repetitions)}
+            yield judged(start, event, share, low, high, status="counted", **found)
 
 
 def rows(box, seed, ordinary, hard):
-    """Return all rows of stability.csv for a plain ``Box``.
+    """Yield all rows of stability.csv for a plain ``Box``.
 
-    ``ordinary`` and ``hard`` are events of the long runs. Raises ``InputError`` for a number out of
-    range, before anything is computed.
+    ``ordinary`` and ``hard`` are events of the long runs.
     """
-    seed, ordinary, hard = _checked(seed, ordinary, hard)
-    return [
-        *theory_rows(box),
-        *sampling_rows(box, seed),
-        *estimate_rows(box, seed),
-        *time_rows(box, seed),
-        *dynamics_rows(box, seed, ordinary, hard),
-        *reversal_rows(box, seed),
-        *coverage_rows(box, seed),
-    ]
+    yield from theory_rows(box)
+    yield from sampling_rows(box, seed)
+    yield from estimate_rows(box, seed)
+    yield from time_rows(box, seed)
+    yield from dynamics_rows(box, seed, ordinary, hard)
+    yield from reversal_rows(box, seed)
+    yield from coverage_rows(box, seed)

@@ -58,31 +58,17 @@ class Stability(Table):
         ),
     }
 
-    @classmethod
-    def rows(cls, box, seed, ordinary, hard):
+    @staticmethod
+    def rows(box, seed, ordinary, hard):
         """Return all rows of a plain ``Box`` (see ``measure.rows``)."""
         from twodiscs_paper.studies.stability import measure
 
-        return [cls.empty(**row) for row in measure.rows(box, seed, ordinary, hard)]
+        return measure.rows(box, seed, ordinary, hard)
 
 
-class LongRuns(Stability):
-    """The rows of stability.csv on dynamics, from ten times longer runs."""
-
-    @classmethod
-    def rows(cls, box, seed, ordinary, hard):
-        """Return the rows of a plain ``Box`` (see ``measure.dynamics_rows``)."""
-        from twodiscs_paper.studies.stability import measure
-
-        return [cls.empty(**row) for row in measure.dynamics_rows(box, seed, ordinary, hard)]
-
-
-def _parameters(times):
-    def parameters(configuration):
-        ordinary = times * scaled(configuration.main.event_budget, 8, 10**7, 25 * 10**7)
-        return {**main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
-
-    return parameters
+def _parameters(configuration):
+    ordinary = scaled(configuration.main.event_budget, 8, 10**7, 25 * 10**7)
+    return {**main_box(configuration), "hard": ordinary // 10, "ordinary": ordinary}
 
 
 STUDY = Study(
@@ -105,15 +91,5 @@ STUDY = Study(
             tables=("stability",),
         ),
     },
-    parameters=_parameters(1),
-)
-
-LONG_RUNS = Study(
-    "long_runs",
-    builds="`stability` of the dynamics over ten times the events",
-    tables=(LongRuns,),
-    seconds=60.0,
-    order=8,
-    parameters=_parameters(10),
-    shared=False,
+    parameters=_parameters,
 )
