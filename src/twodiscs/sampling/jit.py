@@ -4,43 +4,25 @@ Arithmetic is plain IEEE 754, without fastmath and without contraction. The only
 library that kernels call is the square root, which is correctly rounded. This makes the bits the
 same on every processor and for every vector width.
 
-Numba's cache keeps compiled code, in a folder named by the ``fingerprint`` of the kernel's module.
-Numba itself compares only the file of that module, and would keep a kernel after an edit of the
-event law that the module imports. Import this module, not numba, to compile anything: the settings
-must precede the import of numba.
+Numba's cache keeps compiled code. Numba itself compares only the file of a kernel, and would keep
+it after an edit of the event law that the file imports, so a folder belongs to one state of the
+sources. Import this module, not numba, to compile anything.
 
 Kernels copy arrays element by element. The assignment of one array to a part of another compiles
 the error message for shapes that differ, which takes seconds.
 """
 
 import atexit
-import fcntl
 import gc
 import os
-import shutil
 import sys
-import time
+import tempfile
 import uuid
-from contextlib import suppress
 from functools import cache
+from hashlib import blake2b
 from pathlib import Path
 
 from twodiscs.model.checks import InputError
-from twodiscs.model.sources import PACKAGES, fingerprint
-
-
-def _use_wide_vectors():
-    """Let LLVM use 512-bit vectors if the processor has them, unless the user set a width."""
-    if "NUMBA_CPU_NAME" in os.environ or "NUMBA_CPU_FEATURES" in os.environ:
-        return
-    from llvmlite import binding
-
-    features = binding.get_host_cpu_features()
-    if features.get("avx512f"):
-        os.environ["NUMBA_CPU_FEATURES"] = features.flatten() + ",-prefer-256-bit"
-
-
-_use_wide_vectors()
 
 # The objects of numba's import stay in memory: garbage collections meanwhile take a fifth of the
 # start.
@@ -48,6 +30,7 @@ collecting = gc.isenabled()
 gc.disable()
 
 import numba  # noqa: E402
+from llvmlite import binding  # noqa: E402
 from numba.core import caching, types  # noqa: E402
 from numba.core.compiler_lock import global_compiler_lock  # noqa: E402
 from numba.extending import overload  # noqa: E402
@@ -60,7 +43,6 @@ if (blas := "scipy.linalg.cython_blas") not in sys.modules:
 
     del sys.modules[blas]
 
-gc.freeze()
 if collecting:
     gc.enable()
 
@@ -69,6 +51,11 @@ if numba.config.DISABLE_JIT:
         "NUMBA_DISABLE_JIT must not be set: in Python integers do not wrap around and the root of "
         "a negative number is an error; to step through one kernel, call its attribute py_func"
     )
+
+# LLVM uses 512-bit vectors if the processor has them, unless the user set a width.
+features = binding.get_host_cpu_features()
+if features.get("avx512f") and not (numba.config.CPU_NAME or numba.config.CPU_FEATURES):
+    numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
 
 # Daemon threads end with the process. During a compilation that crashes it, so we wait.
 atexit.register(global_compiler_lock.acquire)
@@ -79,67 +66,52 @@ OPTIONS = {
     "error_model": "numpy", "boundscheck": False, "nogil": True, "no_cfunc_wrapper": True,
 }  # fmt: skip
 
-#: Compiled code of older sources is removed after this number of seconds without use.
-UNUSED = 30 * 86400
+_ROOT = Path(__file__).parents[2]
+_FLOORS = [
+    _ROOT / "twodiscs" / name for name in ("model", "points", "theory", "sampling", "dynamics")
+]
+
+#: {package whose kernels are kept: folders of the sources that are compiled into them}.
+SOURCES = {"twodiscs": _FLOORS, "twodiscs_paper": [*_FLOORS, _ROOT / "twodiscs_paper" / "studies"]}
 
 
 @cache
-def cache_home():
-    """Return the folder for compiled code, None if no folder can be written to.
+def cache_folder(package):
+    """Return the folder for compiled code of a ``package``, None if no code can be kept.
 
-    It is the first that can be written to of NUMBA_CACHE_DIR, ``twodiscs`` in XDG_CACHE_HOME or in
-    ``~/.cache``, and the folder of the package.
+    Its name changes with the path, size and time of each file in ``SOURCES``.
     """
-    homes = [Path(__file__).parents[1] / "__pycache__"]
-    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
-        homes.insert(0, Path(chosen))
-    elif chosen := os.environ.get("XDG_CACHE_HOME"):
-        homes.insert(0, Path(chosen) / "twodiscs")
-    else:
-        with suppress(RuntimeError):  # the user may have no entry in the list of users
-            homes.insert(0, Path.home() / ".cache" / "twodiscs")
-    for home in homes:
-        with suppress(OSError):
-            home.mkdir(parents=True, exist_ok=True)
-            if os.access(home, os.W_OK | os.X_OK):
-                return home
-    print(
-        "Compiled code cannot be kept, so every process compiles again: none of the folders "
-        f"{', '.join(map(str, homes))} can be written to; NUMBA_CACHE_DIR names another one",
-        file=sys.stderr,
-    )
-    return None
+    digest = blake2b(digest_size=8)
+    for path in sorted(path for folder in SOURCES[package] for path in folder.rglob("*.py")):
+        digest.update(f"{path} {path.stat().st_size} {path.stat().st_mtime_ns}\n".encode())
+    try:
+        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        kept = Path(numba.config.CACHE_DIR or Path(home, "twodiscs"), digest.hexdigest())
+        kept.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=kept).close()
+    except (OSError, RuntimeError) as error:  # the user may have no home
+        print(
+            f"Compiled code cannot be kept, so every process compiles again: {error}; "
+            "NUMBA_CACHE_DIR names another folder",
+            file=sys.stderr,
+        )
+        return None
+    return str(kept)
 
 
-@cache
-def cache_folder(module):
-    """Return the folder of the compiled code of a ``module``, a dotted name.
-
-    When a folder is new, old folders without use for ``UNUSED`` seconds are removed.
-    """
-    folder = cache_home() / f"kernels-{fingerprint(module)}"
-    if not folder.exists():
-        for old in cache_home().glob("kernels-" + 16 * "[0-9a-f]"):
-            if old.stat().st_mtime < time.time() - UNUSED:
-                shutil.rmtree(old, ignore_errors=True)
-    folder.mkdir(exist_ok=True)
-    os.utime(folder)
-    return folder
-
-
-class BySources(caching.UserProvidedCacheLocator):
-    """Gives numba's cache the folder of a function, whose name has the fingerprint of sources."""
+class Locator(caching.UserProvidedCacheLocator):
+    """Names the folder and the file for the code of a kernel."""
 
     def __init__(self, function, file):
-        self._cache_path = str(cache_folder(function.__module__))
+        self._cache_path, self._module = cache_folder(_package(function)), function.__module__
 
     def get_source_stamp(self):
-        """Return what compiled code depends on beside the versions of numba and Python."""
-        return numba.llvmlite.__version__
+        """Return an empty text: the name of the folder is the stamp of the sources."""
+        return ""
 
     def get_disambiguator(self):
-        """Return an empty text: a module has one function of a name, on any line."""
-        return "kernel"
+        """Return the name of the module: two modules of two folders may have one file name."""
+        return self._module
 
     @classmethod
     def from_function(cls, function, file):
@@ -147,87 +119,41 @@ class BySources(caching.UserProvidedCacheLocator):
         return cls(function, file)
 
 
-class CacheFile(caching.IndexDataCacheFile):
-    """Numba's files of one function; after damage, or on a full disk, it is compiled again."""
+class KernelCacheImpl(caching.CompileResultCacheImpl):
+    """What numba keeps of a compilation, in the folder that ``Locator`` names."""
 
-    def load(self, key):
-        """Return the compiled kernel for ``key``, None if there is none or a file is damaged."""
-        try:
-            return super().load(key)
-        except OSError:
-            raise
-        except Exception:  # its type depends on the byte at which a pickle ends
-            print(f"{self._index_path} is damaged; the kernel is compiled again", file=sys.stderr)
-            with suppress(OSError):
-                os.unlink(self._index_path)
+    _locator_classes = [Locator]
 
-    def save(self, key, data):
-        """Keep ``data``, a compiled kernel, for ``key``, if the disk has room."""
-        try:
-            super().save(key, data)
-        except OSError as error:
-            print(f"{self._index_path} cannot be kept: {error.strerror}", file=sys.stderr)
 
-    def _data_name(self, number):
+class KernelCache(caching.FunctionCache):
+    """Numba's cache of the compiled code of one kernel."""
+
+    _impl_class = KernelCacheImpl
+
+    def __init__(self, function):
+        super().__init__(function)
         # Numba numbers its files: two processes that save together would use a number twice.
-        return f"{Path(self._index_name).stem}.{uuid.uuid4().hex}.nbc"
+        self._cache_file._data_name = lambda number: f"{function.__name__}.{uuid.uuid4().hex}.nbc"
 
 
 def compiled(function, **options):
     """Compile ``function`` with ``OPTIONS``; the functions that it calls are compiled into it.
 
-    The code is kept on disk if possible. ``options`` are further ones of ``numba.njit``.
+    The code of kernels in ``SOURCES`` is kept on disk. A function within a function is not kept,
+    because others in its module have the same name. ``options`` are further ones of ``numba.njit``.
     """
-    options = OPTIONS | options
-    if cache_home() is None or function.__module__.partition(".")[0] not in PACKAGES:
-        return numba.njit(function, **options)
-    usual = numba.config.CACHE_LOCATOR_CLASSES
-    numba.config.CACHE_LOCATOR_CLASSES = f"{__name__}.{BySources.__name__}"
-    try:
-        kept = numba.njit(function, cache=True, **options)
-    finally:
-        numba.config.CACHE_LOCATOR_CLASSES = usual
-    kept._cache._cache_file.__class__ = CacheFile
-    _compile_once(kept._cache, function.__name__)
-    return kept
+    kernel, package = numba.njit(function, **OPTIONS | options), _package(function)
+    if package in SOURCES and "<" not in function.__qualname__ and cache_folder(package):
+        kernel._cache = KernelCache(function)
+    return kernel
 
 
-def _compile_once(cache, name):
-    """Let one process at a time compile the function of a ``cache``: others wait, and load it.
-
-    A function is locked before the functions that it calls, so no two processes wait for each
-    other.
-    """
-    load, save, held = cache.load_overload, cache.save_overload, []
-
-    def load_or_lock(signature, context):
-        found = load(signature, context)
-        if found is None and not held:
-            with suppress(OSError):  # without locks in the file system both compile
-                held.append(os.open(Path(cache.cache_path, f"{name}.lock"), os.O_CREAT | os.O_RDWR))
-                fcntl.flock(held[0], fcntl.LOCK_EX)
-            if (found := load(signature, context)) is not None and held:
-                os.close(held.pop())
-        return found
-
-    def save_and_unlock(signature, data):
-        try:
-            save(signature, data)
-        finally:
-            if held:
-                os.close(held.pop())
-
-    cache.load_overload, cache.save_overload = load_or_lock, save_and_unlock
+def _package(function):
+    return function.__module__.partition(".")[0]
 
 
 def inlined(function):
-    """Compile ``function`` into its callers, whatever its length: for the innermost loops.
-
-    Its code is kept, because several kernels have it. A function within a function is not kept,
-    because others in its module have the same name.
-    """
-    if "<" in function.__qualname__:
-        return numba.njit(function, forceinline=True, **OPTIONS)
+    """Compile ``function`` into its callers, whatever its length: for the innermost loops."""
     return compiled(function, forceinline=True)
 
 
