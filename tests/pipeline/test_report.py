@@ -52,7 +52,7 @@ def test_the_largest_deviation_has_the_digits_of_the_verdict(z):
 def test_mean_times_are_those_of_their_table():
     folder = REPOSITORY / "paper" / "expected"
     scene = {"name": "paper", "width": 1.5, "height": 1.0, "effects": {}}
-    shown = [(radius, *row) for radius, rows in mean_times(folder, scene) for row in rows]
+    shown = [(radius, *row) for radius, rows in mean_times(folder, scene).items() for row in rows]
     rows = MeanTimes.read(folder / "paper" / "mean_times.csv")
     for (radius, event, value, error, exact, z), row in zip(shown, rows, strict=True):
         assert (radius, event.replace(" ", "_")) == (row["radius"], row["event"])
@@ -65,7 +65,7 @@ def test_mean_times_are_those_of_their_table():
         if row["exact"] is not None:
             assert abs(float(exact) - row["exact"]) <= 0.0501 * row["stderr"]
             assert abs(float(z) - row["z"]) <= 0.00501
-    assert mean_times(folder, scene | {"name": "absent"}) == []
+    assert mean_times(folder, scene | {"name": "absent"}) == {}
 
 
 def test_an_animation_stands_still_at_the_picture_that_is_shown_longest(tmp_path):
@@ -99,7 +99,7 @@ def report():
     shown = contents(REPOSITORY, files, LONG)
     row = {"radii": 12, "comparisons": 1234, "tests": 1234, "failed": 0, "largest": 3.21}
     wide = ["horizontal hop", "1.23456789e-06", "1.2e-12", "1.23456789e-06", "-0.12"]
-    shown["measured"] = [[scene["name"], [[0.249975, [wide] * 6]]] for scene in LONG]
+    shown["measured"] = {scene["name"]: {0.249975: [wide] * 6} for scene in LONG}
     shown["agreements"] = [row | scene | {"events": 4.4e10} for scene in LONG]
     template = REPOSITORY / "workflow" / "report" / "front.html"
     return page(template.read_text(encoding="utf-8"), shown)

@@ -59,25 +59,9 @@ if MAIN:
             f"{RESULTS}/benchmarks/paper.tsv"
         localrule: True
         params:
-            contents={
-                "scenes": [
-                    {
-                        "name": scene.name,
-                        "width": scene.box.width,
-                        "height": scene.box.height,
-                        "tables": list(CONFIGURATION.tables(scene.name)),
-                        "figures": list(CONFIGURATION.figures(scene.name)),
-                    }
-                    for scene in CONFIGURATION.plain
-                ],
-                "figures": [
-                    name
-                    for study in STUDIES.values()
-                    for name in study.figures
-                ],
-                "seed": CONFIGURATION.seed,
-                "configuration": CONFIGURATION.configuration_hash(),
-            },
+            scenes=CONFIGURATION.described(),
+            seed=CONFIGURATION.seed,
+            configuration=CONFIGURATION.configuration_hash(),
             code=code("twodiscs_paper.pipeline.documents.manuscript"),
         script:
             "../scripts/paper.py"
@@ -113,7 +97,7 @@ rule report:
         f"{RESULTS}/benchmarks/report.tsv"
     localrule: True
     params:
-        scenes=CONFIGURATION.report(),
+        scenes=CONFIGURATION.described(),
         code=code("twodiscs_paper.pipeline.documents.report"),
     script:
         "../scripts/report.py"
@@ -183,7 +167,7 @@ rule explorer:
         f"{RESULTS}/benchmarks/explorer.tsv"
     localrule: True
     params:
-        scenes=CONFIGURATION.report(),
+        scenes=CONFIGURATION.described(),
         seed=CONFIGURATION.seed,
         code=code("twodiscs_paper.pipeline.documents.explorer"),
     script:

@@ -285,15 +285,17 @@ class Configuration:
         """Return 16 hexadecimal digits of the configuration with every default filled in."""
         return blake2b(repr(self).encode(), digest_size=8).hexdigest()
 
-    def report(self):
-        """Return the properties of the scenes that the report shows."""
+    def described(self):
+        """Return the properties of the scenes that documents show."""
         return [
             {
-                "box": " × ".join(f"{side:g}" for side in scene.box.sides),
-                "effects": scene.effects,
-                "height": scene.box.height,
                 "name": scene.name,
                 "width": scene.box.width,
+                "height": scene.box.height,
+                "box": " × ".join(f"{side:g}" for side in scene.box.sides),
+                "effects": scene.effects,
+                "tables": list(self.tables(scene.name)),
+                "figures": list(self.figures(scene.name)),
             }
             for scene in self.scenes
         ]

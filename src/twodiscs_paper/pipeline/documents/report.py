@@ -8,10 +8,11 @@ import re
 from base64 import b64encode
 from datetime import date
 from io import BytesIO
+from operator import itemgetter
 from pathlib import Path, PurePosixPath
 
 from markupsafe import Markup, escape
-from PIL import Image
+from PIL import Image, ImageSequence
 
 from twodiscs.comparison.measured.measurements import measurement
 from twodiscs.comparison.tables.check import Check
@@ -50,33 +51,30 @@ def agreement(folder, scene):
     own = Path(folder, scene["name"])
     if not (own / "check.csv").exists():
         return None
-    rows = [row for row in Check.read(own / "check.csv") if row["passed"] is not None]
-    cost = [row for row in Cost.read(own / "cost.csv") if row["stage"] == "dynamics"]
-    return {
-        "box": scene["box"],
-        "comparisons": len(rows),
-        "events": sum(row["events"] for row in cost),
-        "tests": sum(row["independent"] for row in rows),
-        "failed": sum(not row["passed"] for row in rows),
-        "largest": max((abs(row["z"]) for row in rows), default=0.0),
-        "name": scene["name"],
-        "radii": len(Grid.read(own / "grid.csv")),
+    check, cost = Check.frame(own / "check.csv"), Cost.frame(own / "cost.csv")
+    check = check[check["passed"].notna()]
+    return scene | {
+        "comparisons": len(check),
+        "events": int(cost["events"][cost["stage"] == "dynamics"].sum()),
+        "tests": check["independent"].sum(),
+        "failed": (~check["passed"]).sum(),
+        "largest": check["z"].abs().max() if len(check) else 0.0,
+        "radii": len(Grid.frame(own / "grid.csv")),
     }
 
 
 def mean_times(folder, scene):
-    """Return [[radius, [[event, estimate, error, exact, z], …]], …] of a scene as texts.
+    """Return {radius: [[event, estimate, error, exact, z], …]} of a scene as texts.
 
-    Without an error it is the status of the estimate. The list is empty without mean_times.csv.
+    Without an error it is the status of the estimate. Nothing is returned without mean_times.csv.
     """
-    path = Path(folder, scene["name"], "mean_times.csv")
-    by_radius = {}
+    path, by_radius = Path(folder, scene["name"], "mean_times.csv"), {}
     for row in MeanTimes.read(path) if path.exists() else ():
         one = box_of(scene).scene(row["radius"])
         quantity, value, error, exact, _, z, _, status = measurement(one, row).cells()
         event = quantity.removesuffix("_time").replace("_", " ")
         by_radius.setdefault(row["radius"], []).append([event, value, error or status, exact, z])
-    return [*by_radius.items()]
+    return by_radius
 
 
 def figure(folder, path, scenes):
@@ -84,14 +82,14 @@ def figure(folder, path, scenes):
 
     A figure without a scene is about the first scene without effects.
     """
-    entry = ENTRIES[path.stem]
-    scene = scenes.get(path.parts[0])
+    entry, scene = ENTRIES[path.stem], scenes.get(path.parts[0])
     main = next((candidate for candidate in scenes.values() if not candidate["effects"]), None)
     about = scene or main
     text = caption(entry, folder, about) if about else entry.caption()
     if scene:
         text += f" Scene {scene['name']}, {scene['box']}."
-    data = Path(folder, path).read_bytes()
+    with Image.open(Path(folder, path)) as image:
+        width = image.width // DENSITY
     return {
         "alt": f"{entry.title}. {SENTENCE.match(text)[0]}",
         "caption": Markup(SUBSCRIPT.sub(r"\1<sub>\2</sub>", str(escape(text)))),
@@ -99,36 +97,38 @@ def figure(folder, path, scenes):
         "name": path.stem,
         "picture": path,
         "title": entry.title,
-        "uri": _uri(data),
-        "width": int.from_bytes(data[16:20], "big") // DENSITY,  # as the header of a PNG says
+        "uri": _uri(Path(folder, path).read_bytes()),
+        "width": width,
     }
 
 
-def _uri(data):
-    return f"data:image/png;base64,{b64encode(data).decode()}"
+def _uri(png):
+    return f"data:image/png;base64,{b64encode(png).decode()}"
+
+
+def _encoded(image, colours):
+    """Return an ``image`` in some ``colours`` as an address that holds it."""
+    png = BytesIO()
+    image.quantize(colours).save(png, "PNG", optimize=True)
+    return _uri(png.getvalue())
 
 
 def thumbnail(folder, path, scenes):
     """Return the ``figure`` at ``path`` with a small picture of it."""
     with Image.open(Path(folder, path)) as image:
-        image = image.convert("RGB")
-        image.thumbnail((THUMBNAIL, 2 * THUMBNAIL))
-        small = BytesIO()
-        image.quantize(32).save(small, "PNG", optimize=True)
-    return figure(folder, path, scenes) | {"uri": _uri(small.getvalue())}
+        small = image.convert("RGB")
+    small.thumbnail((THUMBNAIL, 2 * THUMBNAIL))
+    return figure(folder, path, scenes) | {"uri": _encoded(small, 32)}
 
 
 def movie(folder, path, scenes):
     """Return the animation at ``path`` with its frame of the longest duration, the hop."""
     with Image.open(Path(folder, path)) as image:
-        longest = 0
-        for k in range(image.n_frames):
-            image.seek(k)  # forwards only, because earlier frames may be black
-            if image.info["duration"] > longest:
-                longest, picture = image.info["duration"], image.convert("RGB")
-        still = BytesIO()
-        picture.quantize(64).save(still, "PNG", optimize=True)
-    return figure(folder, path, scenes) | {"still": _uri(still.getvalue())}
+        frames = (
+            (one.info["duration"], one.convert("RGB")) for one in ImageSequence.Iterator(image)
+        )
+        _, longest = max(frames, key=itemgetter(0))
+    return figure(folder, path, scenes) | {"still": _encoded(longest, 64)}
 
 
 def key_figures(paths, of_scene=True):
@@ -174,10 +174,10 @@ def contents(folder, files, scenes):
         for name, scene in by_name.items()
     ]
     sections += [section(folder, of_all, by_name)] if of_all else []
-    measured = [[scene["name"], mean_times(folder, scene)] for scene in scenes]
+    measured = {scene["name"]: mean_times(folder, scene) for scene in scenes}
     return {
-        "few": sum(len(rows) for _, radii in measured for _, rows in radii) <= FEW,
-        "measured": [[name, radii] for name, radii in measured if radii],
+        "few": sum(len(rows) for radii in measured.values() for rows in radii.values()) <= FEW,
+        "measured": {name: radii for name, radii in measured.items() if radii},
         "agreements": [agreed for scene in scenes if (agreed := agreement(folder, scene))],
         "commit": commit(Path(__file__).parent),
         "date": date.today(),
