@@ -347,7 +347,7 @@ def small(monkeypatch):
         monkeypatch.setattr(measure, name, value)
 
 
-def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypatch):
+def test_the_table_is_written(tmp_path, small, monkeypatch):
     seeds, seed_of = [], measure.seed_of
     monkeypatch.setattr(measure, "seed_of", lambda *of: seeds.append(seed_of(*of)) or seeds[-1])
     Passages.write(tmp_path / "passages.csv", joined("paper", BOX, (0.5, 1.0)))
@@ -379,44 +379,6 @@ def test_the_table_is_written_and_the_figure_reads_it(tmp_path, small, monkeypat
             left[row["event"], row["moment_of_inertia"], n * row["distance"]] for n in (1, 2)
         )
         assert far / near == pytest.approx(2 ** row["estimate"])
-    with style.context():
-        _, between = figure.draw(BOX, {"passages": rows}).axes
-        collapse, _, _ = figure_transmission.draw(BOX, {"passages": rows}).axes
-        ring, _, moved, collapse_of_files = figure_diffusion.draw(BOX, {"passages": rows}).axes
-    names = [text.get_text() for text in ring.get_legend().get_texts()]
-    assert {"4 smooth discs", "24 with friction"} <= {*names}
-    # Displacements in units of ℓ², at times in units of h and the thermal speed.
-    shown = {one.get_label(): one.lines[0].get_data() for one in moved.containers}
-    for friction, inertia, components, distance, name in (
-        (None, None, 47, -0.12, "smooth, blocked"),
-        (1, None, 47, 1 / 8, "friction, open"),
-        (None, 0.5, 72, -0.12, "rough, blocked"),
-    ):
-        due = [
-            (row["time"] / math.sqrt(components), row["estimate"]) for row in rows
-            if row["quantity"] == "displacement" and (row["friction"] is None) == (friction is None)
-            and row["moment_of_inertia"] == inertia and row["distance"] == pytest.approx(distance)
-        ]  # fmt: skip
-        np.testing.assert_allclose(shown[name], np.transpose(due))
-    (files,) = collapse_of_files.containers
-    s, x = files.lines[0].get_data()
-    assert len(s) == len(measure.LAGS)
-    (line,) = (one for one in collapse_of_files.lines if len(one.get_xdata()) == 60)
-    np.testing.assert_allclose(line.get_ydata() - line.get_xdata(), np.sqrt(line.get_xdata()))
-    # At h/4 of 1.5 × 1 the range is 1.5 − 2r, and the neck has the room 1 − 4r.
-    (points,) = [one for one in collapse.containers if one.get_label().endswith("$h/4$")]
-    for x, y in zip(*points.lines[0].get_data(), strict=True):
-        r = 0.25 * (1 - x)
-        value = y * (4 * r**2 * (1 - 4 * r)) ** (1 / 3) / (1.5 - 2 * r)
-        assert value == pytest.approx(left[HOP, None, x])
-    (amplitude,) = (row["estimate"] for row in rows if row["quantity"] == "amplitude")
-    (c,) = (line for line in collapse.lines if "$c$" in line.get_label())
-    assert {*c.get_ydata()} == {amplitude}
-    tau = between.lines[0]
-    limit = measure.thresholds(BOX)[HOP]
-    for distance, value in zip(tau.get_xdata()[::20], tau.get_ydata()[::20], strict=True):
-        due = exact.mean_times(BOX.scene(limit * (1 - distance)))[HOP]
-        assert value == pytest.approx(due, rel=1e-12)
 
 
 def test_a_box_on_its_side_has_vertical_hops_and_no_ring(small):

@@ -8,11 +8,8 @@ from factory import written
 
 from twodiscs.comparison.tables.mean_times import MeanTimes
 from twodiscs.figures.kit import style
-from twodiscs.figures.kit.looks import LOOKS
 from twodiscs.model.box import Box
-from twodiscs.model.events import SHELLS
 from twodiscs.theory import exact, laws
-from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.studies.distributions.study import Distributions
 from twodiscs_paper.studies.thresholds import figure
 from twodiscs_paper.studies.thresholds import measure as thresholds
@@ -141,35 +138,9 @@ def read(box):
     return {"a/mean_times": rows, "distributions": passages_of("a", box, rows)}
 
 
-def test_the_table_is_written_and_the_figure_reads_it(box, read, tmp_path):
+def test_the_table_is_written(box, read, tmp_path):
     found = written(tmp_path, Thresholds, tables=read, scenes={"a": box.parameters()})
     assert {row["quantity"] for row in found} == {"mean_time", "first_passage"}
-    shown = read | {"thresholds": found, "mean_times": read["a/mean_times"]}
-    entry = STUDY_FIGURES["thresholds"]
-    shown = {name: shown[name] for name in (*entry.tables, *entry.main_tables)}
-    with style.context():
-        hops, ratios = figure.draw(box, shown).axes
-    law = laws.leading_law(box, "horizontal_hop")
-    dashed = [line for line in hops.lines if line.get_linestyle() == "--"][-1]
-    distance, time = dashed.get_data()
-    np.testing.assert_allclose(time, law.coefficient * (law.limit * distance) ** -2, rtol=1e-9)
-    events = [event for event in SHELLS if laws.leading_law(box, event)]
-    assert len(ratios.containers) == len(events)
-
-    # All measured values are drawn: mean times in both panels, first passages among the hops.
-    def points(axes, marker):
-        lines = (line for line in axes.lines if line.get_marker() == marker)
-        return [point for line in lines for point in zip(*line.get_data(), strict=True)]
-
-    marker = LOOKS["horizontal_hop"][1]
-    for axes, unit in ((hops, lambda radius: 1), (ratios, law)):
-        due = [
-            (1 - row["radius"] / law.limit, row["estimate"] / unit(row["radius"]))
-            for row in read["a/mean_times"]
-        ]
-        np.testing.assert_allclose(points(axes, marker), due, rtol=1e-12)
-    assert len(points(hops, "x")) == len(RADII)
-    assert "first passages" in hops.get_legend_handles_labels()[1]
 
 
 def test_without_times_there_are_first_passages(box, read, tmp_path):

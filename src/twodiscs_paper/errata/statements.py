@@ -208,8 +208,7 @@ STATEMENTS = (
     ),
     Statement(
         "meanfreetime", "III", ANY, _time_from(reference.disc_collision_area, 1),
-        "disc_collision_time",
-        number="2",
+        "disc_collision_time", number="2",
     ),
     Statement(
         "area of the sphere", "III", (), lambda q: published.sphere(4),
@@ -217,19 +216,18 @@ STATEMENTS = (
     ),
     Statement(
         "condchoque", "III", HOPS, _time_from(reference.vertical_hop_area, 2), "vertical_hop_time",
-        "taken with the factor s = 2 of a surface that is crossed from both sides",
-        number="4",
+        "taken with the factor s = 2 of a surface that is crossed from both sides", number="4",
     ),
     Statement("volindic", "IV A", ANY, published.volume_indicator, "volume", number="5"),
     Statement("integraltotal", "IV A", ANY, published.volume_separations, "volume", number="7"),
     Statement("V_free, X and Y done", "IV A", ANY, published.volume_quadrant, "volume", number="9"),
     Statement(
-        "I_1", "IV A", ALL, published.volume_i1, "volume",
-        share=16, truth=reference.beside_volume, number="11",
+        "I_1", "IV A", ALL, published.volume_i1, "volume", share=16, truth=reference.beside_volume,
+        number="11",
     ),
     Statement(
-        "I_2", "IV A", ALL, published.volume_i2, "volume",
-        share=16, truth=reference.beyond_volume, number="13",
+        "I_2", "IV A", ALL, published.volume_i2, "volume", share=16, truth=reference.beyond_volume,
+        number="13",
     ),
     Statement("volumeabd", "IV A", ALL, published.volume_abd, "volume", number="14"),
     Statement(
@@ -245,30 +243,25 @@ STATEMENTS = (
     Statement(
         "VolumenCasoFeo", "IV A", VERTICAL, published.volume_intermediate, "volume",
         "`16a²b² + 16b²r² + (64/3)ar³ − (8/3)b⁴ − 32abr² arcsin(b/r) − (32/3)a(2r² + b²)√(r² − "
-        "b²)`; "
-        "the printed form is complex where `a > 2r`, as in long boxes",
-        number="17", severity="major",
+        "b²)`; the printed form is complex where `a > 2r`, as in long boxes", number="17",
+        severity="major",
     ),
     Statement(
         "eq:surface-area", "IV B", HOPS, published.surface_measure, "vertical_hop_area",
         "a factor `‖∇g‖` is missing: `√2` for `g = y_1 − y_2`, as here, and `4√2 r` for disc "
-        "collisions",
-        number="18", severity="major",
+        "collisions", number="18", severity="major",
     ),
     Statement(
         "eq:surface-dirac", "IV B", ALL,
         lambda q: reference.disc_collision_area(q) / published.contact_norm(q),
-        correction="taken for disc collisions",
-        truth=reference.contact_density, number="19",
+        correction="taken for disc collisions", truth=reference.contact_density, number="19",
     ),
     Statement(
-        "A_hop, integral", "IV B 1", HOPS, published.hop_integral, "vertical_hop_area",
-        number="20",
+        "A_hop, integral", "IV B 1", HOPS, published.hop_integral, "vertical_hop_area", number="20",
     ),
     Statement(
         "AreaH", "IV B 1", HOPS, published.hop_area, "vertical_hop_area",
-        "`8√2 b(a − r)²`, as appendix A has it",
-        number="21", severity="major",
+        "`8√2 b(a − r)²`, as appendix A has it", number="21", severity="major",
     ),
     Statement(
         "caption on the hop area", "IV B 1", VERTICAL, lambda q: mpf(0), "vertical_hop_area",
@@ -279,8 +272,8 @@ STATEMENTS = (
     Statement("gradient of g_coll", "IV B 2", (), gradient_is_right),
     Statement(
         "AreaChoque", "IV B 2", HOPS, published.collision_area, "disc_collision_area",
-        "for `r ≤ min(w, h)/4`, not `w/4`; beyond that app:colgeneral",
-        number="22", severity="minor",
+        "for `r ≤ min(w, h)/4`, not `w/4`; beyond that app:colgeneral", number="22",
+        severity="minor",
     ),
     Statement("g_wall", "IV B 3", (), wall_is_zero),
     Statement("areaindic", "IV B 3", ANY, published.wall_integral, "right_wall_area", number="23"),
@@ -288,24 +281,20 @@ STATEMENTS = (
     Statement("areawalls", "IV B 3", ALL, published.walls_area, "any_wall_area", number="25"),
     Statement(
         "hoptau", "V A", ALL, published.hop_time, "vertical_hop_time",
-        f"`(3π/(4√2)) N/(b(a − r)²)`, `{NUMERATOR}`: `√2` once",
-        number="26", severity="major",
+        f"`(3π/(4√2)) N/(b(a − r)²)`, `{NUMERATOR}`: `√2` once", number="26", severity="major",
     ),
     Statement(
         "hoptaulimit", "V A", ("no radius",), published.hop_time_small, "vertical_hop_time",
-        "`3πh/(4√2)`",
-        number="27", severity="major",
+        "`3πh/(4√2)`", number="27", severity="major",
     ),
     Statement(
         "hop time near w/4", "V A", ("w/4",), published.hop_time_threshold, "vertical_hop_time",
         "the exponent −2 is right; the constant has the volume at `w/4`, not that of the prism: "
-        "`(3π/4) V(w/4)/(16√2 (h − w/2)(w/4 − r)²)`",
-        severity="major",
+        "`(3π/4) V(w/4)/(16√2 (h − w/2)(w/4 − r)²)`", severity="major",
     ),
     Statement(
         "colltau", "V B", HOPS, published.collision_time, "disc_collision_time",
-        "for `r ≤ min(w, h)/4`, not `w/4`",
-        number="28", severity="minor",
+        "for `r ≤ min(w, h)/4`, not `w/4`", number="28", severity="minor",
     ),
     Statement(
         "colltaulim0", "V B", ("no radius",), published.collision_time_small, "disc_collision_time",
@@ -319,9 +308,8 @@ STATEMENTS = (
     ),
     Statement(
         "collision time is smooth", "V B", ("h/4",), collision_time_is_smooth,
-        correction="it is differentiable once: beyond `h/4` the area gains a term "
-        "`∝ (4r − h)^(3/2)`",
-        severity="minor",
+        correction="it is differentiable once: beyond `h/4` the area gains a term `∝ (4r − "
+        "h)^(3/2)`", severity="minor",
     ),
     Statement(
         "impactwall", "V C", ALL, published.wall_time, "right_wall_time",
@@ -336,12 +324,11 @@ STATEMENTS = (
     Statement(
         "exponential tails", "VI", HOPS, hop_tails_are_exponential,
         correction="those of vertical hops fall as `t^(−3)` for `r < h/4`, where drifts along x "
-        "avoid them; beyond, some look exponential as far as is seen",
-        severity="major",
+        "avoid them; beyond, some look exponential as far as is seen", severity="major",
     ),
     Statement(
-        "VolumenGeneral", "A 1", ANY, published.excluded_volume, "volume",
-        share=-16, truth=_scaled(reference.excluded_volume, mpf(1) / 16), number="A1",
+        "VolumenGeneral", "A 1", ANY, published.excluded_volume, "volume", share=-16,
+        truth=_scaled(reference.excluded_volume, mpf(1) / 16), number="A1",
     ),
     Statement("list of regimes", "A 1", (), regimes_are_as_listed),
     Statement(
@@ -349,34 +336,32 @@ STATEMENTS = (
         truth=largest_radius,
     ),
     Statement(
-        "app:volcyl", "A 1", ANY, published.sector_polar, "volume",
-        share=-16, truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A2",
+        "app:volcyl", "A 1", ANY, published.sector_polar, "volume", share=-16,
+        truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A2",
     ),
     Statement(
-        "V_h, ρ done", "A 1", ANY, published.sector_angle, "volume",
-        share=-16, truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A3",
+        "V_h, ρ done", "A 1", ANY, published.sector_angle, "volume", share=-16,
+        truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A3",
     ),
     Statement(
-        "Volrtheta", "A 1", ANY, published.sector_volume, "volume",
-        share=-16, truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A4",
+        "Volrtheta", "A 1", ANY, published.sector_volume, "volume", share=-16,
+        truth=_scaled(reference.sector_volume, mpf(1) / 16), number="A4",
     ),
     Statement(
-        "app:voldot", "A 1", BLOCKED, published.upper_volume, "volume",
-        share=-1, truth=reference.upper_volume, number="A5",
+        "app:voldot", "A 1", BLOCKED, published.upper_volume, "volume", share=-1,
+        truth=reference.upper_volume, number="A5",
     ),
     Statement(
-        "V_l", "A 1", NONE, published.lower_volume, "volume",
-        share=-1, truth=reference.lower_volume, number="A6",
+        "V_l", "A 1", NONE, published.lower_volume, "volume", share=-1,
+        truth=reference.lower_volume, number="A6",
     ),
     Statement(
         "range of two components", "A 1", VERTICAL, two_components_are_there,
-        correction="`h/4 < r < w/4`: the two ends changed places",
-        severity="slip",
+        correction="`h/4 < r < w/4`: the two ends changed places", severity="slip",
     ),
     Statement(
         "range of four components", "A 1", NONE, four_components_are_there,
-        correction="`w/4 ≤ r`, for `w ≥ h`",
-        severity="slip",
+        correction="`w/4 ≤ r`, for `w ≥ h`", severity="slip",
     ),
     Statement("ahopcart", "A 2 a", HOPS, published.hop_integral, "vertical_hop_area", number="A7"),
     Statement(
@@ -386,36 +371,32 @@ STATEMENTS = (
     ),
     Statement(
         "pasoraro", "A 2 a", HOPS, published.hop_area_fourfold, "vertical_hop_area",
-        "`y` starts at `−b√2`; as printed, without the sign, its range is empty",
-        share=8, number="A8", severity="slip",
+        "`y` starts at `−b√2`; as printed, without the sign, its range is empty", share=8,
+        number="A8", severity="slip",
     ),
     Statement(
         "pasoraro, second line", "A 2 a", HOPS, published.hop_area_twofold, "vertical_hop_area",
-        "the upper limit of `y` lost its `b`, which the delta function does not notice",
-        share=8, number="A9",
+        "the upper limit of `y` lost its `b`, which the delta function does not notice", share=8,
+        number="A9",
     ),
     Statement(
         "pasoraro, third and fourth line", "A 2 a", HOPS, published.hop_area_line,
-        "vertical_hop_area",
-        share=8, number="A10, A11",
+        "vertical_hop_area", share=8, number="A10, A11",
     ),
     Statement(
         "pasoraro, fifth line", "A 2 a", HOPS, published.hop_area_primitive, "vertical_hop_area",
         share=8, number="A12",
     ),
     Statement(
-        "A_hopp", "A 2 a", HOPS, published.hop_area_appendix, "vertical_hop_area",
-        number="A13",
+        "A_hopp", "A 2 a", HOPS, published.hop_area_appendix, "vertical_hop_area", number="A13",
     ),
     Statement(
         "A_col, fourfold integral", "A 2 b", ANY, published.collision_area_fourfold,
-        "disc_collision_area",
-        share=16, number="A14",
+        "disc_collision_area", share=16, number="A14",
     ),
     Statement(
         "A_col, twofold integral", "A 2 b", ANY, published.collision_area_twofold,
-        "disc_collision_area",
-        share=16, number="A15",
+        "disc_collision_area", share=16, number="A15",
     ),
     Statement(
         "polar coordinates", "A 2 b", ANY, published.circle_polar,
@@ -430,8 +411,7 @@ STATEMENTS = (
     ),
     Statement(
         "app:colgeneral, second line", "A 2 b", ANY, published.collision_area_angle,
-        "disc_collision_area",
-        share=16, number="A19",
+        "disc_collision_area", share=16, number="A19",
     ),
     Statement(
         "app:colgeneral", "A 2 b", ANY, published.collision_area_appendix, "disc_collision_area",
@@ -439,15 +419,12 @@ STATEMENTS = (
     ),
     Statement(
         "app:colgeneral with b = 0", "A 2 b", ALL, published.collision_area_substituted,
-        "disc_collision_area",
-        "`β = 0` is meant",
-        number="A20", severity="slip",
+        "disc_collision_area", "`β = 0` is meant", number="A20", severity="slip",
     ),
     Statement(
         "app:colgeneral as a quarter", "A 2 b", ANY, _scaled(published.collision_area_appendix, 4),
-        "disc_collision_area",
-        "it is the total area, not a quarter of it",
-        number="A20", severity="minor",
+        "disc_collision_area", "it is the total area, not a quarter of it", number="A20",
+        severity="minor",
     ),
     Statement(
         "A_(x2=a), integrals", "A 2 c", ANY, published.wall_integral, "right_wall_area",
@@ -459,49 +436,44 @@ STATEMENTS = (
         truth=lambda q: mp.sqrt(2), number="A22",
     ),
     Statement(
-        "areachoquexy", "A 2 c", ANY, published.wall_rotated, "right_wall_area",
-        number="A23",
+        "areachoquexy", "A 2 c", ANY, published.wall_rotated, "right_wall_area", number="A23",
     ),
     Statement(
         "areachoquexy, second line", "A 2 c", ANY, published.wall_rotated_twofold,
-        "right_wall_area",
-        number="A24",
+        "right_wall_area", number="A24",
     ),
     Statement(
         "vertical hops excluded", "A 2 c", VERTICAL, lambda q: mpf(0), "vertical_hop_area",
-        "horizontal hops are what is excluded there",
-        severity="slip",
+        "horizontal hops are what is excluded there", severity="slip",
     ),
     Statement(
         "A_(x2=a), whole less excluded", "A 2 c", ANY, published.wall_whole_less_excluded,
-        "right_wall_area",
-        "the dY of the last integral is left over from the line before",
+        "right_wall_area", "the dY of the last integral is left over from the line before",
         number="A25, A26",
     ),
     Statement(
         "A_whole", "A 2 c", ANY, published.wall_whole, "right_wall_area",
-        "`A_w = 8ab²` for the whole, without the 1/4",
-        truth=reference.whole_wall, number="A27", severity="minor",
+        "`A_w = 8ab²` for the whole, without the 1/4", truth=reference.whole_wall, number="A27",
+        severity="minor",
     ),
     Statement(
-        "A_sector", "A 2 c", ANY, published.wall_sector, "right_wall_area",
-        share=-1, truth=reference.sector_wall, number="A28",
+        "A_sector", "A 2 c", ANY, published.wall_sector, "right_wall_area", share=-1,
+        truth=reference.sector_wall, number="A28",
     ),
     Statement(
-        "A_u", "A 2 c", BLOCKED, published.wall_upper, "right_wall_area",
-        share=-1, truth=reference.upper_wall, number="A29",
+        "A_u", "A 2 c", BLOCKED, published.wall_upper, "right_wall_area", share=-1,
+        truth=reference.upper_wall, number="A29",
     ),
     Statement(
         "lower triangle of the wall", "A 2 c", NONE, published.wall_lower, "right_wall_area",
-        "`8ab√(r² − a²) − (8/3)a(r² − a²)`: the weight is not symmetric in `x` and `y`",
-        share=-1, truth=reference.lower_wall, severity="major",
+        "`8ab√(r² − a²) − (8/3)a(r² − a²)`: the weight is not symmetric in `x` and `y`", share=-1,
+        truth=reference.lower_wall, severity="major",
     ),
     Statement(
         "limit of thin shells", "B", HOPS, lambda q: published.hop_shell(q, NEAR),
         "vertical_hop_area",
         "multiply by `‖∇g‖`, as the text around it says in other words; a shell of both sides is "
         "divided by `2ε` (here `|y_1 − y_2| ≤ ε`); for walls `g` is `a − x_1`, for `x_1 − a` is "
-        "never positive",
-        severity="major",
+        "never positive", severity="major",
     ),
 )  # fmt: skip
