@@ -16,6 +16,7 @@ import twodiscs
 from twodiscs.comparison.measured.result import Result
 from twodiscs.figures.kit import style
 from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, TABLES
+from twodiscs_paper.configuration.schema import described_keys
 from twodiscs_paper.pipeline.documents import captions, explorer
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers
 
@@ -73,6 +74,11 @@ def _described(line):
 
 
 # Tables -------------------------------------------------------------------------------------------
+
+
+def keys(text, site):
+    """Return the page about the configuration with the tables of all keys."""
+    return text + described_keys()
 
 
 def tables(text, site):
@@ -165,5 +171,6 @@ PAGES = {
     "docs/python": tutorial,
     "docs/reference": reference,
     "docs/gallery": gallery,
+    "config/README": keys,
     "results/README": tables,
 }

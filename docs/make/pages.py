@@ -2,8 +2,8 @@
 
     python docs/make/pages.py
 
-writes, in the folder where it is called: config/README.md and config/schema.json, the names that
-editors complete in src/twodiscs/__init__.py, and the output of `twodiscs` in the pages of docs.
+writes, in the folder where it is called: config/schema.json, the names that editors complete
+in src/twodiscs/__init__.py, and the output of `twodiscs` in the pages of docs.
 """
 
 import json
@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 from twodiscs import cli
 from twodiscs.model.events import EVENTS, HOPS
-from twodiscs_paper.configuration.schema import document, schema
+from twodiscs_paper.configuration.schema import schema
 
 #: The names for checkers of types in the face, between their marks.
 NAMES = re.compile(
@@ -49,7 +49,6 @@ def pages(folder):
     face = Path(folder, "src/twodiscs/__init__.py").read_text(encoding="utf-8")
     renewed = {
         "src/twodiscs/__init__.py": NAMES.sub(lambda _: literals(), face),
-        "config/README.md": document(),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
     }
     for path in sorted(Path(folder, "docs").glob("*.md")):

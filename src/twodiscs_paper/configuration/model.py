@@ -1,7 +1,7 @@
 """The keys of a configuration: their values, limits, units, defaults and meanings.
 
-The text below a key is its meaning. The page config/README.md, config/schema.json and the sentences
-about mistakes follow from these classes. ``scene.py`` has what follows from a box.
+The text below a key is its meaning. The tables of keys on the site, config/schema.json and the
+sentences about mistakes follow from these classes. ``scene.py`` has what follows from a box.
 """
 
 import re

@@ -1,17 +1,8 @@
-"""The schema of a configuration for editors, and the page config/README.md, from the model."""
+"""The schema of a configuration for editors, and the tables of its keys, from the model."""
 
 from functools import cache
 
 from twodiscs_paper.configuration.model import Model
-
-#: The first lines of the page.
-TITLE = "The configuration"
-INTRODUCTION = """\
-`snakemake` reads `config.yaml`. With `--configfile OTHER.yaml` it reads only OTHER.yaml if that \
-file has `scenes`; if not, the keys of OTHER.yaml replace those of `config.yaml`. Lengths are in \
-any one unit, masses are one and the total energy is 1/2, so times are lengths over a speed of \
-one. A block with a name and a box is a complete scene: all other keys have a default.\
-"""
 
 
 @cache
@@ -45,11 +36,9 @@ def _tree(node):
     return found
 
 
-def document():
-    """Return the page config/README.md, in Markdown."""
-    made = "This page is made by `python docs/make/pages.py`."
-    lines = [f"# {TITLE}", "", INTRODUCTION, "", made, *_section(keys(), "")]
-    return "\n".join(lines) + "\n"
+def described_keys():
+    """Return the tables of all keys, in Markdown."""
+    return "\n".join(_section(keys(), "")) + "\n"
 
 
 def _section(node, path):
