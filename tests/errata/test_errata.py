@@ -12,12 +12,12 @@ import pytest
 from factory import written
 from mpmath import mp, mpf
 
-from twodiscs.theory.numerics import reference
-from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, mean_time
+from twodiscs_paper import reference
 from twodiscs_paper.errata import measure as errata
 from twodiscs_paper.errata import published
 from twodiscs_paper.errata.statements import LIMITS, REGIMES, STATEMENTS
 from twodiscs_paper.errata.study import Errata
+from twodiscs_paper.reference import QUANTITIES, MpScene, mean_time
 
 WRONG = {
     "axis of the cylinder",

@@ -16,7 +16,7 @@ from twodiscs.model.events import EVENTS
 from twodiscs.model.scene import Scene
 from twodiscs.points import estimates
 from twodiscs.points.estimates import Estimate, LinearFit, mean_of
-from twodiscs.theory.numerics.reference import exact_numbers
+from twodiscs_paper.reference import exact_numbers
 
 # Estimates ------------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 """The numbers of plain scenes once more: first over v, then over u by antiderivatives.
 
 With the 150 digits that ``DIGITS`` asks for, of which cancellation near the largest radius takes up
-to 100. Nothing is shared with ``theory/numerics/reference.py`` but the integrals.
+to 100. Nothing is shared with ``twodiscs_paper/reference.py`` but the integrals.
 """
 
 import math

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legendre
+from twodiscs.theory.quadrature import double_exponential, gauss_legendre
 
 EPSILON = 2.0**-52
 

@@ -13,8 +13,8 @@ from theory.antiderivatives import DIGITS, lengths, reference, reference_times, 
 from twodiscs.model.box import Box
 from twodiscs.model.events import AXIS, EVENTS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.theory.numerics import reference as reference_module
-from twodiscs.theory.numerics.reference import (
+from twodiscs_paper import reference as reference_module
+from twodiscs_paper.reference import (
     QUANTITIES,
     MpScene,
     contact_density,

@@ -20,7 +20,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from twodiscs.model.events import DECLARED, by_kind
-from twodiscs.theory.numerics.quadrature import gauss_legendre
+from twodiscs.theory.quadrature import gauss_legendre
 
 #: The integrands are trigonometric polynomials of degree 4 at most over a quarter turn, or equally
 #: smooth: sixteen nodes are exact to rounding.

@@ -35,7 +35,7 @@ import numpy as np
 from twodiscs.model.events import AXIS, DECLARED, EVENTS
 from twodiscs.model.two import ENERGY
 from twodiscs.theory.flux import constant
-from twodiscs.theory.numerics.quadrature import double_exponential, gauss_legendre
+from twodiscs.theory.quadrature import double_exponential, gauss_legendre
 
 # Functions of arrays ------------------------------------------------------------------------------
 

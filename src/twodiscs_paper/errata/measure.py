@@ -8,8 +8,8 @@ check.csv, radius by radius.
 
 from mpmath import mp
 
-from twodiscs.theory.numerics.reference import DIGITS, MpScene
 from twodiscs_paper.errata.statements import GENERAL, LIMITS, NEAR, REGIMES, SAME, STATEMENTS
+from twodiscs_paper.reference import DIGITS, MpScene
 from twodiscs_paper.study import row
 
 #: The box of the source's figures, in which ratios are reported.

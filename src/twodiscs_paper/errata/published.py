@@ -12,7 +12,7 @@ Integrals are evaluated over the printed limits. If all hops are open, the sourc
 
 from mpmath import mp, mpf
 
-from twodiscs.theory.numerics.reference import inside, line, on_circle, outside, rectangle, smooth
+from twodiscs_paper.reference import inside, line, on_circle, outside, rectangle, smooth
 
 # Section II: model --------------------------------------------------------------------------------
 

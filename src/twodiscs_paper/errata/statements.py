@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from mpmath import mp, mpf
 
-from twodiscs.theory.numerics import reference
-from twodiscs.theory.numerics.reference import QUANTITIES, MpScene, largest_radius, mean_time
+from twodiscs_paper import reference
 from twodiscs_paper.errata import published
+from twodiscs_paper.reference import QUANTITIES, MpScene, largest_radius, mean_time
 
 #: The regimes of formulas: boxes and radii (width, height, radius). The first is reported.
 REGIMES = {

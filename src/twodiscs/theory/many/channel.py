@@ -34,7 +34,7 @@ import numpy as np
 from twodiscs.model.checks import InputError, check_number
 from twodiscs.model.many import is_ordered
 from twodiscs.theory.many.rates import Measures
-from twodiscs.theory.numerics.quadrature import gauss_legendre
+from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
 ORDER, PHASE, MOST_PANELS = 20, 15.0, 60

@@ -30,7 +30,7 @@ import numpy as np
 
 from twodiscs.model.checks import InputError
 from twodiscs.theory.many.rates import Measures
-from twodiscs.theory.numerics.quadrature import gauss_legendre
+from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes between two kinks, for the sum of the gaps and for the larger gap.
 OUTER, INNER = 48, 32

@@ -39,8 +39,8 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.streams import open_stream, signed_uniform
 from twodiscs.theory import exact, laws, plain
-from twodiscs.theory.numerics.quadrature import gauss_legendre
-from twodiscs.theory.numerics.reference import DIGITS, MpScene, disc_collision_area, volume
+from twodiscs.theory.quadrature import gauss_legendre
+from twodiscs_paper.reference import DIGITS, MpScene, disc_collision_area, volume
 from twodiscs_paper.studies.accuracy_cost import scalar, timestepping
 from twodiscs_paper.study import row
 

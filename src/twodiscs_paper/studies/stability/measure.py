@@ -30,7 +30,7 @@ from twodiscs.sampling.jit import compiled
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import state_in, states
 from twodiscs.theory import exact, laws
-from twodiscs.theory.numerics.reference import DIGITS, exact_numbers
+from twodiscs_paper.reference import DIGITS, exact_numbers
 from twodiscs_paper.study import row
 
 #: Spacing of doubles at 1.

@@ -1,7 +1,7 @@
 """Volume, areas and mean times to fifty digits, by quadrature from their definitions.
 
-All exact values are compared with these: slow, made of mpmath numbers, and independent of the other
-modules of this folder. The integrals depend only on the separations u = |x1 − x2| in [0, A] and
+Tests compare all exact values with these, which are slow, made of mpmath numbers, and independent of
+``twodiscs.theory``. The integrals depend only on the separations u = |x1 − x2| in [0, A] and
 v = |y1 − y2| in [0, B], or on x = u/√2 and y = v/√2, whose quadrant the source divides into parts.
 """
 
@@ -209,7 +209,7 @@ def any_wall_area(q):
 
 
 AREAS = by_kind(
-    "theory/numerics/reference.py",
+    "twodiscs_paper/reference.py",
     {
         "hop": lambda event: vertical_hop_area if event.axis == "y" else horizontal_hop_area,
         "collision": lambda event: disc_collision_area,

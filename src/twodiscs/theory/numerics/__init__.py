@@ -1,1 +1,0 @@
-"""Quadrature, and reference values of many digits."""
