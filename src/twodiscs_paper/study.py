@@ -2,8 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
-from twodiscs.comparison.tables.base import Table
+from twodiscs.comparison.tables.base import Column, Table
+
+# Columns whose unit is that of another column, or follows from the quantity.
+AS_ESTIMATE, AS_EXACT, SEE_QUANTITY = (
+    partial(Column, float, unit) for unit in ("as estimate", "as exact", "see quantity")
+)
 
 
 @dataclass(frozen=True)

@@ -9,21 +9,13 @@ from types import SimpleNamespace
 
 import pytest
 
-import twodiscs_paper
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.base import Table
-from twodiscs.figures.catalogue import FIGURES, Entry
 from twodiscs.model.effects import EFFECTS
 from twodiscs_paper import catalogue
-from twodiscs_paper.catalogue import STUDIES, STUDY_FIGURES, STUDY_TABLES
+from twodiscs_paper.catalogue import STUDIES, STUDY_TABLES
 from twodiscs_paper.configuration.load import load, read
-from twodiscs_paper.studies.effects.study import Benchmark
 
 CONFIG = Path(__file__).parents[2] / "config"
-PACKAGE = Path(twodiscs_paper.__file__).parent
-FOLDERS = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("*/**/study.py")}
-FOLDERS = {".".join(folder.parts) for folder in FOLDERS if folder.parts[0] != "pipeline"}
-
 every_study = pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
 
 #: The arguments that a job passes, if the function takes them.
@@ -41,12 +33,6 @@ def test_every_effect_has_a_scene(default):
     assert {*EFFECTS} <= {name for scene in default.effect_scenes for name in scene.effects}
 
 
-@pytest.mark.parametrize("folder", sorted(FOLDERS))
-def test_every_study_has_tests(folder):
-    *_, name = folder.split(".")
-    assert (Path(__file__).parents[1] / folder.split(".")[0] / f"test_{name}.py").exists()
-
-
 @pytest.fixture(scope="module")
 def default():
     return loaded(read(CONFIG / "config.yaml"))
@@ -58,23 +44,7 @@ def only_effects():
     return loaded(read(CONFIG / "scenes" / "rough.yaml"))
 
 
-def test_studies_are_found_by_their_names():
-    assert all(name == study.name for name, study in STUDIES.items())
-
-
-def test_every_folder_and_every_table_has_its_study():
-    modules = {
-        study.tables[0].__module__.removeprefix("twodiscs_paper.").removesuffix(".study")
-        for study in STUDIES.values()
-    }
-    assert modules == FOLDERS
-    declared = [
-        value
-        for folder in FOLDERS
-        for value in vars(import_module(f"twodiscs_paper.{folder}.study")).values()
-        if isinstance(value, type) and issubclass(value, Table) and value is not Table
-    ]
-    assert set(declared) == {Benchmark, *STUDY_TABLES.values()}
+def test_every_table_has_its_study():
     assert len(STUDY_TABLES) == sum(len(study.tables) for study in STUDIES.values())
     assert not STUDY_TABLES.keys() & SCENE_TABLES.keys()
 
@@ -155,14 +125,6 @@ def test_a_configuration_without_plain_scenes_has_studies(only_effects):
     for study in kept:
         json.dumps(study.parameters(only_effects))
         assert all(scene.startswith("effects/") for scene, _ in study.reads(only_effects).values())
-
-
-def test_figures_of_studies_are_entries_of_their_own():
-    assert all(isinstance(entry, Entry) for entry in STUDY_FIGURES.values())
-    assert len(STUDY_FIGURES) == sum(len(study.figures) for study in STUDIES.values())
-    assert not STUDY_FIGURES.keys() & FIGURES.keys()
-    titles = [entry.title for entry in (FIGURES | STUDY_FIGURES).values()]
-    assert len(set(titles)) == len(titles)
 
 
 @every_study

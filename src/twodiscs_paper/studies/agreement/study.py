@@ -1,11 +1,7 @@
 """Statistics over the comparisons of all scenes."""
 
-from functools import partial
-
-from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, Column, Table
-from twodiscs_paper.study import Study
-
-SEE_QUANTITY = partial(Column, float, "see quantity")
+from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, Table
+from twodiscs_paper.study import SEE_QUANTITY, Study
 
 
 class Agreement(Table):

@@ -1,7 +1,5 @@
 """How intervals between hops are distributed."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import (
     COUNT,
     HEIGHT,
@@ -11,14 +9,10 @@ from twodiscs.comparison.tables.base import (
     TEXT,
     TIME,
     WIDTH,
-    Column,
     Table,
 )
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.study import Study, scaled
-
-SEE_QUANTITY = partial(Column, float, "see quantity")
-AS_ESTIMATE = partial(Column, float, "as estimate")
+from twodiscs_paper.study import AS_ESTIMATE, SEE_QUANTITY, Study, scaled
 
 
 class Distributions(Table):

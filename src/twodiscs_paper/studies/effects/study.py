@@ -1,7 +1,5 @@
 """How each effect changes the mean times, and its cost."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import (
     COUNT,
     HEIGHT,
@@ -16,9 +14,7 @@ from twodiscs.comparison.tables.base import (
     Z,
 )
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.study import Study
-
-AS_EXACT = partial(Column, float, "as exact")
+from twodiscs_paper.study import AS_EXACT, Study
 
 
 class Effects(Table):

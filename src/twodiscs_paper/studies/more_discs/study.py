@@ -1,7 +1,5 @@
 """More than two discs: mean times against exact values if these are known, and the virial sum."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import (
     COUNT,
     HEIGHT,
@@ -13,9 +11,7 @@ from twodiscs.comparison.tables.base import (
     Table,
 )
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.study import Study, scaled
-
-AS_EXACT = partial(Column, float, "as exact")
+from twodiscs_paper.study import AS_EXACT, Study, scaled
 
 
 class MoreDiscs(Table):

@@ -1,7 +1,5 @@
 """Which hops are passages, and how fast discs diffuse by them."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import (
     COUNT,
     HEIGHT,
@@ -17,9 +15,7 @@ from twodiscs.comparison.tables.base import (
 from twodiscs.figures.catalogue import DYNAMICS, Entry
 from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
-from twodiscs_paper.study import Study, scaled
-
-AS_ESTIMATE = partial(Column, float, "as estimate")
+from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
 
 class Passages(Table):

@@ -1,12 +1,8 @@
 """How accurate each method is in numerically hard cases."""
 
-from functools import partial
-
-from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Column, Table, Z
+from twodiscs.comparison.tables.base import COUNT, NUMBER, RADIUS, TEXT, TRUTH, Table, Z
 from twodiscs.figures.catalogue import Entry
-from twodiscs_paper.study import Study, main_box, scaled
-
-SEE_QUANTITY = partial(Column, float, "see quantity")
+from twodiscs_paper.study import SEE_QUANTITY, Study, main_box, scaled
 
 
 class Stability(Table):

@@ -1,12 +1,8 @@
 """How probable long intervals are."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import RADIUS, TEXT, TIME, Column, Table
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.study import Study, main_box, scaled
-
-AS_ESTIMATE = partial(Column, float, "as estimate")
+from twodiscs_paper.study import AS_ESTIMATE, Study, main_box, scaled
 
 
 class Tails(Table):

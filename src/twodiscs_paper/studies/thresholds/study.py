@@ -1,7 +1,5 @@
 """The laws where a hop becomes blocked."""
 
-from functools import partial
-
 from twodiscs.comparison.tables.base import (
     COUNT,
     HEIGHT,
@@ -14,9 +12,7 @@ from twodiscs.comparison.tables.base import (
     Table,
 )
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs_paper.study import Study
-
-AS_ESTIMATE = partial(Column, float, "as estimate")
+from twodiscs_paper.study import AS_ESTIMATE, Study
 
 
 class Thresholds(Table):
