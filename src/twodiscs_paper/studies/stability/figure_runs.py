@@ -35,7 +35,7 @@ from twodiscs_paper.studies.stability.figure import (
     select,
 )
 
-#: Colour and marker of each quantity of the long runs.
+#: Colour and marker of each quantity of the runs of many events.
 WORST = {"energy_error": (BLUE, "o"), "smallest_gap": (VERMILLION, "s"), "excess": (GREEN, "^")}
 
 
@@ -72,7 +72,7 @@ def caption(shown):
 
 
 def _runs(axes, rows, radii):
-    """Draw the worst errors of the long runs, with their bounds."""
+    """Draw the worst errors of the runs of many events, with their bounds."""
     places = {key: i for i, key in enumerate(radii)}
     lines(axes, list(radii.values()))
     names = {"energy_error": "$|E-1/2|$", "smallest_gap": "overlap", "excess": "beyond wall"}

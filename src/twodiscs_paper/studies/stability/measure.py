@@ -1,4 +1,4 @@
-"""Measure numerically hard cases: theory, draws, events, long runs, reversal, error bars.
+"""Measure numerically hard cases: theory, draws, times of events, runs, reversal, error bars.
 
 All cases follow from the sides of a box, so the study can be repeated for another box. The hard
 radii are a tiny radius, both sides of h/4 and w/4, where a hop becomes blocked, and some radii just
@@ -59,7 +59,7 @@ SHARE_PROPOSALS, ESTIMATE_PROPOSALS = 2**18, 2**22
 #: Thickness of the shells around surfaces, as in ``montecarlo.shell_thickness``.
 SHELL = 0.02
 
-#: Lanes of a long run, and events of each lane between two tests of whether it advances.
+#: Lanes of a run of many events, and events of each lane between two tests of whether it advances.
 LANES, WINDOW = 64, 2**16
 
 #: A lane that needs less than this fraction of the mean time for the events of a window is stuck.
@@ -628,7 +628,7 @@ def coverage_rows(box, seed, repetitions=REPETITIONS):
 def rows(box, seed, ordinary, hard):
     """Yield all rows of stability.csv for a plain ``Box``.
 
-    ``ordinary`` and ``hard`` are events of the long runs.
+    ``ordinary`` and ``hard`` are the numbers of events of the runs at ordinary and at hard radii.
     """
     yield from theory_rows(box)
     yield from sampling_rows(box, seed)
