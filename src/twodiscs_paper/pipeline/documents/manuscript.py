@@ -44,10 +44,10 @@ def typeset(template, output, scenes, figures, seed, configuration):
     The numbers are rows of ``PaperNumbers``, from numbers.typ beside the template. Typst reads the
     tables and figures below the folder of ``output``. ``scenes`` are [{"name", "width", "height",
     "tables": [names], "figures": [names]}], and the manuscript is about the first of them. The
-    ``figures`` of studies are names, too. ``configuration`` is its hash. The template finds all this as
-    JSON under ``sys.inputs.contents``; ``results`` is a path there from the root that results and
-    project have in common. The same inputs at the same commit give the same bytes on every machine,
-    because only the fonts of Typst are used.
+    ``figures`` of studies are names, too. ``configuration`` is its hash. The template finds all
+    this as JSON under ``sys.inputs.contents``; ``results`` is a path there from the root that
+    results and project have in common. The same inputs at the same commit give the same bytes on
+    every machine, because only the fonts of Typst are used.
     """
     import typst
 
