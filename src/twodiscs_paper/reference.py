@@ -1,6 +1,6 @@
 """Volume, areas and mean times to fifty digits, by quadrature from their definitions.
 
-Tests compare all exact values with these, which are slow, made of mpmath numbers, and independent of
+Tests compare all exact values with these. They are slow, made of mpmath numbers, independent of
 ``twodiscs.theory``. The integrals depend only on the separations u = |x1 − x2| in [0, A] and
 v = |y1 − y2| in [0, B], or on x = u/√2 and y = v/√2, whose quadrant the source divides into parts.
 """
