@@ -44,11 +44,7 @@ def check(scene):
 
 
 def largest_radius(scene):
-    """Return the largest radius at which an arrangement of the discs is known here.
-
-    For two and three discs between walls, and for any number in an ordered channel, no larger
-    radius is possible.
-    """
+    """Return the largest radius at which an arrangement of the discs is known here."""
     return largest_known_radius(scene.discs, scene.width, scene.height, scene.periodic)
 
 
@@ -62,15 +58,12 @@ def passed(scene):
 
 
 def confined(scene):
-    """Return (False, False): wall times of many discs are averages over all initial states."""
+    """Return (False, False), see ``Scene``."""
     return False, False
 
 
 def multiplicity(scene, event):
-    """Return the number of events of a ``Scene`` with the rate of ``event``, an ``Event``.
-
-    Each disc hits each wall of an axis at the same rate.
-    """
+    """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
     return 2 * scene.discs if event.kind == "wall" else 1
 
 

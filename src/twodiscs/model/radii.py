@@ -34,9 +34,6 @@ def radii(width, height, smallest, count):
     The points of every regime are Chebyshev nodes. They are dense on both sides of h/4 and w/4 and
     below the largest radius, but none is at one of the three. From the smallest radius on they
     begin evenly. Each is then rounded to the fewest digits that leave it near its value.
-
-    Raises ``InputError`` if ``count`` is not an integer from 1 to ``MOST``, or if ``smallest`` is
-    not a length below the largest radius or is a threshold.
     """
     box = Box(width, height)
     largest, limits = box.largest_radius, box.thresholds
@@ -77,8 +74,7 @@ def radii(width, height, smallest, count):
 def even_radii(smallest, largest, count):
     """Return ``count`` ascending radii in equal steps from ``smallest`` to ``largest``.
 
-    Each except the first is rounded to the fewest digits that leave it near its value. Raises
-    ``InputError`` unless 0 < smallest < largest and ``count`` is an integer from 1 to ``MOST``.
+    Each except the first is rounded to the fewest digits that leave it near its value.
     """
     smallest, largest = check_length("smallest", smallest), check_length("largest", largest)
     count = check_integer("count", count, 1, MOST)

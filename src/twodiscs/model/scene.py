@@ -536,7 +536,6 @@ def hopping_along(scene, hop, axis):
 
     ``hop`` is a "vertical_hop" (along y) or a "horizontal_hop" (along x). One compiled kernel can
     then simulate both hops. In a field axes cannot be exchanged, and both are returned unchanged.
-    Raises ``InputError`` for an unknown hop.
     """
     if AXIS[check_choice("hop", hop, HOPS)] == axis or scene.field:
         return scene, hop

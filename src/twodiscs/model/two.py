@@ -75,10 +75,7 @@ def _has_gap(scene, axis):
 
 
 def ergodic_components(scene):
-    """Return the number of disjoint parts of configuration space.
-
-    Each hop that is blocked between walls doubles it. On a periodic axis discs can go around.
-    """
+    """Return the number of disjoint parts of configuration space, see ``Scene``."""
     return 2 ** (len(scene.walled) - len(scene.passed))
 
 
@@ -105,12 +102,7 @@ def _confined(scene, axis):
 
 
 def multiplicity(scene, event):
-    """Return the number of events of a ``Scene`` with the rate of ``event``, an ``Event``.
-
-    By mirror images and for equal discs, four pairs of a disc and a wall have the same rate. If the
-    discs keep their sides, a trajectory can reach two of them. With a field there is no mirror
-    image along y.
-    """
+    """Return the number of events with the rate of ``event``, an ``Event``, see ``Scene``."""
     if event.kind != "wall":
         return 1
     mirrored = event.axis == "x" or not scene.field
@@ -123,7 +115,7 @@ def largest_radius(scene):
 
 
 def _largest_plain(scene):
-    """Return the radius at which two equal discs just fit in the box of a ``Scene``.
+    """Return the radius at which two equal discs just fit.
 
     If the long side is less than twice the short one, the discs jam along a diagonal, at
     (w + h − √(2wh))/2. Otherwise each of them spans the short side, at half of it.
@@ -136,7 +128,7 @@ def _largest_plain(scene):
 
 
 def _largest_with_effects(scene):
-    """Return the radius of disc 1 at which two discs just fit in the box of a ``Scene``.
+    """Return the radius of disc 1 at which two discs just fit.
 
     The equation for σ is Σ over walls of (side − σ)² + Σ over periodic axes of (side/2)² = σ²,
     unless a disc spans a side before.

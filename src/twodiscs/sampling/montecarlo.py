@@ -194,9 +194,6 @@ def shell_thickness(scene, event, fraction):
     disc. The shell is then no thicker than this anywhere (√2 of it for the separation of two discs)
     and stays inside the box. The room is the distance to the largest radius or, for a hop, the
     largest gap between the discs when they pass each other.
-
-    Raises ``InputError`` for an event without a shell and a ``fraction`` that is not between 0 and
-    1.
     """
     check_choice("event", event, exact.shells(scene))
     thickness = _plain_thickness if scene.is_plain else _weighted_thickness
@@ -240,8 +237,7 @@ def sample_point(scene, quantities, samples, shell, seed):
     In a scene with effects a sample without overlap counts with a probability: (1 − U/E)₊^(D/2 − 1)
     for the volume, and (1 − U/E)₊^((D − 1)/2) for each shell that it is in. All walls are a
     separate quantity there. Each sample picks one disc and one wall randomly, so the measure is the
-    volume of the prism times the number of pairs. A sample takes some forty times as long. Raises
-    ``InputError`` for an unknown quantity or a number out of range.
+    volume of the prism times the number of pairs. A sample takes some forty times as long.
     """
     sampler = in_prism if check_two(scene, "shells").is_plain else weighted
     return _drawn(sampler(scene, quantities, shell, seed), samples)
@@ -350,7 +346,7 @@ def conditioned_point(scene, quantities, samples, shell, seed):
     as from ``sample_point``, for the same arguments, and the errors are binomial too. ``samples``
     counts proposals and is rounded up to whole blocks of 2¹⁶. A sample takes some forty times the
     time of a sample of the prism. If a few per cent of the prism are free, sampling in the prism is
-    therefore better. Raises ``InputError`` as ``sample_point`` does.
+    therefore better.
     """
     if not check_scene(scene).is_plain:
         raise InputError(f"scene must be plain for conditioned draws, but has {scene.calls_for}")
@@ -558,7 +554,7 @@ class SamplingRun:
     which has no shells.
 
     ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are the arguments of
-    ``sample_point``, and raise the same ``InputError``.
+    ``sample_point``.
     """
 
     scene: Scene

@@ -75,10 +75,7 @@ def components(scene):
 
 
 def given_state(scene, start):
-    """Return a ``start`` that a user gives as floats, one for each of the ``components``.
-
-    Raises ``InputError`` for anything else.
-    """
+    """Return a ``start`` that a user gives as floats, one for each of the ``components``."""
     names = components(scene)
     try:
         state = [float(value) for value in start]

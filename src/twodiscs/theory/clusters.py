@@ -82,7 +82,7 @@ def regions(scene):
 def replicas_needed(scene, event, error):
     """Return the number of initial states that a relative ``error`` of an ``event`` needs.
 
-    Fewer may miss all of its bursts and have too small an error bar. It is 0 without bursts.
+    Fewer may miss all of its bursts and have too small an error bar.
     """
     most = 0.0
     for region in regions(scene):

@@ -135,7 +135,6 @@ def passing_rate(scene, hop):
 
     Between walls it equals ``rate``. On a periodic axis a hop is no event of the ``Scene``. The
     result is then the rate at which the separation to the nearest image changes its sign at 0.
-    Raises ``InputError`` for anything that is not a ``Scene`` or a hop.
     """
     check_choice("hop", hop, HOPS)
     if DECLARED[hop].axis not in check_scene(scene).periodic:
@@ -146,11 +145,7 @@ def passing_rate(scene, hop):
 
 
 def event_rate(scene):
-    """Return the wall hits and disc collisions per unit of time of a ``Scene``, without hops.
-
-    It is None if no exact value is known. Raises ``InputError`` for anything that is not a
-    ``Scene``.
-    """
+    """Return the wall hits and disc collisions per time, without hops; None if not known."""
     walls, collisions = rate(scene, "any_wall"), rate(scene, "disc_collision")
     return None if walls is None else walls + collisions
 
@@ -187,8 +182,8 @@ def exact(scene: Scene) -> Exact:
     """Return all exact numbers of a ``Scene`` as one dict, ready for JSON.
 
     Keys: regime, ergodic_components, largest_radius, volume, areas, mean_times. Values that are not
-    known for more than two discs are None. Raises
-    ``InputError`` for anything that is not a ``Scene``."""
+    known for more than two discs are None.
+    """
     return {
         "regime": check_scene(scene).regime,
         "ergodic_components": scene.ergodic_components,
@@ -236,8 +231,7 @@ def fraction_near(scene, hop, distance):
     """Return the fraction of configuration space within a ``distance`` of a ``hop``.
 
     It is the probability, in the invariant measure, of a separation of at most ``distance`` along
-    the axis of the hop, a length up to √2 times the smaller radius. Raises ``InputError`` for
-    anything that is not a ``Scene`` or a hop, and for another distance.
+    the axis of the hop, a length up to √2 times the smaller radius.
     """
     check_choice("hop", hop, HOPS)
     distance = check_length("distance", distance)
@@ -260,9 +254,7 @@ def shell_expectation(scene, event, epsilon):
 
     Just beyond the radius at which a hop becomes blocked, its area is 0, but its shell is not yet
     empty. ``weighted.shell_expectation`` has the shells of scenes with effects, in which masses may
-    differ. Raises ``InputError`` for anything that is not a ``Scene`` and for an ``epsilon`` that
-    is not a length up to the radius. The same holds for an event that does not exist in the scene,
-    and for ``any_wall``, which has no shell in a plain scene.
+    differ. In a plain scene ``any_wall`` has no shell.
     """
     check_choice("event", event, shells(scene))
     epsilon = check_length("epsilon", epsilon)

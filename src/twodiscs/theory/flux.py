@@ -8,8 +8,7 @@ from twodiscs.model.checks import check_integer
 def constant(components):
     """Return c_D: the mean of |n·s| for a unit vector s uniform in D ``components``.
 
-    2/π, 4/(3π), 16/(15π) in two, four and six dimensions. Raises ``InputError`` unless D is an
-    integer ≥ 1.
+    2/π, 4/(3π), 16/(15π) in two, four and six dimensions.
     """
     half = check_integer("components", components) / 2
     return math.exp(math.lgamma(half) - math.lgamma(half + 0.5)) / math.sqrt(math.pi)

@@ -24,9 +24,9 @@ def closed_form(scene):
     """Return {"volume": V, "areas": {event: area}} from closed forms, in plain doubles.
 
     These are for reading and for comparisons, and show how closed forms fail. Just above a
-    threshold they can lose half of the digits or more. Near the largest radius, at
-    r = (1 − δ) r_max, they lose all of them (the volume like 1e-16/δ⁴). Use ``volume`` and
-    ``areas`` for numbers. Raises ``InputError`` for anything that is not a plain ``Scene``.
+    threshold they can lose half of the digits or more. Near the largest radius, at r = (1 − δ)
+    r_max, they lose all of them (the volume like 1e-16/δ⁴). Use ``volume`` and ``areas`` for
+    numbers.
     """
     r = check_plain_scene(scene).radius
     a, b = scene.range_x / 2, scene.range_y / 2
@@ -71,8 +71,7 @@ def small_radius_time(box, event, radius=0.0):
     """Return the mean time between events for small discs, to first order in ``radius``.
 
     With the default radius it is the limit r → 0: 3πh/(4√2) for vertical hops, 3πw/2 for the right
-    wall, and infinite for disc collisions, which go like 3wh/(8√2 r). Raises ``InputError`` for a
-    ``Box`` with effects, a radius (other than 0) that does not fit, and an event not in ``EVENTS``.
+    wall, and infinite for disc collisions, which go like 3wh/(8√2 r).
     """
     check_plain_scene(box.tiny)
     w, h, r = box.width, box.height, 0.0
@@ -100,7 +99,6 @@ def threshold_time(scene, event):
     diverges like (w/4 − r)⁻² (vertical) or (h/4 − r)⁻² (horizontal). All other times depend on the
     distance from the largest radius r_max: they vanish like r_max − r. If one side is more than
     twice the other, the times of disc collisions and of the walls at the far ends stay finite.
-    Raises ``InputError`` for anything that is not a plain ``Scene`` or one of ``EVENTS``.
     """
     w, h, r = check_plain_scene(scene).width, scene.height, scene.radius
     declared = DECLARED[check_choice("event", event, EVENTS)]
@@ -149,10 +147,7 @@ class Law(NamedTuple):
 
 
 def leading_law(box, event):
-    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite.
-
-    Raises ``InputError`` for a box with effects, and an event that is not one of ``EVENTS``.
-    """
+    """Return the ``Law`` of a mean time in a plain ``Box``, or None if it stays finite."""
     limit = box.threshold(check_choice("event", event, EVENTS))
     near, far = (box.scene(limit * (1 - 2.0**-k)) for k in (21, 20))
     times = [threshold_time(scene, event) for scene in (near, far)]

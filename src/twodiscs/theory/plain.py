@@ -183,10 +183,7 @@ def _collision_shell(arc, epsilon):
 
 
 def shell_expectation(scene, event, epsilon):
-    """Return the exact expectation of a shell in a plain ``Scene``, see the module ``exact``.
-
-    ``event`` is one of ``SHELLS``, ``epsilon`` a length up to the radius.
-    """
+    """Return the exact expectation of a shell in a plain ``Scene``, see ``exact``."""
     arc, declared = Arc.of(scene), DECLARED[event]
     if declared.kind == "collision":
         return _collision_shell(arc, epsilon)

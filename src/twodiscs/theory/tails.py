@@ -24,8 +24,7 @@ def density_at_zero(scene, hop):
         p(0⁺) = 3√2/(16 B) for vertical hops, 3√2/(16 A) for horizontal ones.
 
     No other way back is as short: a collision of the discs moves them farther from the surface that
-    they crossed. Raises ``InputError`` for anything that is not a plain ``Scene`` or one of
-    ``HOPS``.
+    they crossed.
     """
     check_choice("hop", hop, HOPS)
     if not check_plain_scene(scene).is_possible(hop):
@@ -41,8 +40,7 @@ def drift_probability(scene, time, axis="x"):
     invariant measure, for "y" the same with A ↔ B. It holds for time ≥ 2 (B − σ)₊, the diameter of
     the square in which the distances between discs and walls move. All drifts that stay in it have
     |(v1, v2)| ≤ 1, and the density of two components of a unit vector in four dimensions is 1/π
-    there. Raises ``InputError`` for anything that is not a plain ``Scene``, an unknown axis and a
-    shorter time.
+    there.
     """
     check_choice("axis", axis, ("x", "y"))
     arc = Arc.of(check_plain_scene(scene))
@@ -82,8 +80,7 @@ def tail_constant(scene, event):
     is transversal to one of these intersects it, and only (u1, u2) and (v1, v2) are transversal to
     none. Two statements are argued, not proved. The other motions (neighbourhoods of periodic
     motions, each of order t⁻³ in P(none within t)) add up to less. For hops, the motion before and
-    after the drift, with disc collisions, decorrelates exponentially fast. Raises ``InputError``
-    for anything that is not a plain ``Scene``, and for a wall.
+    after the drift, with disc collisions, decorrelates exponentially fast.
     """
     check_choice("event", event, (*HOPS, "disc_collision"))
     arc, area = Arc.of(check_plain_scene(scene)), areas(scene)[event]

@@ -27,9 +27,8 @@ from twodiscs.theory.flux import constant
 def momentum_per_hit(scene, event):
     """Return the mean momentum transfer in an ``event``, in the mass of disc 1 × the unit of speed.
 
-    It is for disc 1 at a wall and for the collisions of the discs. Raises ``InputError`` for
-    anything that is not a ``Scene``, in a field, because it depends on the height, and for other
-    events.
+    It is for disc 1 at a wall and for the collisions of the discs, without a field, in which it
+    depends on the height.
     """
     check_choice("event", event, (*WALLS, "disc_collision"))
     if check_scene(scene).field:
@@ -46,8 +45,7 @@ def pressure_factor(scene, event):
 
     It is side × (momentum per hit)/kT, with kT = 1/D, because an ideal gas of one particle has the
     force kT/side on the wall at a distance ``side`` from the opposite one. ``event`` is one of
-    ``WALLS``. Raises ``InputError`` for another one, for anything that is not a ``Scene``, and in a
-    field.
+    ``WALLS``.
     """
     check_choice("event", event, WALLS)
     momentum = momentum_per_hit(scene, event)
@@ -60,8 +58,7 @@ def weights(scene):
 
     It is None if the events do not include all forces, or if a rate does not give their mean. These
     are scenes with unequal discs, balls, periodic axes or a field. For more than two discs the
-    weights come from ``many.rates``; they need no exact volume. Raises ``InputError`` for anything
-    that is not a ``Scene``.
+    weights come from ``many.rates``; they need no exact volume.
     """
     if check_scene(scene).effects.keys() - {"moment_of_inertia", "friction"}:
         return None

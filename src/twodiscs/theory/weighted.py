@@ -462,8 +462,6 @@ def shell_expectation(scene, event, epsilon):
         right wall       0 ≤ (distance of disc 1 from contact with the wall) ≤ ε/√m1
         top wall         likewise
         any wall         the sum of the shells of both discs at all walls, ε/√m each
-
-    ``event`` exists in the scene, ``epsilon`` is a length up to the radius.
     """
     space = _Space(scene, (scene.velocity_components - 1) / 2)
     thickness = Fraction(epsilon) * Fraction(scene.fastest)

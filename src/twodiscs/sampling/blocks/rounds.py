@@ -206,8 +206,8 @@ def _narrow(sums):
 def joined(run, parts):
     """Return the ``Outcome`` of the planned blocks of a run, from the sums of its pieces.
 
-    ``parts`` is a list of {"first", "stop", "sums"} in any order, the sums as nested lists of
-    integers. Raises ``InputError`` unless they cover all planned blocks without gap or overlap.
+    ``parts`` is a list of {"first", "stop", "sums"} in any order, without gap or overlap, the sums
+    as nested lists of integers.
     """
     parts, stop, sums = sorted(parts, key=lambda part: part["first"]), 0, None
     for part in parts:

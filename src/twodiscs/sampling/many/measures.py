@@ -241,8 +241,7 @@ def estimate(scene, sums, products, samples):
     """Return (``Measures``, their standard errors as ``Measures``) from a number of ``samples``.
 
     Errors are linearly propagated: for ratios to the volume with their covariance, for ln V from
-    the error of V. On a ring the walls of x have 0. Raises ``InputError`` if the discs fit in no
-    sample.
+    the error of V. On a ring the walls of x have 0.
     """
     n, a, b = scene.discs, scene.range_x, scene.range_y
     if sums[0] == 0:
@@ -281,9 +280,7 @@ def inserted(scene, quantities, shell, seed):
     """Return the ``Sampler`` of volume and areas of a ``Scene`` of more than two discs.
 
     Arguments are as in ``montecarlo.sample_point``; no shell is needed. A point is an
-    ``InsertionPoint``. The area of all walls comes with those of the right and the top wall. Raises
-    ``InputError`` for an unknown quantity, a shell that is no fraction, and a seed that is no
-    integer ≥ 0.
+    ``InsertionPoint``. The area of all walls comes with those of the right and the top wall.
     """
     allowed = ("volume", *(f"{event}_area" for event in scene.events))
     for quantity in quantities:

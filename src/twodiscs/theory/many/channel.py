@@ -298,8 +298,7 @@ def measures(scene, hops=True, tail=TAIL):
     ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer than the
     discs in a row, and some 1e-11 (``tail``) in others. If the discs hardly fit, errors are
     roundings over the free length. Two or three discs in a short channel have many terms; other
-    modules have methods for them. Raises ``InputError`` if the channel is not ordered or there are
-    too many terms.
+    modules have methods for them.
     """
     channel = channel_of(scene)
     p, phi = saddle(channel)
@@ -387,7 +386,7 @@ def limit(height, radius, force):
 
     The force is along the channel, in 1/length. In the units of the other rates, kT is 1/D of the
     total energy 1/2, and a rate for each disc is √(kT/π) times ``per_contact`` for collisions and
-    √(2 kT/π) times ``per_height`` for walls. Raises ``InputError`` unless 2r < h ≤ (2 + √3) r.
+    √(2 kT/π) times ``per_height`` for walls. The channel has 2r < h ≤ (2 + √3) r.
     """
     force = check_number("force", force, 1e-60, 1e60)
     if not 2 * radius < height <= (2 + math.sqrt(3)) * radius:

@@ -138,10 +138,7 @@ def _gaps(a, sigma, t, c):
 
 
 def measures(scene):
-    """Return the ``Measures`` of a ``Scene`` of three discs between walls, with both hops.
-
-    Raises ``InputError`` for another number of discs and for a ring.
-    """
+    """Return the ``Measures`` of a ``Scene`` of three discs between walls, with both hops."""
     if scene.discs != 3 or scene.periodic:
         raise InputError("scene must have three discs between walls for this quadrature")
     volume, per_width, per_height, per_contact, horizontal_hops = integrals(
