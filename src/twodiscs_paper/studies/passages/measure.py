@@ -155,25 +155,29 @@ def compared(found, reference, blocks=None):
     }
 
 
+def start_of(name, scene, hop, distance):
+    """Return the cells that rows on a ``hop`` of a ``Scene`` have in common."""
+    return {
+        "scene": name,
+        "width": scene.width,
+        "height": scene.height,
+        "periodic": scene.periodic or None,
+        "event": hop,
+        "discs": scene.discs,
+        "radius": scene.radius,
+        "distance": distance,
+        "moment_of_inertia": scene.moment_of_inertia,
+        "friction": scene.friction or None,
+    }
+
+
 class NearThreshold:
     """One kind of hop at one radius: its measurements and their rows."""
 
     def __init__(self, name, scene, hop, halvings, seed):
         self.name, self.scene, self.hop, self.seed = name, scene, hop, seed
         self.mean, self.halvings = 1 / exact.passing_rate(scene, hop), halvings
-        self.start = {
-            "scene": name,
-            "width": scene.width,
-            "height": scene.height,
-            "periodic": scene.periodic or None,
-            "event": hop,
-            "discs": 2,
-            "radius": scene.radius,
-            "distance": 2.0**-halvings,
-            "exact_mean": self.mean,
-            "moment_of_inertia": scene.moment_of_inertia,
-            "friction": scene.friction or None,
-        }
+        self.start = start_of(name, scene, hop, 2.0**-halvings) | {"exact_mean": self.mean}
 
     def _seed(self, what):
         inertia = self.scene.moment_of_inertia
@@ -358,11 +362,7 @@ def one_file(name, box, discs, events, seed):
     for n in RING:
         pair = Box(box.width, box.height, {"periodic": "x"}).scene(radius_at(box.height / 4, n))
         scene = Scene(box.width * discs / 2, box.height, pair.radius, discs=discs, periodic="x")
-        start = {
-            "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
-            "event": "horizontal_hop", "discs": discs, "radius": scene.radius,
-            "distance": 2.0**-n, "method": "states",
-        }  # fmt: skip
+        start = start_of(name, scene, "horizontal_hop", 2.0**-n) | {"method": "states"}
         streams = [seed_of(scene, "horizontal_hop", name, seed, f"{discs} {i}") for i in range(2)]
         sampled = file.sampled_rate(scene, FILE_SAMPLES, streams[0])
         # A power of two, so that the last digits of the rate do not change the time.
@@ -391,11 +391,7 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
     )  # fmt: skip
     unit = box.height / file.thermal_speed(scene)
     rate = None if friction is None else friction / unit
-    start = {
-        "scene": name, "width": scene.width, "height": scene.height, "periodic": "x",
-        "event": "horizontal_hop", "discs": scene.discs, "radius": radius,
-        "distance": 1 - radius / limit, "moment_of_inertia": inertia, "friction": rate,
-    }  # fmt: skip
+    start = start_of(name, scene, "horizontal_hop", 1 - radius / limit) | {"friction": rate}
 
     def stream(what):
         kind = friction if inertia is None else f"rough {inertia}"
@@ -444,15 +440,12 @@ def one_long_file(name, box, radius, friction, known, seed, inertia=None):
                 per_disc * SAMPLED_FILE, box.height, radius, discs=SAMPLED_FILE, periodic="x"
             )
             sampled = file.sampled_rate(ring, FILE_SAMPLES, stream("rate"))
-            # Rates are ∝ the thermal speed.
-            slower = file.thermal_speed(scene) / file.thermal_speed(ring)
+            slower = file.thermal_speed(scene) / file.thermal_speed(ring)  # as rates are
             hops = Estimate(slower * sampled.value, slower * sampled.stderr, sampled.n)
             yield make_row("rate", "insertion", hops)
         early, late = (LAGS.index(lag) for lag in HOPPED)
         walked = mean_of((steps[late] - steps[early]) / (HOPPED[1] - HOPPED[0]) / (STEP * unit))
-        ratio = walked.value / hops.value
-        error = ratio * math.hypot(walked.stderr / walked.value, hops.stderr / hops.value)
-        yield make_row("diffusion", "order", Estimate(ratio, error, walked.n), HOPPED[1])
+        yield make_row("diffusion", "order", file.quotient(walked, hops), HOPPED[1])
 
 
 def in_the_limit(seed):

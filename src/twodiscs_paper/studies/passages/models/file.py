@@ -94,6 +94,13 @@ def follow(states, lanes, times, law, squares, crossings):
             crossings[first + l] = level[l]
 
 
+def quotient(one, other):
+    """Return the quotient of two independent ``Estimate``s."""
+    ratio = one.value / other.value
+    error = ratio * math.hypot(one.stderr / one.value, other.stderr / other.value)
+    return Estimate(ratio, error, one.n)
+
+
 def diffusion(scene, time, replicas, seed):
     """Return (D/(ν ℓ²), hops of a disc per time) as ``Estimate``s, for a ``Scene`` on a ring.
 
@@ -107,9 +114,7 @@ def diffusion(scene, time, replicas, seed):
     hops = mean_of(2 * crossings / (scene.discs * 2 * time))
     per_disc = scene.width / scene.discs
     moved = mean_of((squares[:, 1] - squares[:, 0]) / (2 * time) / per_disc**2)
-    ratio = moved.value / (hops.value / 2)
-    error = ratio * math.hypot(moved.stderr / moved.value, hops.stderr / hops.value)
-    return Estimate(ratio, error, replicas), hops
+    return quotient(moved, Estimate(hops.value / 2, hops.stderr / 2, replicas)), hops
 
 
 def sampled_rate(scene, samples, seed):
