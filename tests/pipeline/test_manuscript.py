@@ -240,6 +240,7 @@ def test_it_compiles_without_figures_without_rows_and_with_many_scenes(paper):
     ("file", "old", "new"),
     [
         ("paper.typ", '#number("more_discs_width")', '#number("third_viral")'),
+        ("paper.typ", '#if has("pause_once")', '#if has("third_viral")'),
         ("published.yaml", "ours: third_virial", "ours: third_viral"),
     ],
 )

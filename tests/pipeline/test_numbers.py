@@ -77,9 +77,17 @@ def test_thousands_of_numbers_are_formatted_as_by_decimal(tmp_path):
     rng = np.random.default_rng(1)
     drawn = rng.lognormal(0, 15, 1000) * rng.choice([-1, 1], 1000)
     # Also ties, floats that are no decimals, and numbers that round to a power of ten.
-    numbers = [*drawn, *(k / 40 for k in range(-100, 400)), 0.1 + 0.2, 9.9951, 0.0099996, 1e22]
+    numbers = [
+        *drawn,
+        *(k / 40 for k in range(-100, 400)),
+        0.1 + 0.2,
+        3.000000000004,
+        9.9951,
+        0.0099996,
+        1e22,
+    ]
     cases = [(float(x), 1 + i % 6) for i, x in enumerate(numbers)]
-    errors = [(x, float(abs(x) * 10 ** -rng.uniform(0, 6))) for x, _ in cases if x]
+    errors = [(x, float(abs(x) * 10 ** rng.uniform(-6, 2))) for x, _ in cases if x]
     *found, measured = evaluated(
         tmp_path,
         "contents.cases.map(((x, n)) => digits(x, n).text)",
@@ -171,6 +179,7 @@ def test_a_number_takes_its_rows(rows):
         'whole(largest(of(rows, event: "hop"), "estimate"), "time")': "2",
         'value(smallest(of(rows, estimate: given), "time", "estimate"), "estimate", 1)': "$-6$",
         'value(largest(of(rows, event: "hop"), "time"), "law", 1)': None,
+        'whole(largest(of(rows, time: 2), "time"), "law")': "3",  # the first of several
         'value(of(rows, event: "door"), "law", 1)': None,
         'power-of-two(first(rows), "stderr")': "$2^(-2)$",
         'shown(repr(grouped(rows, "event", "time").keys()))':
