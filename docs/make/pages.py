@@ -51,10 +51,10 @@ def pages(folder):
         "src/twodiscs/__init__.py": NAMES.sub(lambda _: literals(), face),
         "config/schema.json": json.dumps(schema(), ensure_ascii=False, indent=1) + "\n",
     }
-    for path in sorted(Path(folder, "docs").glob("*.md")):
+    for path in (Path(folder, "README.md"), *sorted(Path(folder, "docs").glob("*.md"))):
         text = path.read_text(encoding="utf-8")
         if COMMAND.search(text):
-            renewed[f"docs/{path.name}"] = COMMAND.sub(_tried, text)
+            renewed[path.relative_to(folder).as_posix()] = COMMAND.sub(_tried, text)
     return renewed
 
 
