@@ -76,7 +76,7 @@ MUTANTS = [
     ("sampling/montecarlo.py", "thickness of a hop's shell", "2.0 * (thick * thick)", "1.0 * (thick * thick)"),
     ("sampling/montecarlo.py", "number of walls", '"walls": 4 * len(scene.walled)', '"walls": 2 * len(scene.walled)'),
     ("sampling/many/initial.py", "power of the room in a channel", "for _ in range(discs):\n        ratio *= left", "for _ in range(discs - 1):\n        ratio *= left"),
-    ("sampling/many/measures.py", "covariance with the volume", "- 2 * ratios * covariance[0, 1:]", "- ratios * covariance[0, 1:]"),
+    ("sampling/many/insertions.py", "covariance with the volume", "- 2 * ratios * covariance[0, 1:]", "- ratios * covariance[0, 1:]"),
     ("dynamics/law.py", "height of a flight", "square - 2.0 * gravity * above", "square - gravity * above"),
     ("dynamics/law.py", "wrong mass at a jump", "q2 += math.copysign(wrap[2], relative)", "q2 += math.copysign(wrap[1], relative)"),
     ("dynamics/law.py", "wrong mass in a collision", "divided(2.0, m2, m1)", "divided(2.0, m1, m2)"),

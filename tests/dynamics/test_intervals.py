@@ -14,7 +14,7 @@ from twodiscs.dynamics.two import returns
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import Scene
 from twodiscs.sampling.blocks import rounds
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import initial, insertions
 from twodiscs.sampling.starts import origins
 from twodiscs.theory.exact import mean_times
 from twodiscs.theory.many.rates import rates
@@ -128,7 +128,7 @@ def test_intervals_of_many_have_the_mean_of_theory_or_monte_carlo(name):
     found = intervals.hop_intervals(scene, event, 2_000_000, 4)
     mean, error = mean_times(scene)[event], 0.0
     if mean is None:
-        known, spread = (rates(scene, part) for part in measures.sample(scene, 10**6, 5))
+        known, spread = (rates(scene, part) for part in insertions.sample(scene, 10**6, 5))
         mean, error = 1 / known[event], spread[event] / known[event] ** 2
     assert abs(found.mean - mean) <= 5 * math.hypot(found.stderr, error)
     assert found.stderr < 1.5e-3 * mean

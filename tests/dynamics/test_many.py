@@ -15,7 +15,7 @@ from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import AXIS, EVENTS, SHELLS, WALLS
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 
@@ -62,7 +62,7 @@ SLOW = pytest.param("eight, rough, in a channel", marks=pytest.mark.slow)
 def test_rates_are_exact(name):
     scene = EXACT[name]
     found, errors, covariance = counted(scene, 6)
-    check(scene, found, errors, rates(scene, methods.measures(scene)))
+    check(scene, found, errors, rates(scene, methods.known_derivatives(scene)))
     weights = np.array([virial_weights(scene).get(event, 0.0) for event in SHELLS])
     error = math.sqrt(weights @ covariance @ weights)
     assert abs(virial_sum(scene, found) - 1) < 5 * error
@@ -88,7 +88,7 @@ OTHERS = {
 def test_monte_carlo_and_dynamics_agree(name):
     scene = OTHERS[name]
     found, errors, _ = counted(scene, 4, seed=2)
-    known, spread = measures.sample(scene, 300_000, 3)
+    known, spread = insertions.sample(scene, 300_000, 3)
     expected = rates(scene, known)
     if scene.periodic:
         del expected["horizontal_hop"]  # along the ring, where it is no event
@@ -184,13 +184,13 @@ import hashlib
 from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import initial, insertions
 scenes = [Scene(1.5, 1.0, 0.15, discs=3), Scene(2.3, 0.6, 0.18, discs=8)]
 scenes += [Scene(1.5, 1.0, 0.2, discs=6), Scene(1.5, 1.0, 0.15, discs=3, moment_of_inertia=0.3)]
 found = hashlib.sha256()
 for scene in [*scenes, Scene(1.5, 1.0, 0.15, discs=4, periodic="x")]:
     counts = kernels.run_blocks(scene, 5, 0, 1, 16.0, replicas=64)
-    for part in (*counts, *measures.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
+    for part in (*counts, *insertions.run_blocks(scene, 5, 0, 1), initial.states(scene, 50, 3)):
         found.update(part.tobytes())
 print(found.hexdigest())
 """

@@ -147,7 +147,7 @@ def test_the_sampled_rate_of_hops_is_the_exact_one(monkeypatch):
     passages.hop_rate.cache_clear()
     found = passages.hop_rate(scene, HOP)
     passages.hop_rate.cache_clear()
-    _, volume_error = passages.measures.sample(scene, passages.SAMPLES, 0)
+    _, volume_error = passages.insertions.sample(scene, passages.SAMPLES, 0)
     five(found / due, 1.0, math.hypot(1 / math.sqrt(passages.STATES), volume_error[0]))
 
 

@@ -13,13 +13,13 @@ from twodiscs.dynamics.two import lockstep, strip
 from twodiscs.model.box import Box
 from twodiscs.model.checks import LONGEST, SHORTEST, InputError
 from twodiscs.model.events import HOPS
-from twodiscs.model.two import FOLLOWED
+from twodiscs.model.two import LEAST_DISTANCE
 from twodiscs.sampling.blocks import rounds
 from twodiscs.sampling.prism import fraction_if_accepted, prism_of, propose_anywhere
 from twodiscs.sampling.starts import require_room
 from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact
-from twodiscs.theory.weighted import PASSES_PER_EVENT
+from twodiscs.theory.weighted import CROSSINGS_PER_EVENT
 
 
 def decades(low, high):
@@ -67,7 +67,7 @@ def test_too_close_to_the_largest_radius_dynamics_is_refused(width):
         with pytest.raises(InputError, match=r"must not exceed .* for molecular dynamics"):
             run(box.scene(box.largest_radius * (1 - 1e-13)))
     # It holds at the closest radius: five standard errors.
-    scene = box.scene(box.largest_radius * (1 - FOLLOWED))
+    scene = box.scene(box.largest_radius * (1 - LEAST_DISTANCE))
     found = counting.count_events(scene, {"disc_collision": 3e-4}, 10**8, 1)
     mean = found.counts["disc_collision"] / found.replicas / found.duration
     assert mean == pytest.approx(exact.rate(scene, "disc_collision"), rel=5 * 3e-4)
@@ -86,7 +86,7 @@ def test_the_work_of_a_replica_is_bounded(width, height, effects, share):
     events, leaves = passes(scene, counting.replica_duration(scene))
     # A duration is rounded to a power of two.
     assert events <= 2**0.5 * lockstep.EVENTS_PER_REPLICA
-    assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
+    assert leaves <= 2**0.5 * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
     assert exact.work_per_event(scene) >= 1.0
 
 
@@ -94,7 +94,7 @@ def test_small_discs_on_a_torus_end():
     scene = Box(1.5, 1.0, {"periodic": "xy"}).scene(1e-9)
     found = counting.count_events(scene, {"disc_collision": 0.001}, 1000, 1)
     _, leaves = passes(scene, found.replicas * found.duration)
-    block = lockstep.REPLICAS * lockstep.EVENTS_PER_REPLICA * PASSES_PER_EVENT
+    block = lockstep.REPLICAS * lockstep.EVENTS_PER_REPLICA * CROSSINGS_PER_EVENT
     assert leaves <= 2**0.5 * rounds.FIRST_ROUND * block
     assert found.status == {"disc_collision": "budget"}
 

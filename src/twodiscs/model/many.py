@@ -52,7 +52,7 @@ def require_followable(scene):
     """Accept every ``Scene``: its radius is below the largest one."""
 
 
-def passed(scene):
+def open_axes(scene):
     """Return the axes with walls along which geometry does not keep the discs from passing."""
     return tuple(axis for axis in scene.walled if can_be_level(scene, axis))
 

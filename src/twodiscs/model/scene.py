@@ -386,12 +386,12 @@ class Scene:
         self._geometry.require_followable(self)
 
     @cached_property
-    def passed(self) -> tuple[str, ...]:
+    def open_axes(self) -> tuple[str, ...]:
         """The axes with walls along which the discs can exchange sides.
 
         For more than three discs these are the axes along which geometry does not exclude it.
         """
-        return self._geometry.passed(self)
+        return self._geometry.open_axes(self)
 
     def room(self, hop):
         """Return the largest distance of discs at a ``hop``, minus σ.
@@ -413,12 +413,12 @@ class Scene:
     @cached_property
     def vertical_hops(self):
         """Whether the discs can pass each other on y1 = y2; equal discs in the plane if w > 4r."""
-        return "y" in self.passed
+        return "y" in self.open_axes
 
     @cached_property
     def horizontal_hops(self):
         """Whether the discs can pass each other on x1 = x2; equal discs in the plane if h > 4r."""
-        return "x" in self.passed
+        return "x" in self.open_axes
 
     @cached_property
     def regime(self) -> str:
@@ -511,7 +511,7 @@ class Scene:
             return False
         declared = DECLARED[event]
         if declared.kind == "hop":
-            return declared.axis in self.passed
+            return declared.axis in self.open_axes
         if self.field and (declared.axis, declared.side) == ("y", +1):
             return self.field * (self.height - 2 * self.radius) < two.ENERGY
         return True

@@ -58,7 +58,7 @@ def _lowest_potential(scene, spread):
     return scene.field * min(m2 * max(apart + r1 - r2, 0.0), m1 * max(apart + r2 - r1, 0.0))
 
 
-def passed(scene):
+def open_axes(scene):
     """Return the axes with walls along which the discs have room and energy to exchange sides."""
     return tuple(axis for axis in scene.walled if _has_gap(scene, axis))
 
@@ -76,7 +76,7 @@ def _has_gap(scene, axis):
 
 def ergodic_components(scene):
     """Return the number of disjoint parts of configuration space, see ``Scene``."""
-    return 2 ** (len(scene.walled) - len(scene.passed))
+    return 2 ** (len(scene.walled) - len(scene.open_axes))
 
 
 def confined(scene):
@@ -90,7 +90,7 @@ def _confined(scene, axis):
     This is so if the hop is blocked, unless disc 1 is the larger disc and the corner behind it has
     room for disc 2.
     """
-    if axis in scene.passed or axis not in scene.walled:
+    if axis in scene.open_axes or axis not in scene.walled:
         return False
     r1, r2 = scene.exact_radii
     if r1 <= r2:
@@ -152,7 +152,7 @@ def _largest_with_effects(scene):
 
 #: The least relative distance from the largest radius for dynamics in doubles. At a tenth of it
 #: errors of mean times exceed 1e-4.
-FOLLOWED = 1e-12
+LEAST_DISTANCE = 1e-12
 
 
 def require_followable(scene):
@@ -163,7 +163,7 @@ def require_followable(scene):
     largest = scene.largest_radius
     # With effects, initial states need more room than dynamics in doubles.
     jams = scene.is_plain and largest < min(scene.width, scene.height) / 2
-    if jams and scene.radius > (closest := largest * (1 - FOLLOWED)):
+    if jams and scene.radius > (closest := largest * (1 - LEAST_DISTANCE)):
         raise InputError(
             f"radius {scene.radius!r} must not exceed {closest!r} for molecular dynamics: "
             f"above it, roundings matter, because discs only fit up to {largest!r}"

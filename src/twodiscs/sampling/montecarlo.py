@@ -41,11 +41,11 @@ from twodiscs.theory import exact
 
 LANES = 64
 
-#: Samples of the prism with one random stream: 2¹⁴ passes over the lanes.
+#: Samples of the prism with one random stream: 2¹⁴ of each lane.
 BLOCK = LANES << 14
 
-#: Passes between two readings of the packed counts, eight fields of eight bits.
-PASSES = 128
+#: Samples of a lane between two readings of its packed counts, eight fields of eight bits.
+SAMPLES_PER_READING = 128
 
 #: Proposals of the conditioned sampler with one random stream.
 PROPOSALS = 1 << 16
@@ -152,8 +152,8 @@ def sample_blocks(seed, first, stop, range_x, range_y, sigma, ends, areas):
             s0[i] = splitmix(counter)
             counter += GOLDEN
             s1[i] = splitmix(counter) | np.uint64(1)
-        for _ in range(BLOCK // LANES // PASSES):
-            for _ in range(PASSES):
+        for _ in range(BLOCK // LANES // SAMPLES_PER_READING):
+            for _ in range(SAMPLES_PER_READING):
                 for i in range(LANES):
                     # xoroshiro128+ (Blackman and Vigna 2021), twice.
                     a, b = s0[i], s1[i]
@@ -531,9 +531,9 @@ def plan(scene, samples):
     rejection is used if it accepts at least one in ``COST_RATIO``.
     """
     if check_scene(scene).discs > 2:
-        from twodiscs.sampling.many import measures
+        from twodiscs.sampling.many import insertions
 
-        sampler, block = measures.inserted, measures.BLOCK
+        sampler, block = insertions.inserted, insertions.BLOCK
     elif scene.has_effects:
         sampler, block = weighted, BLOCK
     elif exact.free_fraction(scene) >= 1 / COST_RATIO:
@@ -550,7 +550,7 @@ class SamplingRun:
 
     The sampler is ``sample_point`` for effects, and if a sample of the prism has no overlap with a
     probability of at least 1/``COST_RATIO``. Otherwise it is ``conditioned_point``, with the number
-    of samples that takes the same time. For more than two discs it is ``many.measures.inserted``,
+    of samples that takes the same time. For more than two discs it is ``many.insertions.inserted``,
     which has no shells.
 
     ``quantities``, ``samples`` (of the prism), ``shell`` and ``seed`` are the arguments of

@@ -484,7 +484,7 @@ def shell_expectation(scene, event, epsilon):
 # is the flux of this measure through a surface.
 
 #: Crossings of the periodic cell between two events that the usual cost of an event includes.
-PASSES_PER_EVENT = 64
+CROSSINGS_PER_EVENT = 64
 
 #: The time of a kick over the time of an event.
 KICK = 15
@@ -506,9 +506,9 @@ def work_per_event(scene, event_rate):
     """Return an upper bound on the cost of an event over the usual cost, 1 between walls.
 
     On a periodic axis discs leave their cell between two events, very often if they are small. The
-    usual cost includes ``PASSES_PER_EVENT`` such crossings. A kick by friction costs about as much
-    as ``KICK`` events.
+    usual cost includes ``CROSSINGS_PER_EVENT`` such crossings. A kick by friction costs about as
+    much as ``KICK`` events.
     """
-    passes = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
-    usual = max(1.0, passes / PASSES_PER_EVENT / event_rate)
+    crossings = sum(scene.fastest / scene.side(axis) for axis in scene.periodic)
+    usual = max(1.0, crossings / CROSSINGS_PER_EVENT / event_rate)
     return usual + KICK * scene.friction / event_rate

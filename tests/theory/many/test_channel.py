@@ -8,7 +8,7 @@ import pytest
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
 from twodiscs.theory.many import channel, methods, three
-from twodiscs.theory.many.rates import Measures, rates, virial_sum
+from twodiscs.theory.many.rates import Derivatives, rates, virial_sum
 
 BOUND = 1e-10
 
@@ -25,7 +25,7 @@ def agree(found, expected, rel):
 @pytest.mark.parametrize("width", [1.5, 1.0, 6.0])
 def test_two_discs_have_the_plain_theory(width):
     scene = Scene(width, 0.6, 0.18, discs=2)
-    agree(channel.measures(scene), methods.measures(scene), BOUND)
+    agree(channel.derivatives(scene), methods.known_derivatives(scene), BOUND)
 
 
 @pytest.mark.parametrize(
@@ -33,11 +33,11 @@ def test_two_discs_have_the_plain_theory(width):
 )
 def test_three_discs_have_the_quadrature(width, height):
     scene = Scene(width, height, 0.18, discs=3)
-    agree(channel.measures(scene), three.measures(scene), BOUND)
+    agree(channel.derivatives(scene), three.derivatives(scene), BOUND)
 
 
 def by_moments(scene, order=40):
-    """Return the ``Measures`` of a channel that is longer than the discs in a row.
+    """Return the ``Derivatives`` of a channel that is longer than the discs in a row.
 
     There the rooms A/(N − 1) − d of the bonds are positive, and A − S is their sum: V = ∫ (A − S)^N
     is made of their moments, by Gauss's rule. Derivatives are such integrals of N (A − S)^(N−1)
@@ -82,7 +82,7 @@ def by_moments(scene, order=40):
                 inner = sum(left[m] * closed[k - m] for m in range(k + 1))
                 level += (w * inner) @ right[n - k]
         chain = joined(chain, moments)
-    return Measures(
+    return Derivatives(
         math.log(math.factorial(n) * volume),
         w @ ends[-1][n - 1] / volume,
         n / b + mean(square / (b * d)),
@@ -100,7 +100,7 @@ def by_moments(scene, order=40):
 def test_long_channels_are_made_of_moments(discs, width, height, radius):
     """The bound is the one that ``theory.exact.volume`` promises."""
     scene = Scene(width, height, radius, discs=discs)
-    for known, value in zip(channel.measures(scene), by_moments(scene), strict=True):
+    for known, value in zip(channel.derivatives(scene), by_moments(scene), strict=True):
         assert abs(known - value) <= PROMISED * max(1, abs(value))
 
 
@@ -120,7 +120,7 @@ def test_four_discs_in_a_shorter_channel():
         values.append(math.log(total))
     spread = abs(values[0] - values[1])
     assert spread < 1e-7
-    assert channel.measures(scene, hops=False).log_volume == pytest.approx(
+    assert channel.derivatives(scene, hops=False).log_volume == pytest.approx(
         values[1], abs=2 * spread
     )
 
@@ -132,7 +132,7 @@ def test_four_discs_in_a_shorter_channel():
 )  # fmt: skip
 def test_the_virial_theorem(discs, width, height, radius):
     scene = Scene(width, height, radius, discs=discs)
-    known = channel.measures(scene, hops=False)
+    known = channel.derivatives(scene, hops=False)
     # If there is little room, walls and collisions cancel.
     size = scene.range_x * known.per_width / (2 * discs)
     assert virial_sum(scene, rates(scene, known)) == pytest.approx(1, abs=1e-11 * size)
@@ -144,7 +144,7 @@ def test_a_tonks_gas_is_left_where_the_channel_is_as_wide_as_the_discs(discs):
     radius, gap = 0.25, 1e-6
     scene = Scene(1.0 * discs, 0.5 + gap, radius, discs=discs)
     room = scene.range_x - (discs - 1) * scene.contact_distance
-    known = channel.measures(scene)
+    known = channel.derivatives(scene)
     small = discs**2 * scene.range_y**2 / scene.contact_distance / room
     assert known.log_volume == pytest.approx(
         discs * math.log(scene.range_y * room), abs=small + 1e-11 * discs
@@ -158,11 +158,11 @@ def test_a_tonks_gas_is_left_where_the_channel_is_as_wide_as_the_discs(discs):
 
 def test_hops_of_many_discs_are_those_of_the_sum_without_a_series(monkeypatch):
     scenes = [Scene(w, 1.0, 0.28, discs=n) for n, w in ((24, 13.0), (48, 25.0))]
-    found = [channel.measures(scene).vertical_hops for scene in scenes]
+    found = [channel.derivatives(scene).vertical_hops for scene in scenes]
     monkeypatch.setattr(channel, "RATIO_ERROR", -1.0)
     monkeypatch.setattr(channel, "_geometric", None)
     for scene, value in zip(scenes, found, strict=True):
-        assert value == pytest.approx(channel.measures(scene).vertical_hops, rel=1e-11)
+        assert value == pytest.approx(channel.derivatives(scene).vertical_hops, rel=1e-11)
 
 
 def test_many_discs_tend_to_the_largest_eigenvalue():
@@ -172,7 +172,7 @@ def test_many_discs_tend_to_the_largest_eigenvalue():
     differences = []
     for discs in (64, 128, 256):
         scene = Scene(ideal.length * discs + radius, height, radius, discs=discs)
-        known = channel.measures(scene, hops=False)
+        known = channel.derivatives(scene, hops=False)
         differences.append(
             [known.per_width / force - 1, known.per_contact / discs / ideal.per_contact - 1,
              known.per_height / discs / ideal.per_height - 1]
@@ -196,7 +196,7 @@ def test_the_limit_is_a_tonks_gas_in_a_narrow_channel():
 
 def test_what_is_no_ordered_channel_is_refused():
     with pytest.raises(InputError, match="ordered channel"):
-        channel.measures(Scene(3.0, 1.0, 0.2, discs=4))
+        channel.derivatives(Scene(3.0, 1.0, 0.2, discs=4))
     with pytest.raises(InputError, match="2 \\+ √3 radii"):
         channel.limit(1.0, 0.2, 1.0)
     with pytest.raises(InputError, match="force must"):
@@ -205,8 +205,8 @@ def test_what_is_no_ordered_channel_is_refused():
 
 def test_turned_channels_are_the_same():
     along, up = (
-        methods.measures(Scene(3.0, 0.6, 0.18, discs=4)),
-        methods.measures(Scene(0.6, 3.0, 0.18, discs=4)),
+        methods.known_derivatives(Scene(3.0, 0.6, 0.18, discs=4)),
+        methods.known_derivatives(Scene(0.6, 3.0, 0.18, discs=4)),
     )
     assert along == up.turned()
     assert methods.event_rates(Scene(3.0, 0.6, 0.18, discs=4))["horizontal_hop"] == 0.0
@@ -216,6 +216,6 @@ def test_two_discs_are_those_of_a_scene():
     scene, scene = Scene(1.5, 1.0, 0.2), Scene(1.5, 1.0, 0.2, discs=2)
     from twodiscs.theory.exact import rate
 
-    for event, found in rates(scene, methods.measures(scene)).items():
+    for event, found in rates(scene, methods.known_derivatives(scene)).items():
         multiplicity = scene.multiplicity(event)
         assert found == pytest.approx(multiplicity * rate(scene, event), rel=1e-13)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many.measures import BLOCK, UNITS, box_of, run_blocks
+from twodiscs.sampling.many.insertions import BLOCK, UNITS, box_of, run_blocks
 from twodiscs.theory import exact, plain
 from twodiscs.theory.many import channel, three
 

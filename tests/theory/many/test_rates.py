@@ -20,7 +20,7 @@ KNOWN = [
 
 @pytest.mark.parametrize("scene", KNOWN, ids=repr)
 def test_the_virial_theorem_holds(scene):
-    found = rates.rates(scene, methods.measures(scene, hops=False))
+    found = rates.rates(scene, methods.known_derivatives(scene, hops=False))
     size = found["right_wall"] * rates.virial_weights(scene)["right_wall"]
     assert rates.virial_sum(scene, found) == pytest.approx(1, abs=1e-11 * (1 + size))
 
@@ -61,7 +61,7 @@ def test_small_discs(discs):
     errors = {}
     for radius in (2e-3, 1e-3):
         scene = Scene(1.5, 1.0, radius, discs=discs)
-        true = rates.rates(scene, methods.measures(scene))
+        true = rates.rates(scene, methods.known_derivatives(scene))
         for event, rate in rates_of_small_discs(scene).items():
             errors.setdefault(event, []).append(abs(rate / true[event] - 1))
     for event, (large, small) in errors.items():

@@ -107,14 +107,14 @@ def test_volume_by_rejection(radius):
     free = np.ones(n, bool)
     for i, j in ((0, 1), (0, 2), (1, 2)):
         free &= (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 >= scene.contact_distance**2
-    true = math.exp(three.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    true = math.exp(three.derivatives(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
     assert abs(free.mean() - true) < 5 * math.sqrt(true * (1 - true) / n)
 
 
 def test_the_value_of_another_derivation():
     """Scrambled Sobol points, 2e-4 at worst."""
     scene = Scene(1.5, 1.0, 0.15, discs=3)
-    known = three.measures(scene)
+    known = three.derivatives(scene)
     assert math.exp(known.log_volume) == pytest.approx(0.2455841, rel=2e-6)
     found = rates(scene, known)
     expected = {
@@ -139,7 +139,7 @@ def test_largest_radius_ends_the_volume():
 
 def test_only_three_between_walls():
     with pytest.raises(InputError, match="three discs"):
-        three.measures(Scene(1.5, 1.0, 0.1, discs=4))
+        three.derivatives(Scene(1.5, 1.0, 0.1, discs=4))
     with pytest.raises(InputError, match="three discs"):
-        three.measures(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
-    assert methods.measures(Scene(1.5, 1.0, 0.1, discs=4)) is None
+        three.derivatives(Scene(1.5, 1.0, 0.1, discs=3, periodic="x"))
+    assert methods.known_derivatives(Scene(1.5, 1.0, 0.1, discs=4)) is None

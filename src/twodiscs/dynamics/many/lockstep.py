@@ -33,7 +33,7 @@ from twodiscs.dynamics.law import (
 )
 from twodiscs.model.events import SHELLS, by_kind
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import measures
+from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.initial import (
     LARGE,
     draw_velocities,
@@ -46,7 +46,7 @@ from twodiscs.sampling.many.initial import (
     velocity_memory,
 )
 from twodiscs.theory.many import methods
-from twodiscs.theory.many.rates import bulk_measures, rates
+from twodiscs.theory.many.rates import bulk_derivatives, rates
 
 #: Events of a replica, and of a replica whose initial state takes as long as ten thousand events.
 REPLICA_EVENTS, EVENTS_OF_CHAIN = 256, 8192
@@ -590,14 +590,14 @@ def of_events(sums, products):
 def expected_rates(scene):
     """Return {event: rate} of the events of a ``Scene`` of more than two discs.
 
-    Rates are exact if that is known, and otherwise from some insertions (``measures.expected``),
+    Rates are exact if that is known, and otherwise from some insertions (``insertions.expected``),
     within a few per cent. If insertions find no room, the rates of wall hits and collisions are
     guessed (``replica_duration``), and so is one of them for which insertions give 0. For
     ``LARGE`` numbers of discs rates follow from an equation of state, within some ten per cent.
     """
-    known = methods.measures(scene)
+    known = methods.known_derivatives(scene)
     if known is None:
-        known = measures.expected(scene) if scene.discs < LARGE else bulk_measures(scene)
+        known = insertions.expected(scene) if scene.discs < LARGE else bulk_derivatives(scene)
     guess = dict.fromkeys(("disc_collision", "any_wall"), _guessed_rate(scene) / 2)
     if known is None:
         return guess

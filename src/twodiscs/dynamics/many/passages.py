@@ -36,7 +36,7 @@ from twodiscs.model.checks import InputError, check_choice
 from twodiscs.model.events import HOPS
 from twodiscs.model.scene import hopping_along
 from twodiscs.sampling.jit import compiled, optional
-from twodiscs.sampling.many import measures
+from twodiscs.sampling.many import insertions
 from twodiscs.sampling.many.initial import (
     LARGE,
     Initial,
@@ -270,7 +270,10 @@ def hop_rate(scene, hop):
     if rate := methods.event_rates(scene)[hop]:
         return rate
     scene, hop = hopping_along(scene, hop, "x")
-    volume, (accepted, proposals) = measures.sample(scene, SAMPLES, 0), surface_fraction(scene, hop)
+    volume, (accepted, proposals) = (
+        insertions.sample(scene, SAMPLES, 0),
+        surface_fraction(scene, hop),
+    )
     a, b, n = scene.range_x, scene.range_y, scene.discs
     level = n * (n - 1) / 2 * (scene.room(hop) / b) ** 2 / a * accepted / proposals
     empty = math.exp(n * math.log(a * b) - volume[0].log_volume)

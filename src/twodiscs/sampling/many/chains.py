@@ -22,7 +22,7 @@ from twodiscs.sampling.many.cells import (
     leave,
     new_places,
 )
-from twodiscs.sampling.many.measures import around
+from twodiscs.sampling.many.insertions import around
 from twodiscs.sampling.streams import next_bits, uniform
 
 #: The approximate numbers of contacts of each disc, and of a chain.

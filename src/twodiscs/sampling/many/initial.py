@@ -27,9 +27,9 @@ import numpy as np
 from twodiscs.model.many import arrangement, is_ordered
 from twodiscs.sampling.blocks.threads import in_a_thread, in_threads
 from twodiscs.sampling.jit import compiled, inlined, optional
-from twodiscs.sampling.many import chains, measures
+from twodiscs.sampling.many import chains, insertions
 from twodiscs.sampling.many.cells import Grid, grid_of
-from twodiscs.sampling.many.measures import around
+from twodiscs.sampling.many.insertions import around
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
 from twodiscs.theory.many import channel
 
@@ -104,7 +104,7 @@ def method(scene):
         return "channel"
     if scene.discs >= LARGE:
         return "chain"
-    return "rejection" if measures.free_fraction(scene) >= LEAST else "chain"
+    return "rejection" if insertions.free_fraction(scene) >= LEAST else "chain"
 
 
 def initial_of(scene, by=None):

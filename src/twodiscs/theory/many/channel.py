@@ -33,7 +33,7 @@ import numpy as np
 
 from twodiscs.model.checks import InputError, check_number
 from twodiscs.model.many import is_ordered
-from twodiscs.theory.many.rates import Measures
+from twodiscs.theory.many.rates import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes of a panel, the phase that they resolve, and the most panels that double.
@@ -291,8 +291,8 @@ def _geometric(vectors, logs, growth, k, log):
     return sums
 
 
-def measures(scene, hops=True, tail=TAIL):
-    """Return the ``Measures`` of a ``Scene`` in an ordered channel.
+def derivatives(scene, hops=True, tail=TAIL):
+    """Return the ``Derivatives`` of a ``Scene`` in an ordered channel.
 
     Hops in x are impossible. Hops in y, of any pair, take about as long as all the rest; with
     ``hops`` False they are None. Relative errors are less than 1e-12 in a channel longer than the
@@ -329,7 +329,7 @@ def measures(scene, hops=True, tail=TAIL):
     sums = sums * step / math.pi
     log_volume = math.lgamma(scene.discs + 1) + math.log(sums[0]) + first + p * channel.room
     ratios = sums[1:] / sums[0]
-    return Measures(
+    return Derivatives(
         log_volume,
         *map(float, ratios[:3]),
         horizontal_hops=0.0,

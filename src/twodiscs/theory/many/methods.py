@@ -15,7 +15,7 @@ from twodiscs.model.scene import Scene
 from twodiscs.theory import plain
 from twodiscs.theory.flux import constant
 from twodiscs.theory.many import channel, three
-from twodiscs.theory.many.rates import Measures
+from twodiscs.theory.many.rates import Derivatives
 
 
 def method(scene):
@@ -28,8 +28,8 @@ def method(scene):
 
 
 @lru_cache(maxsize=1024)
-def measures(scene, hops=True):
-    """Return the ``Measures`` of a ``Scene``, None if no exact value is known here.
+def known_derivatives(scene, hops=True):
+    """Return the ``Derivatives`` of a ``Scene``, None if no exact value is known here.
 
     ``hops`` False leaves out the hops in a channel, which take longest.
     """
@@ -37,7 +37,7 @@ def measures(scene, hops=True):
     if known == "plain":
         volume, areas = plain.volume_and_areas(Scene(scene.width, scene.height, scene.radius))
         root = math.sqrt(2)
-        return Measures(
+        return Derivatives(
             math.log(volume),
             2 * areas["right_wall"] / volume,
             2 * areas["top_wall"] / volume,
@@ -46,11 +46,11 @@ def measures(scene, hops=True):
             areas["vertical_hop"] / root / volume,
         )
     if known == "three":
-        return three.measures(scene)
+        return three.derivatives(scene)
     if known == "channel":
         if is_ordered(scene):
-            return channel.measures(scene, hops)
-        return channel.measures(scene.turned(), hops).turned()
+            return channel.derivatives(scene, hops)
+        return channel.derivatives(scene.turned(), hops).turned()
     return None
 
 
@@ -64,7 +64,7 @@ def volume_and_areas(scene):
     whose volume a double may not hold.
     """
     areas = {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
-    if scene.discs > MOST_WITH_VOLUME or (known := measures(scene)) is None:
+    if scene.discs > MOST_WITH_VOLUME or (known := known_derivatives(scene)) is None:
         return None, areas
     volume = math.exp(known.log_volume)
     over_volume = surfaces(scene, known)
@@ -73,7 +73,7 @@ def volume_and_areas(scene):
 
 
 def surfaces(scene, known):
-    """Return {event: area over volume} of a ``Scene``, given its ``Measures``, as ``theory.exact``.
+    """Return {event: area over volume} of a ``Scene``, given its ``Derivatives``.
 
     The metric is that of the 2N coordinates. For each axis with walls, all walls have 2N times the
     area of one disc at one wall.
@@ -97,7 +97,7 @@ def event_rates(scene):
     Rates are for a collision or a hop of any pair, for one disc at one wall, and for any disc at
     any wall. They need only the logarithm of the volume, because the volume may underflow.
     """
-    known = measures(scene)
+    known = known_derivatives(scene)
     if known is None:
         return {event: None if scene.is_possible(event) else 0.0 for event in EVENTS}
     constant_of = constant(scene.velocity_components)

@@ -27,8 +27,8 @@ from twodiscs.theory import plain
 from twodiscs.theory.flux import constant
 
 
-class Measures(NamedTuple):
-    """The volume V of configuration space and, over it, its derivatives and the hops.
+class Derivatives(NamedTuple):
+    """The logarithm of the volume V of configuration space, its derivatives, and the hops over V.
 
     ``per_contact`` is −∂lnV/∂σ. ``horizontal_hops`` is Σ_pairs ∫ δ(x_i − x_j)/V; either of the hops
     may be None if it was not asked for. All except the logarithm are in 1/length.
@@ -42,26 +42,26 @@ class Measures(NamedTuple):
     vertical_hops: float | None = None
 
     def turned(self):
-        """Return the measures of the box turned by a quarter."""
-        return Measures(
+        """Return the same of the box turned by a quarter."""
+        return Derivatives(
             self.log_volume, self.per_height, self.per_width, self.per_contact,
             self.vertical_hops, self.horizontal_hops,
         )  # fmt: skip
 
 
-def rates(scene, measures):
-    """Return {event: rate × multiplicity} of a ``Scene``, given its ``Measures``.
+def rates(scene, known):
+    """Return {event: rate × multiplicity} of a ``Scene``, given its ``Derivatives``.
 
     Hops that are None have no entry. Hops along a ring are no events, but have an entry: the rate
     at which two discs pass each other.
     """
     c = constant(scene.velocity_components)
     rates = {
-        "vertical_hop": measures.vertical_hops and math.sqrt(2) * c * measures.vertical_hops,
-        "horizontal_hop": measures.horizontal_hops and math.sqrt(2) * c * measures.horizontal_hops,
-        "disc_collision": c / math.sqrt(2) * measures.per_contact,
-        "right_wall": c * measures.per_width,
-        "top_wall": c * measures.per_height,
+        "vertical_hop": known.vertical_hops and math.sqrt(2) * c * known.vertical_hops,
+        "horizontal_hop": known.horizontal_hops and math.sqrt(2) * c * known.horizontal_hops,
+        "disc_collision": c / math.sqrt(2) * known.per_contact,
+        "right_wall": c * known.per_width,
+        "top_wall": c * known.per_height,
     }
     return {event: rate for event, rate in rates.items() if rate is not None}
 
@@ -107,8 +107,8 @@ def overlap_of_two(scene):
 # Many discs ---------------------------------------------------------------------------------------
 
 
-def bulk_measures(scene):
-    """Return approximate ``Measures`` of many discs, from an equation of state.
+def bulk_derivatives(scene):
+    """Return approximate ``Derivatives`` of many discs, from an equation of state.
 
     PV/(N kT) is Z = (1 + η²/8)/(1 − η)², with η the packing fraction (Henderson, Mol. Phys. 30, 971
     (1975)). The rate of hops of a pair is taken as without other discs.
@@ -117,7 +117,7 @@ def bulk_measures(scene):
     packing = min(0.9, n * math.pi * sigma * sigma / 4 / (scene.width * scene.height))
     z = (1 + packing * packing / 8) / (1 - packing) ** 2
     pairs = n * (n - 1) / 2
-    return Measures(
+    return Derivatives(
         math.nan, 0.0 if scene.periodic else n * z / a, n * z / b, 2 * n * (z - 1) / sigma,
         pairs / a * max(0.0, 1 - sigma / b) ** 2, pairs / b * max(0.0, 1 - sigma / a) ** 2,
     )  # fmt: skip

@@ -29,7 +29,7 @@ from itertools import pairwise
 import numpy as np
 
 from twodiscs.model.checks import InputError
-from twodiscs.theory.many.rates import Measures
+from twodiscs.theory.many.rates import Derivatives
 from twodiscs.theory.quadrature import gauss_legendre
 
 #: Nodes between two kinks, for the sum of the gaps and for the larger gap.
@@ -137,15 +137,15 @@ def _gaps(a, sigma, t, c):
     return np.where(near_p, p, 0.0), q, weight, near_p, near_q
 
 
-def measures(scene):
-    """Return the ``Measures`` of a ``Scene`` of three discs between walls, with both hops."""
+def derivatives(scene):
+    """Return the ``Derivatives`` of a ``Scene`` of three discs between walls, with both hops."""
     if scene.discs != 3 or scene.periodic:
         raise InputError("scene must have three discs between walls for this quadrature")
     volume, per_width, per_height, per_contact, horizontal_hops = integrals(
         scene.range_x, scene.range_y, scene.contact_distance
     )
     vertical_hops = integrals(scene.range_y, scene.range_x, scene.contact_distance)[4]
-    return Measures(
+    return Derivatives(
         math.log(volume),
         *(
             part / volume

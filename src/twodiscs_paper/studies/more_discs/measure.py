@@ -15,7 +15,7 @@ from twodiscs.dynamics.many import lockstep as many
 from twodiscs.model.events import DECLARED, SHELLS
 from twodiscs.model.many import multiplicity
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.many import methods
 from twodiscs.theory.many.rates import rates, virial_sum, virial_weights
 from twodiscs_paper.study import row
@@ -89,11 +89,11 @@ def due(discs=DISCS, radii=RADII):
 
 
 def _of_scene(scene, events, samples, seed):
-    known = methods.measures(scene)
+    known = methods.known_derivatives(scene)
     true = rates(scene, known) if known else {}
     has_samples = scene.discs not in FEWER
     sampled, errors_of_samples = (
-        (rates(scene, part) for part in measures.sample(scene, samples, seed))
+        (rates(scene, part) for part in insertions.sample(scene, samples, seed))
         if has_samples
         else ({}, {})
     )

@@ -37,7 +37,7 @@ from twodiscs.dynamics.many.lockstep import (
 )
 from twodiscs.points.estimates import Estimate, mean_of
 from twodiscs.sampling.jit import compiled
-from twodiscs.sampling.many import initial, measures
+from twodiscs.sampling.many import initial, insertions
 from twodiscs.theory.many import channel
 from twodiscs.theory.many.rates import rates
 
@@ -120,7 +120,7 @@ def diffusion(scene, time, replicas, seed):
 def sampled_rate(scene, samples, seed):
     """Return the hops of a disc per time along a ring as an ``Estimate``, by Monte Carlo."""
     found, error = (
-        rates(scene, part)["horizontal_hop"] for part in measures.sample(scene, samples, seed)
+        rates(scene, part)["horizontal_hop"] for part in insertions.sample(scene, samples, seed)
     )
     share = 2 / scene.discs  # two discs take part in a hop
     return Estimate(share * found, share * error, samples)

@@ -33,7 +33,7 @@ from twodiscs.sampling.blocks.rounds import Sampler
 from twodiscs.sampling.blocks.threads import in_a_thread
 from twodiscs.sampling.jit import compiled, inlined, optional
 from twodiscs.sampling.streams import next_bits, open_stream, signed_uniform, uniform
-from twodiscs.theory.many.rates import Measures, overlap_of_two
+from twodiscs.theory.many.rates import Derivatives, overlap_of_two
 
 #: Samples with one random stream.
 BLOCK = 1 << 12
@@ -41,14 +41,14 @@ BLOCK = 1 << 12
 #: Units of a typical weight.
 UNITS = 2.0**20
 
-#: The names of the sums: the volume and the fields of ``Measures`` after the logarithm.
+#: The names of the sums: the volume and the fields of ``Derivatives`` after the logarithm.
 QUANTITIES = (
     "volume", "per_width", "per_height", "per_contact", "horizontal_hops", "vertical_hops",
 )  # fmt: skip
 
 #: The index of the sum of an event; both walls of an axis have the same one.
 SUM_OF = by_kind(
-    "sampling/many/measures.py",
+    "sampling/many/insertions.py",
     {
         "hop": lambda event: QUANTITIES.index(f"{event.name}s"),
         "collision": lambda event: QUANTITIES.index("per_contact"),
@@ -64,7 +64,7 @@ SUMS = {"volume": 0} | {f"{event}_area": SUM_OF[event] for event in sorted(SUM_O
 COST_RATIO = 10.0
 
 
-class Box(NamedTuple):
+class Bounds(NamedTuple):
     """The constants of a scene: half-ranges, σ, circumference of a ring or None, typical weight."""
 
     half_x: float
@@ -215,11 +215,11 @@ def sample_blocks(seed, first, stop, discs, box, walls):
 
 
 def box_of(scene):
-    """Return the ``Box`` of a ``Scene``."""
+    """Return the ``Bounds`` of a ``Scene``."""
     pairs = scene.discs * (scene.discs - 1) / 2
     # Rounded to a power of two: the same on every machine.
     typical = 2.0 ** round(pairs * math.log2(1 - overlap_of_two(scene)))
-    return Box(
+    return Bounds(
         scene.range_x / 2, scene.range_y / 2, scene.contact_distance,
         scene.width if scene.periodic else None, typical,
     )  # fmt: skip
@@ -238,7 +238,7 @@ def free_fraction(scene):
 
 
 def estimate(scene, sums, products, samples):
-    """Return (``Measures``, their standard errors as ``Measures``) from a number of ``samples``.
+    """Return (``Derivatives``, standard errors in the same form) from a number of ``samples``.
 
     Errors are linearly propagated: for ratios to the volume with their covariance, for ln V from
     the error of V. On a ring the walls of x have 0.
@@ -262,13 +262,13 @@ def estimate(scene, sums, products, samples):
     errors = np.sqrt(np.maximum(spread, 0.0)) / mean[0]
     log_volume = n * math.log(a * b) + math.log(box_of(scene).typical) + math.log(mean[0])
     return (
-        Measures(log_volume, *map(float, factors * ratios)),
-        Measures(math.sqrt(max(covariance[0, 0], 0.0)) / mean[0], *map(float, factors * errors)),
+        Derivatives(log_volume, *map(float, factors * ratios)),
+        Derivatives(math.sqrt(max(covariance[0, 0], 0.0)) / mean[0], *map(float, factors * errors)),
     )
 
 
 def sample(scene, samples, seed):
-    """Return (``Measures``, standard errors) of a ``Scene`` from ``samples``, in whole blocks."""
+    """Return the ``estimate`` of a ``Scene`` from a number of ``samples``, in whole blocks."""
     blocks = -(-check_integer("samples", samples) // BLOCK)
     return estimate(scene, *in_a_thread(run_blocks, scene, seed, 0, blocks), blocks * BLOCK)
 
@@ -304,14 +304,14 @@ def inserted(scene, quantities, shell, seed):
 
     def point(samples, counts):
         sums, products = counts[0], counts[1:]
-        measures = _sampled_measures(scene)
+        units = _volume_and_areas(scene)
         return InsertionPoint(
             radius=scene.radius,
             method=InsertionPoint.METHOD,
             samples=samples,
             unit=int(UNITS),
             quantities={
-                name: Weights(int(sums[k]), int(products[k, k]), measures[k])
+                name: Weights(int(sums[k]), int(products[k, k]), units[k])
                 for name, k in sampled.items()
             },
             products={
@@ -323,7 +323,7 @@ def inserted(scene, quantities, shell, seed):
     return Sampler(BLOCK, count, point, COST_RATIO * scene.discs)
 
 
-def _sampled_measures(scene):
+def _volume_and_areas(scene):
     """Return volume and areas for a mean weight of 1, in the order of ``QUANTITIES``.
 
     Areas are those of ``theory.many.methods.surfaces``: of any pair, or of one disc at one wall.
@@ -337,7 +337,7 @@ def _sampled_measures(scene):
 
 
 def expected(scene):
-    """Return an estimate of the ``Measures`` of a ``Scene`` from a few blocks of the stream 0.
+    """Return an estimate of the ``Derivatives`` of a ``Scene`` from a few blocks of the stream 0.
 
     It is the same on every machine, and None if the discs fit in no sample.
     """

@@ -7,7 +7,7 @@ import pytest
 
 from twodiscs.model.checks import InputError
 from twodiscs.model.scene import Scene
-from twodiscs.sampling.many import measures
+from twodiscs.sampling.many import insertions
 from twodiscs.theory.many import methods
 
 GASES = [
@@ -24,8 +24,8 @@ GASES = [
 @pytest.mark.parametrize("scene", GASES, ids=repr)
 def test_volume_and_areas_are_exact(scene):
     """Five sigma of each."""
-    found, errors = measures.sample(scene, 200_000, 2)
-    for value, error, true in zip(found, errors, methods.measures(scene), strict=True):
+    found, errors = insertions.sample(scene, 200_000, 2)
+    for value, error, true in zip(found, errors, methods.known_derivatives(scene), strict=True):
         assert abs(value - true) <= 5 * error
         assert error > 0 or true == 0
 
@@ -49,7 +49,7 @@ def test_the_volume_is_that_of_rejection(scene):
         dx = np.abs(x[i] - x[j])
         dx = np.minimum(dx, scene.width - dx) if scene.periodic else dx
         free &= dx**2 + (y[i] - y[j]) ** 2 >= scene.contact_distance**2
-    found, errors = measures.sample(scene, 100_000, 4)
+    found, errors = insertions.sample(scene, 100_000, 4)
     rejected = np.log(free.mean()) + scene.discs * np.log(scene.range_x * scene.range_y)
     error = np.sqrt((1 - free.mean()) / free.mean() / n)
     assert abs(found.log_volume - rejected) < 5 * np.hypot(error, errors.log_volume)
@@ -62,7 +62,7 @@ def test_errors_are_those_of_repetitions(scene):
     In a channel most of a ratio to the volume is known from their covariance.
     """
     many = [
-        measures.estimate(scene, *measures.run_blocks(scene, 5, k, k + 1), measures.BLOCK)
+        insertions.estimate(scene, *insertions.run_blocks(scene, 5, k, k + 1), insertions.BLOCK)
         for k in range(200)
     ]
     values = np.array([value for value, _ in many])
@@ -76,17 +76,21 @@ def test_errors_are_those_of_repetitions(scene):
 def test_where_a_draw_fits_once_in_a_million():
     """And the error is still a few per cent."""
     scene = Scene(1.5, 1.0, 0.28, discs=3)
-    free = np.exp(methods.measures(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    free = (
+        np.exp(methods.known_derivatives(scene).log_volume) / (scene.range_x * scene.range_y) ** 3
+    )
     assert free < 1e-4
-    found, errors = measures.sample(scene, 2_000_000, 1)
+    found, errors = insertions.sample(scene, 2_000_000, 1)
     assert errors.log_volume < 0.05
-    assert abs(found.log_volume - methods.measures(scene).log_volume) < 5 * errors.log_volume
+    assert (
+        abs(found.log_volume - methods.known_derivatives(scene).log_volume) < 5 * errors.log_volume
+    )
 
 
 def test_shards_add_up():
     scene = GASES[4]
-    whole = measures.run_blocks(scene, 7, 0, 5)
-    parts = [measures.run_blocks(scene, 7, a, b) for a, b in ((0, 1), (1, 4), (4, 5))]
+    whole = insertions.run_blocks(scene, 7, 0, 5)
+    parts = [insertions.run_blocks(scene, 7, a, b) for a, b in ((0, 1), (1, 4), (4, 5))]
     for one, *pieces in zip(whole, *parts, strict=True):
         assert one.dtype == np.int64
         assert np.array_equal(one, sum(pieces))
@@ -95,4 +99,4 @@ def test_shards_add_up():
 def test_no_room_is_a_sentence():
     scene = Scene(1.5, 1.0, 0.13, discs=16)
     with pytest.raises(InputError, match="in none of them 16 discs fit"):
-        measures.sample(scene, 1000, 1)
+        insertions.sample(scene, 1000, 1)
