@@ -2,15 +2,44 @@
 
 import ast
 import re
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from twodiscs.model.sources import PACKAGES, ROOT, imports_of, modules
+import twodiscs
 
 REPOSITORY = Path(__file__).parents[1]
+
+#: The folder of the packages, and the packages.
+ROOT = Path(twodiscs.__file__).parents[1]
+PACKAGES = ("twodiscs", "twodiscs_paper")
+
+
+def name_of(path):
+    """Return the parts of the dotted name of the module in a file, as a tuple."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return parts[:-1] if parts[-1] == "__init__" else parts
+
+
+#: {module: its file}.
+FILES = {name_of(path): path for name in PACKAGES for path in sorted((ROOT / name).rglob("*.py"))}
+
+
+@cache
+def imports_of(module):
+    """Return the modules of the packages that a module imports directly, also in functions."""
+    found = set()
+    for node in ast.walk(ast.parse(FILES[module].read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {tuple(alias.name.split(".")) for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = tuple(node.module.split("."))
+            found |= {base, *((*base, alias.name) for alias in node.names)}
+    packages = {(package,) for package in PACKAGES}
+    return (found & FILES.keys()) - packages - {module[:depth] for depth in range(len(module))}
 
 
 def entries(folder):
@@ -33,8 +62,8 @@ def circle(graph):
 
 def imported_rooms():
     """Return {room: rooms that its modules import}; a room is a folder or module of a package."""
-    found = {module[1]: set() for module in modules() if len(module) > 1}
-    for module in modules():
+    found = {module[1]: set() for module in FILES if len(module) > 1}
+    for module in FILES:
         if len(module) > 1:
             found[module[1]] |= {other[1] for other in imports_of(module)} - {module[1]}
     found["cli"] |= found.pop("__main__") - {"cli"}  # which calls it
@@ -65,25 +94,25 @@ def test_the_drawing_shows_which_room_uses_which():
 def test_the_library_imports_nothing_of_the_paper():
     upwards = [
         ".".join(module)
-        for module in modules()
+        for module in FILES
         if module[0] == "twodiscs" and any(t[0] != "twodiscs" for t in imports_of(module))
     ]
     assert upwards == []
 
 
 def test_no_module_imports_itself_by_a_detour():
-    graph = {module: set(imports_of(module)) - {module} for module in modules()}
+    graph = {module: set(imports_of(module)) - {module} for module in FILES}
     assert circle(graph) == ()
 
 
-FOLDERS = sorted({module[:depth] for module in modules() for depth in range(1, len(module))})
+FOLDERS = sorted({module[:depth] for module in FILES for depth in range(1, len(module))})
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids="/".join)
 def test_what_stands_in_a_folder_imports_one_way(folder):
     """Two folders in it, or a folder and a module, do not import each other either."""
     depth, graph, said = len(folder) + 1, {}, {}
-    for module in modules():
+    for module in FILES:
         for target in imports_of(module):
             one, other = module[:depth], target[:depth]
             if one != other and one[:-1] == other[:-1] == folder:
