@@ -180,6 +180,7 @@ def test_a_number_takes_its_rows(rows):
         'value(smallest(of(rows, estimate: given), "time", "estimate"), "estimate", 1)': "$-6$",
         'value(largest(of(rows, event: "hop"), "time"), "law", 1)': None,
         'whole(largest(of(rows, time: 2), "time"), "law")': "3",  # the first of several
+        'whole(largest(rows, "law"), "time")': "2",  # among rows that have one
         'value(of(rows, event: "door"), "law", 1)': None,
         'power-of-two(first(rows), "stderr")': "$2^(-2)$",
         'shown(repr(grouped(rows, "event", "time").keys()))':
