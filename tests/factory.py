@@ -17,6 +17,10 @@ BOX = Box(1.5, 1.0)
 RADII = (0.02, 0.1, 0.2, 0.24, 0.3, 0.36, 0.38)
 
 
+#: The class of the points of each stage.
+POINTS = {point.stage: point for point in (MonteCarloPoint, DynamicsPoint, IntervalsPoint)}
+
+
 def scenes(radii=RADII):
     return [BOX.scene(radius) for radius in radii]
 

@@ -28,7 +28,7 @@ from twodiscs.figures.catalogue import FIGURES
 from twodiscs_paper.configuration import load
 from twodiscs_paper.configuration.load import read
 from twodiscs_paper.pipeline import cost
-from twodiscs_paper.pipeline.results import verdict
+from twodiscs_paper.pipeline.results.verdict import verdict
 
 PAGES = [
     *(REPOSITORY / name for name in ("README.md", "CONTRIBUTING.md")),
@@ -369,6 +369,6 @@ def test_numbers_of_rows_are_those_of_the_page(checked):
 
 
 def test_the_example_passes(checked):
-    failures, said = verdict.verdict({"look": SCENE_TABLES["check"].read(checked)}, {})
+    failures, said = verdict({"look": SCENE_TABLES["check"].read(checked)})
     assert not failures
     assert said.startswith("look: ")

@@ -10,9 +10,8 @@ import pytest
 from checkout import REPOSITORY
 
 import twodiscs as td
-from twodiscs_paper.catalogue import TABLES
-from twodiscs_paper.pipeline.jobs.build import TARGETS
-from twodiscs_paper.pipeline.jobs.figure import ENTRIES
+from twodiscs_paper.catalogue import ENTRIES, TABLES
+from twodiscs_paper.pipeline.build import TARGETS
 
 pytest.importorskip("sphinx", reason="Sphinx builds the site")
 

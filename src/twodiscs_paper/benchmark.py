@@ -1,6 +1,6 @@
-"""Measure the speed of the engines side by side.
+"""The speed of the engines side by side.
 
-    python -m twodiscs_paper.benchmark --scenes config/scenes/*.yaml --output results/benchmark.csv
+    snakemake --cores 2 benchmark
 
 All variants of a benchmark take turns, repeatedly, and their medians are compared. If the machine
 slows down, all variants slow down. All numbers are processor times of one core, except the speed-up
@@ -12,12 +12,10 @@ import multiprocessing
 import time
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from statistics import median
 
 import numpy as np
 
-from twodiscs.arguments import Parser, run
 from twodiscs.dynamics import counting
 from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.intervals import hop_intervals
@@ -32,7 +30,6 @@ from twodiscs.sampling.starts import states
 from twodiscs.theory.exact import event_rate
 from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.accuracy_cost import scalar
-from twodiscs_paper.studies.effects.study import Benchmark, EffectsCost
 
 SCENE = Scene(1.5, 1.0, 0.2)
 REPETITIONS = 7
@@ -339,27 +336,7 @@ def benchmarks(effects):
     return rows
 
 
-def main():
-    """Run the benchmarks and write the table."""
-    parser = Parser(description=__doc__)
-    parser.add_argument("--scenes", nargs="*", default=[], help="files of scenes with effects")
-    parser.add_argument("--table", choices=("benchmark", "effects_cost"), default="benchmark")
-    parser.add_argument("--output", default="results/benchmark.csv")
-    given = parser.parse_args()
-    requests = (request for path in given.scenes for request in load(read(path)).scenes)
-    effects = {r.name: r.box.effects for r in requests if r.box.family == "effects"}
-    quick = given.table == "effects_cost"
-    rows = effects_rows(effects, **QUICK) if quick else benchmarks(effects)
-    table = EffectsCost if quick else Benchmark
-    Path(given.output).parent.mkdir(parents=True, exist_ok=True)
-    table.write(given.output, [table.empty(**row) for row in rows])
-    for row in rows:
-        last = f"± {row['stderr']:.2g}" if "stderr" in row else f"{row['ratio']:.3g}"
-        print(
-            f"{row['benchmark']:<34}{row['variant']:<24}{row['value']:>10.4g} {row['unit']:<4}"
-            f"{last:>10}"
-        )
-
-
-if __name__ == "__main__":
-    run(main)
+def effects_of(paths):
+    """Return {name: effects} of the scenes of two discs in the files at ``paths``."""
+    requests = (request for path in paths for request in load(read(path)).scenes)
+    return {r.name: r.box.effects for r in requests if r.box.family == "effects"}

@@ -1,7 +1,7 @@
 """All studies: each is an analysis with its own folder, tables and figures.
 
 Each folder of ``studies``, and ``errata``, declares one or several studies in its module ``study``.
-Target, key in the configuration, forecast, report and page follow from the declaration. Standard
+Target, key in the configuration, report and page follow from the declaration. Standard
 library only: the Snakefile imports this module.
 """
 
@@ -9,7 +9,6 @@ from importlib import import_module
 from pathlib import Path
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
-from twodiscs.comparison.tables.cost import Forecast
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
 from twodiscs_paper.studies.effects.study import Benchmark
 from twodiscs_paper.study import Study
@@ -33,4 +32,25 @@ ENTRIES = {**FIGURES, **STUDY_FIGURES, "animation": ANIMATION}
 
 #: The tables of studies, {name: table}, and all tables.
 STUDY_TABLES = {table.name(): table for study in STUDIES.values() for table in study.tables}
-TABLES = {**SCENE_TABLES, **STUDY_TABLES, "forecast": Forecast, "benchmark": Benchmark}
+TABLES = {**SCENE_TABLES, **STUDY_TABLES, "benchmark": Benchmark}
+
+#: The tables with seconds that belong to no study, and the documents that show them.
+TIMED = {"cost", "benchmark", "paper", "paper_numbers", "report"}
+TIMED |= {name for study in STUDIES.values() for name in study.timed}
+
+
+def read_table(path):
+    """Return the rows of the table at ``path``.
+
+    The name of a file is that of its table. A part of a table is in a folder of this name.
+    """
+    path = Path(path)
+    return TABLES[path.stem if path.stem in TABLES else path.parent.name].read(path)
+
+
+def is_reproducible(path):
+    """Return whether a result is the same bytes on every run: a table or figure without seconds."""
+    path = Path(path)
+    figure = STUDY_FIGURES.get(path.stem) if path.suffix != ".csv" else None
+    timed = not TIMED.isdisjoint(figure.tables if figure else [path.stem])
+    return path.suffix in (".csv", ".pdf", ".png", ".gif") and not timed

@@ -25,8 +25,7 @@ class Study:
     ``figures`` are {name: ``Entry``}. ``about_plain`` studies are about scenes without effects.
     ``seconds`` is about how long the table takes: a number, or a function of a ``Configuration``.
     ``timed`` tables hold seconds, which differ from run to run. Pages list studies by their
-    ``order``. If a study has a function ``due``, the scores z in its first table are part of the
-    check. The function yields the rows that a ``Configuration`` requires, each as {column: value}.
+    ``order``. The scores z in the first table of a ``checked`` study are part of the check.
     """
 
     name: str
@@ -40,7 +39,7 @@ class Study:
     parts: Callable = lambda configuration: {}
     about_plain: bool = True
     timed: tuple = ()
-    due: Callable | None = None
+    checked: bool = False
 
 
 def scaled(budget, divisor, least, most):

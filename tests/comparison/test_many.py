@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scalar_many
+from factory import POINTS
 
 import twodiscs as td
 from twodiscs.comparison.measured.measurements import Measurements
@@ -26,7 +27,6 @@ from twodiscs.points import estimates
 from twodiscs.sampling import montecarlo, starts
 from twodiscs.sampling.blocks import rounds
 from twodiscs.theory import exact, virial
-from twodiscs_paper.pipeline.jobs.table import POINTS
 
 #: With an exact value, and without; between walls, and on a ring.
 SCENES = {

@@ -325,26 +325,20 @@ def test_rows_of_the_histogram(theory, laws):
 # The time of jobs -----------------------------------------------------------------------------
 
 
-def test_cost_is_by_stage_and_radius_and_set_against_the_forecast():
-    """The total has only jobs with a forecast."""
+def test_cost_is_by_stage_and_radius():
     points = {
         "monte_carlo": [hits_point(0.1, 3)],
         "dynamics": [counts_point(0.2, events=5), counts_point(0.1, events=7)],
         "intervals": [bins_point(0.1, intervals=11)],
     }
     jobs = [(stage, point.radius) for stage, some in points.items() for point in some]
-    rows = Cost.rows(points, dict.fromkeys(jobs, 0.5), {})
-    assert [tuple(row.values())[:4] for row in rows] == [
+    rows = Cost.rows(points, dict.fromkeys(jobs[1:], 0.5))
+    assert [tuple(row.values()) for row in rows] == [
         ("dynamics", 0.1, 7, 0.5),
         ("dynamics", 0.2, 5, 0.5),
         ("intervals", 0.1, 11, 0.5),
-        ("monte_carlo", 0.1, 3, 0.5),
+        ("monte_carlo", 0.1, 3, None),
     ]
-    assert all(row["forecast_seconds"] is row["ratio"] is None for row in rows)
-    forecast = {("dynamics", 0.1): 0.25, ("monte_carlo", 0.1): 1.0, ("dynamics", 0.3): 7.0}
-    again = Cost.rows(points, dict.fromkeys(jobs, 0.5), forecast)
-    assert [row["ratio"] for row in again] == [2.0, None, None, 0.5, 0.8]
-    assert tuple(again[-1].values()) == ("total", None, 10, 1.0, 1.25, 0.8)
 
 
 # With effects -----------------------------------------------------------------------------------

@@ -91,11 +91,11 @@ def test_every_table_of_a_scene_is_known_and_makes_its_rows():
         for table in vars(import_module(f"{base.__package__}.{path.stem}")).values()
         if isclass(table) and issubclass(table, Table)
     }
-    assert declared - {"table"} == {*SCENE_TABLES, "forecast"}
+    assert declared - {"table"} == {*SCENE_TABLES}
     assert all(
         callable(table.rows)
         for name, table in EVERY_TABLE.items()
-        if name not in ("effects_cost", "forecast", "benchmark")
+        if name not in ("effects_cost", "benchmark")
     )
 
 
@@ -104,7 +104,7 @@ def test_contract_columns_are_there():
         "mean_times": "radius,event,exact,estimate,stderr,z,count,ergodic_components",
         "volume": "radius,quantity,method,exact,estimate,stderr,z,samples",
         "areas": "radius,quantity,method,exact,estimate,stderr,z,samples",
-        "cost": "stage,radius,events,seconds,forecast_seconds",
+        "cost": "stage,radius,events,seconds",
     }
     for name, columns in contract.items():
         assert set(columns.split(",")) <= set(SCENE_TABLES[name].columns)
@@ -133,8 +133,6 @@ COST_ROW = {
     "radius": 1e-05,
     "events": 2**53 + 1,
     "seconds": 0.1 + 0.2,
-    "forecast_seconds": None,
-    "ratio": None,
 }
 
 
@@ -148,8 +146,7 @@ def test_a_table_is_read_as_it_was_written(tmp_path, table, row):
 def test_cells_have_all_digits_and_lines_end_alike(tmp_path):
     Cost.write(tmp_path / "x.csv", [COST_ROW])
     assert (tmp_path / "x.csv").read_bytes() == (
-        b"stage,radius,events,seconds,forecast_seconds,ratio\n"
-        b"dynamics,1e-05,9007199254740993,0.30000000000000004,,\n"
+        b"stage,radius,events,seconds\ndynamics,1e-05,9007199254740993,0.30000000000000004\n"
     )
     Check.write(tmp_path / "x.csv", [CHECK_ROW])
     assert (tmp_path / "x.csv").read_text().splitlines()[1] == (
@@ -171,7 +168,7 @@ def test_a_cell_that_a_row_does_not_name_is_empty(tmp_path):
 def test_numpy_scalars_are_written_as_plain_numbers(tmp_path):
     row = {**COST_ROW, "events": np.int64(7), "seconds": np.float64(0.1)}
     Cost.write(tmp_path / "x.csv", [row])
-    assert (tmp_path / "x.csv").read_text().endswith("dynamics,1e-05,7,0.1,,\n")
+    assert (tmp_path / "x.csv").read_text().endswith("dynamics,1e-05,7,0.1\n")
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def test_ten_times_the_accuracy_takes_a_hundred_times_the_work():
 
 def test_the_price_of_a_point_is_that_of_its_shards():
     request = scene(shard_events=1e8, accuracy=1e-4, event_budget=1e12)
-    parts = cost.run_of(request, "dynamics", 0.24).parts
+    parts = cost.run_at(request, "dynamics", 0.24).parts
     work = sum(
         (stop - first) * parts[name].block_events * parts[name].cost_ratio
         for name, first, stop in cost.shards(request, "dynamics", 0.24)
@@ -82,7 +82,7 @@ def test_shards_cover_all_blocks_once(stage):
         watch={"volume": True, "mean_times": True,
                "hop_histogram": {"radii": [0.24], "intervals": 1e7}},
     )  # fmt: skip
-    parts = cost.run_of(request, stage, 0.24).parts
+    parts = cost.run_at(request, stage, 0.24).parts
     shards = cost.shards(request, stage, 0.24)
     assert {part for part, *_ in shards} == {*parts}
     for part, run in parts.items():

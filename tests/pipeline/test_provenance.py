@@ -1,7 +1,10 @@
 """The provenance of results."""
 
+import os
 import re
 import subprocess
+
+import pytest
 
 from twodiscs_paper.pipeline.results import provenance
 
@@ -11,20 +14,57 @@ def git(folder, *words):
     subprocess.run(["git", "-C", folder, *identity, *words], check=True, capture_output=True)
 
 
-def test_the_commit_is_that_of_the_template_and_says_if_files_differ(tmp_path):
-    assert provenance.commit(tmp_path) == "unknown"
-    git(tmp_path, "init", "-q")
-    assert provenance.commit(tmp_path) == "unknown"
-    file = tmp_path / "paper.typ"
-    file.write_text("one\n")
-    git(tmp_path, "add", "paper.typ")
-    git(tmp_path, "commit", "-q", "-m", "One")
-    clean = provenance.commit(tmp_path)
+@pytest.fixture
+def repository(tmp_path):
+    """A repository with one commit of one file."""
+    folder = tmp_path / "repository"
+    folder.mkdir()
+    git(folder, "init", "-q")
+    assert provenance.commit(folder) == "unknown"  # before the first commit
+    (folder / "paper.typ").write_text("one\n")
+    git(folder, "add", "paper.typ")
+    git(folder, "commit", "-q", "-m", "One")
+    return folder
+
+
+def test_the_commit_is_that_of_the_sources_and_says_if_files_differ(repository):
+    clean = provenance.commit(repository)
     assert re.fullmatch(r"[0-9a-f]{12}", clean)
-    git(tmp_path, "tag", "v1")
-    assert provenance.commit(tmp_path) == clean
-    file.write_text("two\n")
-    assert provenance.commit(tmp_path) == f"{clean} with changes"
+    git(repository, "tag", "v1")
+    assert provenance.commit(repository) == clean
+    (repository / "paper.typ").write_text("two\n")
+    assert provenance.commit(repository) == f"{clean} with changes"
+
+
+def test_a_worktree_has_its_own_commit_whatever_repository_a_hook_is_about(
+    repository, tmp_path, monkeypatch
+):
+    git(repository, "worktree", "add", "-q", tmp_path / "other")
+    (tmp_path / "other" / "paper.typ").write_text("two\n")
+    git(tmp_path / "other", "commit", "-q", "-a", "-m", "Two")
+    first, second = provenance.commit(repository), provenance.commit(tmp_path / "other")
+    assert first != second
+    monkeypatch.setenv("GIT_DIR", str(repository / ".git"))
+    monkeypatch.setenv("GIT_WORK_TREE", str(repository))
+    assert provenance.commit(tmp_path / "other") == second
+
+
+def test_packages_in_the_repository_of_somebody_else_have_no_commit(repository):
+    installed = repository / ".venv" / "share"
+    installed.mkdir(parents=True)
+    (installed / "paper.typ").write_text("one\n")
+    assert provenance.commit(installed) == "unknown"
+
+
+def test_without_git_nothing_is_said_of_changes(repository, monkeypatch):
+    known = provenance.provenance(repository, [repository / "paper.typ"])
+    assert known["changed_since_the_commit"] is False
+    monkeypatch.setenv("PATH", os.devnull)
+    unknown = provenance.provenance(repository, [repository / "paper.typ"])
+    assert unknown["commit"] is unknown["changed_since_the_commit"] is None
+    assert {**unknown, "commit": 0, "changed_since_the_commit": 0} == {
+        **known, "commit": 0, "changed_since_the_commit": 0,
+    }  # fmt: skip
 
 
 def test_versions_are_those_installed():

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from factory import BOX, Laws, bins_point, counts_point, hits_point, theory_rows
+from factory import BOX, POINTS, Laws, bins_point, counts_point, hits_point, theory_rows
 
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.model.checks import InputError
@@ -16,7 +16,6 @@ from twodiscs.points.digests import read_json, write_json
 from twodiscs.points.dynamics import Strata, StripCount
 from twodiscs.points.intervals import WideBins
 from twodiscs.points.monte_carlo import Hits, InsertionPoint, MonteCarloPoint, Weights
-from twodiscs_paper.pipeline.jobs.table import POINTS
 
 LAW = Laws(BOX.scene(0.1))
 RNG = np.random.default_rng(6)

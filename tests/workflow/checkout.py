@@ -72,6 +72,9 @@ QUICKER = (
     ("accuracy_cost/measure.py", "REPETITIONS = 16", "REPETITIONS = 4"),
 )
 
+#: The rules that build nothing but lists of files: targets, and checksums of sources.
+AUXILIARY = r"all|default|(\w+_)?code"
+
 #: For a module whose files are in a separate folder.
 BELOW = 'config:\n        config["discs"]\n    prefix:\n        "below"'
 
@@ -157,16 +160,17 @@ class Checkout:
         return run
 
     def jobs(self, *arguments):
-        """Return the jobs of a dry run, sorted: (rule, wildcards as a tuple of "name=value")."""
+        """Return the jobs of a dry run, sorted: (rule, wildcards as a tuple of "name=value").
+
+        Jobs that only list files are left out.
+        """
         found = []
         for line in self.snakemake("--dry-run", *arguments).stdout.splitlines():
             if start := re.match(r"(?:local)?rule (\w+):$", line):
                 found.append([start[1], ()])
             elif wildcards := re.match(r"    wildcards: (.+)$", line):
                 found[-1][1] = tuple(wildcards[1].split(", "))
-        return sorted(
-            (rule, wildcards) for rule, wildcards in found if rule not in ("all", "default")
-        )
+        return sorted((rule, words) for rule, words in found if not re.fullmatch(AUXILIARY, rule))
 
     def edit(self, path, text):
         """Append ``text`` to a file."""

@@ -76,7 +76,7 @@ def own(tmp_path_factory):
 def test_with_a_configuration_of_its_own_everything_is_built_in_that_folder(own):
     names = {*own.results()}
     assert {"tiny/areas.csv", "tiny/mean_times.csv"} < names
-    assert {*LOST, "report-workflow.html"} < names
+    assert {*LOST} < names
     assert "paper.pdf" not in names
     assert not (own.home.path / "results").exists()
     assert own.jobs(*there(own)) == []
@@ -87,7 +87,7 @@ def test_no_shell_reads_the_name_of_a_folder_as_a_command(own, tmp_path):
     place = copied(own, tmp_path / NAME)
     place.configuration.parent.mkdir()
     place.configuration.write_text(yaml.safe_dump(TINY))
-    place.snakemake("--cores", "2", "audit")
+    place.snakemake("--cores", "2", "--forcerun", "code", "manifest")
     for folder in (tmp_path, own.path, own.home.path):
         assert not [*folder.rglob("X")]
 
@@ -98,7 +98,7 @@ def test_every_path_in_a_shell_line_is_quoted(tmp_path):
     dry = "--dry-run", "--forceall", "--printshellcmds", "--", *targets
     lines = fresh(tmp_path / "a b $(touch X)").snakemake(*dry).stdout
     shells = [line for line in lines.splitlines() if "Shell command:" in line]
-    assert len(shells) > 50
+    assert len(shells) > 10
     for line in shells:
         outside = "".join(line.split("'")[::2])
         assert "touch X" not in outside
@@ -146,15 +146,11 @@ def test_as_a_module_it_builds_in_a_folder_with_a_prefix(own, tmp_path):
     use(place, TINY, "discs_", BELOW)
     place.snakemake("--cores", "2", "--", "discs_all", "mine.txt")
     assert manifest(place, "below/results") == manifest(own)
-    # Snakemake's own report is that of the other workflow.
-    assert {*place.results("below/results")} == {*own.results()} - {"report-workflow.html"}
+    assert {*place.results("below/results")} == {*own.results()}
     for name in ("points/dynamics/0.1.json", "mean_times.csv"):
         (tmp_path / "below" / "results" / "tiny" / name).unlink()
     place.snakemake("--cores", "2", "--", "discs_all")
     assert manifest(place, "below/results") == manifest(own)
-    place.snakemake("--cores", "2", "--", "discs_forecast")
-    place.snakemake("--cores", "1", "--", "discs_all")  # its costs are those forecast
-    place.snakemake("--cores", "1", "--", "discs_audit")
     kept = json.loads((tmp_path / "below" / "results" / "configuration.json").read_text())
     assert kept == TINY
     assert {path.name for path in tmp_path.iterdir()} == {
@@ -181,7 +177,7 @@ def test_in_a_storage_it_makes_the_same_files(own, tmp_path):
     storage = "--default-storage-provider", "fs", "--default-storage-prefix", str(store.path)
     place.snakemake("--cores", "2", *storage)
     assert manifest(store) == manifest(own)
-    assert {*own.results()} - {*store.results()} <= {"report-workflow.html"}
+    assert {*own.results()} == {*store.results()}
     assert place.jobs(*storage) == []
     (store.path / "results" / "tiny" / "check.csv").unlink()
     assert {"table", "check"} <= {rule for rule, _ in place.jobs(*storage)}

@@ -79,6 +79,11 @@ def queue(home):
     return profile(home, "queue", **settings)
 
 
+def is_point(words):
+    """Return whether a command runs the script of a point."""
+    return any(word.endswith(".point.py") for word in words)
+
+
 def kill_a_job(jobs):
     """Kill the first job below the folder ``jobs`` that counts events, and all that started it."""
     ends = time.monotonic() + 120
@@ -87,7 +92,7 @@ def kill_a_job(jobs):
             with suppress(psutil.NoSuchProcess, ValueError):
                 job = psutil.Process(int(file.read_text()))
                 processes = [job, *job.children(recursive=True)]
-                if any("twodiscs_paper.pipeline.jobs.point" in one.cmdline() for one in processes):
+                if any(is_point(one.cmdline()) for one in processes):
                     for one in processes:
                         with suppress(psutil.NoSuchProcess):
                             one.kill()

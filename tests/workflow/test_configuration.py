@@ -5,8 +5,6 @@ import re
 import pytest
 from checkout import Checkout
 
-from twodiscs_paper.pipeline.jobs.build import report_of
-
 #: One mistake for each place that can find one; other tests check the sentences.
 MISTAKES = {
     "an unknown key": ("seeed: 1\n", "unknown key 'seeed'"),
@@ -47,22 +45,6 @@ def test_a_file_that_cannot_be_read(unbuilt, tmp_path):
     said = "Configuration: config/config.yaml: must be UTF-8, which has no byte 0xe9 here"
     assert said in run.stderr.splitlines()
     assert "Traceback" not in run.stdout + run.stderr
-
-
-@pytest.mark.parametrize(
-    ("words", "path"),
-    [
-        ("--cores 2", "results/report-workflow.html"),
-        ("--cores 2 --configfile mine.yaml -- all", "there/report-workflow.html"),
-        ("--dry-run", None),
-        ("--cores 2 check", None),
-        ("--cores 2 --default-storage-provider fs --default-storage-prefix store", None),
-    ],
-)
-def test_a_build_of_everything_ends_with_snakemakes_report(words, path, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "mine.yaml").write_text("results: there\n")
-    assert report_of(["snakemake", *words.split()]) == path
 
 
 def test_a_mistake_on_the_command_line(unbuilt):

@@ -15,29 +15,20 @@ def test_after_a_full_build_there_is_nothing_to_do(complete):
     assert "Nothing to be done" in run.stdout + run.stderr
 
 
-def test_touched_files_and_edits_of_comments_and_docstrings_rerun_nothing(built):
+def test_touched_files_rerun_nothing(built):
     for folder, _, names in os.walk(built.path):
         if ".snakemake" not in folder:
             for name in names:
                 os.utime(os.path.join(folder, name))
-    source = "src/twodiscs"
-    built.edit(f"{source}/dynamics/counting.py", "# a remark\n")
-    built.edit(f"{source}/figures/motion/hop_histogram.py", "\n\n# a remark\n")
-    law = '"""Return the ``Law`` of a ``Scene``."""'
-    built.replace(f"{source}/dynamics/law.py", law, '"""The law\n\n    of a scene."""')
-    meaning = '"""expectation − exact, the effect of the thickness of the shell"""'
-    built.replace(f"{source}/comparison/tables/monte_carlo.py", meaning, '"""how far off"""')
-    table = '"""One row per radius and quantity: the exact values."""'
-    built.replace(f"{source}/comparison/tables/theory.py", table, '"""The exact values."""')
-    assert built.jobs() == []
+    run = built.snakemake("--dry-run")
+    assert "Nothing to be done" in run.stdout + run.stderr
 
 
 def test_one_more_radius_runs_one_job_of_each_kind(built):
     built.configure(lambda mapping: mapping["scenes"][0]["radii"].append(0.1234))
     jobs = built.jobs()
-    radius = SIX, "radius=0.1234"
     assert [job for job in jobs if any("radius=" in part for part in job[1])] == expected(
-        ("monte_carlo", *radius), ("dynamics", *radius)
+        *((stage, SIX, f"stage={stage}", "radius=0.1234") for stage in ("monte_carlo", "dynamics"))
     )
     assert not [job for job in jobs if WALLS in job[1]]
     assert {rule for rule, _ in jobs} == {
@@ -52,21 +43,36 @@ DOCUMENTS = [("paper",), ("report",), ("manifest",), ("provenance",)]
 COUNTED = {"monte_carlo", "dynamics", "intervals"}
 
 
-def test_edits_of_figures_redraw_those_figures_and_what_contains_them(built):
-    """One of each rule; the time stamp of the third is older than its figure."""
-    third = "src/twodiscs/figures/motion/hop_histogram.py"
-    for path in (
-        *("src/twodiscs/figures/motion/animation.py", "src/twodiscs_paper/studies/tails/figure.py"),
-        third,
-    ):
-        built.edit(path, CODE)
-    os.utime(built.path / third, (1e9, 1e9))
+def reasons(checkout, *targets):
+    """Return the sentences that a dry run prints as the reasons of its jobs."""
+    printed = checkout.snakemake("--dry-run", *targets).stdout
+    return [line.strip() for line in printed.splitlines() if "reason:" in line]
+
+
+def test_edit_of_a_figure_of_a_study_draws_it_again_and_is_named(built):
+    path = "src/twodiscs_paper/studies/tails/figure.py"
+    built.edit(path, CODE)
+    assert built.jobs() == expected(("shared_figure", "figure=tails"), *DOCUMENTS)
+    assert any(path in reason for reason in reasons(built, "tails"))
+
+
+def test_edit_of_a_study_measures_it_again(built):
+    built.edit("src/twodiscs_paper/studies/tails/measure.py", CODE)
     assert built.jobs() == expected(
-        ("animate", SIX, "figure=animation"),
-        ("shared_figure", "figure=tails"),
-        ("figure", SIX, "figure=hop_histogram"),
-        *DOCUMENTS,
+        ("study_table", "study=tails"), ("shared_figure", "figure=tails"), *DOCUMENTS
     )
+
+
+def test_edit_of_a_document_makes_documents_again(built):
+    built.edit("src/twodiscs_paper/pipeline/documents/report.py", CODE)
+    assert {rule for rule, _ in built.jobs()} == {"check", "paper", "report", "provenance"}
+
+
+def test_edit_of_the_script_of_points_makes_them_again(built):
+    built.edit("workflow/scripts/point.py", "# a remark\n")
+    rules = {rule for rule, _ in built.jobs()}
+    assert rules > COUNTED
+    assert not {"exact", "trajectory"} & rules
 
 
 def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built):
@@ -82,21 +88,29 @@ def test_edit_of_how_figures_look_redraws_all_of_them_and_computes_nothing(built
 def test_edit_of_columns_makes_tables_again_and_computes_nothing(built):
     built.edit("src/twodiscs/comparison/tables/base.py", CODE)
     rules = {rule for rule, _ in built.jobs()}
-    assert {"exact", "trajectory", "table", "check", "figure", "paper"} <= rules
+    assert {"exact", "trajectory", "table", "check", "figure", "study_table", "paper"} <= rules
     assert not COUNTED & rules
 
 
-def test_edit_of_the_engine_reruns_dynamics_and_what_follows(built):
-    """A trajectory follows the law of events and counts nothing."""
-    built.edit("src/twodiscs/dynamics/law.py", CODE)
-    jobs = built.jobs()
-    rules = {rule for rule, _ in jobs}
-    assert {"dynamics", "intervals", "trajectory", "check", "paper"} <= rules
-    assert ("study_table", ("study=effects",)) in jobs
-    assert not {"monte_carlo", "exact"} & rules
-    assert len([job for job in jobs if job[0] == "dynamics" and SIX in job[1]]) == 6
-    assert ("table", (SIX, "table=volume")) not in jobs
-    assert ("figure", (SIX, "figure=volume")) not in jobs
+def test_edit_of_the_physics_reruns_all_points_and_what_follows_and_is_named(built):
+    path = "src/twodiscs/dynamics/law.py"
+    everything = built.jobs("--forceall")
+    built.edit(path, CODE)
+    assert {*everything} - {*built.jobs()} == {("configuration", ())}
+    assert any(path in reason for reason in reasons(built))
+
+
+def test_results_are_kept_after_an_edit_that_does_not_matter(built):
+    """By ``--touch``, and the next edit is noticed."""
+    path = "src/twodiscs/dynamics/law.py"
+    point = built.path / "results/six/points/dynamics/0.2.json"
+    content = point.read_bytes()
+    built.edit(path, "# a remark\n")
+    built.snakemake("--cores", "1", "--touch")
+    assert built.jobs() == []
+    assert point.read_bytes() == content
+    built.edit(path, CODE)
+    assert {rule for rule, _ in built.jobs()} >= COUNTED
 
 
 def test_tighter_accuracy_reruns_dynamics_of_that_scene(built):

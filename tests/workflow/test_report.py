@@ -1,4 +1,4 @@
-"""The report, and Snakemake's own behind it, in a browser: all is shown and from nowhere else.
+"""The report in a browser: all is shown, and from nowhere else.
 
 Skipped where no Chromium is installed.
 """
@@ -13,19 +13,11 @@ import pytest
 from browser import ABSENT, BROWSER
 
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs.figures.kit.captions import Shown
-from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import STUDY_FIGURES
 from twodiscs_paper.pipeline.documents.captions import caption
 
 #: The scene that figures of no scene are about.
 SIX = {"name": "six", "width": 1.5, "height": 1.0}
-
-#: What the figures of each scene show.
-SHOWN = {
-    "six": Shown(Box(1.5, 1.0)),
-    "walls": Shown(Box(3.0, 1.0), {"right_wall_time", "top_wall_time"}),
-}
 
 pytestmark = pytest.mark.skipif(BROWSER is None, reason=ABSENT)
 
@@ -97,48 +89,6 @@ async function look() {
 }
 """
 
-#: Look at Snakemake's report: at the graph, at every result, at one figure in its place.
-LOOK_AT_WORKFLOW = """
-async function until(condition) {
-    while (!condition()) await new Promise(done => setTimeout(done, 50));
-}
-
-async function look() {
-    const seen = {problems, categories, results: {}};
-    await until(() => document.querySelector("#rulegraph canvas"));
-    const graph = document.querySelector("#rulegraph canvas");
-    const pixels = graph.getContext("2d").getImageData(0, 0, graph.width, graph.height).data;
-    seen.drawn = pixels.filter((_, i) => i % 4 == 3).some(alpha => alpha > 0);
-    seen.rules = rulegraph_spec.data[0].values.map(node => node.rule);
-    seen.welcome = document.querySelector("#app .prose").innerText;
-
-    const text = document.createElement("div");
-    for (const [path, {caption, data_uri, labels, mime_type}] of Object.entries(results)) {
-        text.innerHTML = caption;
-        seen.results[path] = {caption: text.innerText, labels, mime_type};
-        if (mime_type.startsWith("image/")) {
-            const image = new Image();
-            image.src = data_uri;
-            await new Promise((done, fail) => Object.assign(image, {onload: done, onerror: fail}));
-            seen.results[path].width = image.naturalWidth;
-        }
-    }
-
-    const [path, figure] = Object.entries(results).find(([path]) => path.endsWith("PLACED"));
-    app.setView({navbarMode: "resultinfo", resultPath: path, content: "img",
-                 contentPath: figure.data_uri});
-    const shown = () => document.querySelector("#app > div > div img");
-    await until(() => shown() && shown().complete);
-    const {left, right, top, bottom} = shown().getBoundingClientRect();
-    seen.placed = {left, top, right: innerWidth - right, bottom: innerHeight - bottom,
-                   caption: document.querySelector("#app nav").innerText};
-    return seen;
-}
-"""
-
-#: The tallest figure, which has to be made smaller.
-PLACED = "six/figures/mean_hop_time.png"
-
 
 def look_at(report, folder, look, width=1400):
     """Return what the script ``look`` sees of a ``report`` in a browser, as a dict."""
@@ -167,14 +117,6 @@ def look_at(report, folder, look, width=1400):
     return json.loads(html.unescape(found[1]))
 
 
-@pytest.fixture(scope="module")
-def seen(complete, tmp_path_factory):
-    """What a browser sees of Snakemake's report on everything."""
-    page = complete.path / "results" / "report-workflow.html"
-    look = LOOK_AT_WORKFLOW.replace("PLACED", PLACED)
-    return look_at(page, tmp_path_factory.mktemp("browser"), look)
-
-
 #: Pixels: a screen, and the narrowest window of this browser.
 @pytest.fixture(scope="module", params=[1280, 500])
 def front(request, complete, tmp_path_factory):
@@ -194,8 +136,8 @@ def plain(text):
     return " ".join(text.split())
 
 
-def test_nothing_goes_wrong_and_nothing_is_asked_for(seen, front):
-    assert seen["problems"] + front["problems"] == []
+def test_nothing_goes_wrong_and_nothing_is_asked_for(front):
+    assert front["problems"] == []
 
 
 def test_the_report_opens_on_verdict_agreement_and_animation(front, complete):
@@ -279,55 +221,3 @@ def test_links_of_the_report_lead_to_files(front, complete):
     files = {link for link in front["links"] if not link.startswith("#")}
     assert [link for link in files if not (results / link).is_file()] == []
     assert {"paper.pdf", "six/check.csv"} <= files
-
-
-def test_every_figure_is_shown_with_its_caption_and_category(seen, complete):
-    drawn = {
-        path.relative_to(complete.path).as_posix()
-        for path in (complete.path / "results").glob("**/figures/*.png")
-    }
-    shown = {path for path, found in seen["results"].items() if found["mime_type"] == "image/png"}
-    assert shown == drawn
-    entries = FIGURES | STUDY_FIGURES | {"animation": ANIMATION}
-    for path in shown:
-        _, *scene, _, name = path.removesuffix(".png").split("/")
-        entry, found = entries[name], seen["results"][path]
-        more = f" Scene {scene[0]}." if scene else ""
-        shown = SHOWN[scene[0] if scene else "six"]
-        assert plain(found["caption"]) == plain(entry.caption(shown)) + more
-        assert found["labels"] == entry.labels
-        assert found["width"] > 300
-        assert path in seen["categories"][entry.category][scene[0] if scene else "all scenes"]
-
-
-def test_every_table_and_the_manuscript_are_there(seen, complete):
-    made = (complete.path / "results").glob("**/*.csv")
-    unseen = {"grid.csv", "theory.csv", "trajectory.csv", "forecast.csv", "paper_numbers.csv"}
-    tables = {
-        p.relative_to(complete.path).as_posix()
-        for p in made
-        if p.name not in unseen and "parts" not in p.parts
-    }
-    held = {path for paths in seen["categories"]["Tables"].values() for path in paths}
-    assert held == tables
-    assert all(seen["results"][path]["caption"] for path in held)
-    assert seen["categories"]["Manuscript"] == {"Other": ["results/paper.pdf"]}
-
-
-def test_the_graph_of_the_workflow_is_drawn(seen):
-    assert seen["drawn"]
-    stages = {"monte_carlo", "dynamics", "intervals", "table", "check", "figure", "animate"}
-    assert stages <= set(seen["rules"])
-
-
-def test_the_first_page_says_what_it_is_about(seen):
-    welcome = plain(seen["welcome"])
-    assert "Two discs in a box" in welcome
-    assert "Scenes" not in welcome  # a module does not know its own from the other workflow's
-
-
-def test_a_tall_figure_fits_the_window_beside_its_caption(seen):
-    place = seen["placed"]
-    assert min(place[side] for side in ("left", "top", "right", "bottom")) >= 0
-    assert place["left"] > 300
-    assert plain(FIGURES["mean_hop_time"].caption(SHOWN["six"])) in plain(place["caption"])

@@ -117,7 +117,10 @@ def test_scenes_with_effects_call_for_what_has_a_place(unbuilt, tmp_path):
         assert tables == {*request.tables} - {"trajectory"}
         for stage in STAGES:
             points = [w for r, w in found if r == stage and f"scene={request.name}" in w]
-            expected = {(f"scene={request.name}", f"radius={key}") for key in request.keys[stage]}
+            expected = {
+                (f"scene={request.name}", f"stage={stage}", f"radius={key}")
+                for key in request.keys[stage]
+            }
             assert {*points} == expected
 
 
@@ -152,7 +155,7 @@ def test_a_file_builds_its_scene_alone(unbuilt):
 def test_what_is_built_once_is_what_is_asked_for(unbuilt, tmp_path):
     scene = {"name": "a", "box": {"width": 1.5, "height": 1}, "watch": {"volume": True}}
     path = tmp_path / "shared.yaml"
-    shared = {name for name, study in STUDIES.items() if study.shared}
+    shared = {*STUDIES}
     for names, studies in ((["errata", "report"], {"errata"}), (["paper"], shared)):
         path.write_text(yaml.safe_dump({"shared": names, "scenes": [scene]}))
         found = [

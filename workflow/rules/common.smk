@@ -1,33 +1,17 @@
-# Shared by all stages: the scenes, the paths of their files, and the fingerprints of the code.
+# Shared by all stages: the scenes, the files of the workflow, and the code of the jobs.
 import json
-import shutil
-import sys
 from dataclasses import replace
+from pathlib import Path
 
-from twodiscs.arguments import box_arguments, words
+import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs.figures.kit.captions import Shown
-from twodiscs.model.sources import fingerprint
-from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES
-from twodiscs_paper.configuration.request import (
-    GATHERED,
-    STAGES,
-    assigned,
-    braced,
-)
+from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, is_reproducible
+from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
 
 MAIN = CONFIGURATION.main  # the scene that the manuscript is about, if there is one
-
-# Jobs are started as `python`; with -P it does not look for modules in the folder of the run.
-found = shutil.which("python")
-if os.path.dirname(found or "") != os.path.dirname(sys.executable):
-    logger.warning(
-        f"Jobs start as python, which is {found} here, and not {sys.executable}, which"
-        " runs Snakemake: activate its environment if a job fails."
-    )
 
 # The threads of a job that measures speed: all cores, so no other job runs beside it. A report has no cores.
 ALL_CORES = workflow.resource_settings.cores or 1
@@ -57,12 +41,59 @@ SCENES = CONFIGURATION.folders
 RESULTS = CONFIGURATION.results
 CONFIGURED = [scene.name for scene in CONFIGURATION.scenes]
 
+# The studies that the scenes allow, and their parts.
+ALLOWED = {
+    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
+}
+PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
+
 if (days := cost.days(CONFIGURATION.scenes)) > 1:
-    days = float(f"{days:.2g}")
     logger.warning(
-        f"This configuration takes about {days:g} days of processor time;"
-        " snakemake forecast gives a better estimate."
+        f"This configuration takes about {float(f'{days:.2g}'):g} days of processor time."
     )
+
+# The folder of the Python packages.
+PACKAGES = Path(twodiscs.__file__).parents[1]
+
+
+def modules(*patterns):
+    """Return the sources that match any of some patterns, sorted."""
+    found = {path for pattern in patterns for path in PACKAGES.glob(pattern)}
+    return [local(os.path.relpath(path)) for path in sorted(found)]
+
+
+def study_folder(study):
+    """Return the folder of the sources of a study below ``PACKAGES``."""
+    return study.tables[0].__module__.rpartition(".")[0].replace(".", "/")
+
+
+def study_figures(study):
+    """Return the sources that draw the figures of a study."""
+    return modules(f"{study_folder(study)}/figure*.py")
+
+
+# The sources that jobs run, by groups. An edit reruns all jobs that have its group among their inputs.
+PHYSICS = ("model", "theory", "sampling", "dynamics", "points")
+CODE = {
+    "physics": modules(*(f"twodiscs/{part}/**/*.py" for part in PHYSICS)),
+    "tables": modules("twodiscs/comparison/**/*.py"),
+    "figures": modules("twodiscs/figures/**/*.py"),
+    "documents": modules("twodiscs_paper/pipeline/**/*.py"),
+    "benchmark": modules("twodiscs_paper/benchmark.py"),
+}
+for name, study in STUDIES.items():
+    own = modules("twodiscs_paper/study.py", f"{study_folder(study)}/**/*.py")
+    CODE[name] = [path for path in own if path not in study_figures(study)]
+
+
+def sums(*groups):
+    """Return the files of checksums of groups of sources."""
+    return [f"{RESULTS}/code/{group}.sha256" for group in groups]
+
+
+def code(script, *groups):
+    """Return the code of a job as inputs: its script, and the checksums of groups of sources."""
+    return [source(f"workflow/scripts/{script}.py"), *sums(*groups)]
 
 
 wildcard_constraints:
@@ -72,143 +103,44 @@ wildcard_constraints:
     part="[a-z_]+",
     first="[0-9]+",
     stop="[0-9]+",
-
-
-# Modules that compute nothing. A job uses only the entry of a catalogue that its parameters name. The
-# other modules refuse input, read arguments, draw a bar or name sources.
-NOT_COMPUTING = (
-    "twodiscs.figures.catalogue",
-    "twodiscs_paper.catalogue",
-    "twodiscs.comparison.scene_tables",
-    "twodiscs.arguments",
-    "twodiscs.comparison.measured.progress",
-    "twodiscs.model.checks",
-    "twodiscs.model.plugins",
-    "twodiscs.model.sources",
-)
-
-
-def code(*modules, without=()):
-    """Return the fingerprint of the code that a job runs: modules, and all that they import."""
-    return fingerprint(*modules, without=(*NOT_COMPUTING, *without))
+    group="|".join(CODE),
 
 
 def box(w):
-    """Return the arguments for the box of the scene of a job."""
+    """Return the parameters of the box of a job: of its scene, or of the main scene; or None."""
     scene = SCENES[w.scene] if "scene" in w.keys() else MAIN
-    return box_arguments(scene.box) if scene else []
+    return scene.box.parameters() if scene else None
 
 
-def minutes(stage=None):
-    """Return the limit of time of a job of a stage, longer with each retry."""
-    return lambda w, attempt: attempt * cost.minutes(SCENES[w.scene], stage or w.stage)
+def minutes(w, attempt):
+    """Return the limit of time of a job at one radius, longer with each retry."""
+    return attempt * cost.minutes(SCENES[w.scene], w.stage)
 
 
-def shards_of(stage):
-    """Return an input function: the shards of a point of a stage, none if one job does all its work."""
-
-    def files(w):
-        folder = f"{RESULTS}/{w.scene}/shards/{stage}/{w.radius}"
-        pieces = cost.shards(SCENES[w.scene], stage, float(w.radius))
-        return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
-
-    return files
+def shards(w):
+    """Return the shards of a point, none if one job does all its work."""
+    folder = f"{RESULTS}/{w.scene}/shards/{w.stage}/{w.radius}"
+    pieces = cost.shards(SCENES[w.scene], w.stage, float(w.radius))
+    return [f"{folder}/{part}-{first}-{stop}.json" for part, first, stop in pieces]
 
 
-def work_of(stage):
-    """Return a function of the wildcards: the arguments of the job of a stage at a radius."""
-    return lambda w: words(SCENES[w.scene].arguments(stage, w.radius))
+def figure_reads(w):
+    """Return {name: path} of the tables that a figure reads."""
+    return CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene"))
 
 
-def point_code(stage=None):
-    """Return a function of the wildcards: the fingerprint of the code that makes a point or a shard.
-
-    Only the jobs of a stage import the module of the stage. Points are made without the estimates
-    that follow from them.
-    """
-
-    def of_job(w):
-        run = STAGES[stage or w.stage]
-        others = tuple({*STAGES.values()} - {run})
-        others += ("twodiscs.points.estimates",)
-        return code("twodiscs_paper.pipeline.jobs.point", without=others)
-
-    return of_job
+def radius(w):
+    """Return the radius of the trajectory that a figure shows, None for other figures."""
+    shown = "trajectory" in ENTRIES[w.figure].tables
+    return SCENES[w.scene].quantities.trajectory if shown else None
 
 
-def says(table):
-    """Return the labels of a table in Snakemake's report."""
-    return {"table": table.name(), "what a row says": table.meaning()}
+def own_code(w):
+    """Return the sources of the figure of a study that are not in the group of all figures."""
+    studies = (one for one in STUDIES.values() if w.figure in one.figures)
+    return [path for study in studies for path in study_figures(study)]
 
 
-def about(w):
-    """Return the scene of a figure; for a figure without a scene the main scene, or None."""
-    return SCENES[w.scene] if "scene" in w.keys() else MAIN
-
-
-def origin(w):
-    """Return the origin of a figure for its metadata."""
-    scene = about(w)
-    start = f"scene {scene.name}, " if scene else ""
-    return f"{start}seed {CONFIGURATION.seed}, code {figure_code(w)}"
-
-
-def radius_of(w):
-    """Return the arguments for the radius of a trajectory, for figures of a trajectory."""
-    has_trajectory = "trajectory" in ENTRIES[w.figure].tables
-    return ["--radius", str(about(w).quantities.trajectory)] if has_trajectory else []
-
-
-def figure_code(w):
-    """Return the fingerprint of the code that draws a figure."""
-    return code(
-        "twodiscs_paper.pipeline.jobs.figure",
-        "twodiscs.figures.kit.style",
-        ENTRIES[w.figure].module,
-    )
-
-
-def figure_tables(w, input):
-    """Return the tables that a figure reads as arguments."""
-    reads = CONFIGURATION.figure_reads(ENTRIES[w.figure], w.get("scene"))
-    return assigned(reads, input.tables)
-
-
-class Caption:
-    """The caption of a figure in Snakemake's report, which is composed when the report prints it.
-
-    The modules of figures take long to import. An object is no parameter that reruns a job.
-    """
-
-    def __init__(self, w):
-        self.figure, self.scene = w.figure, about(w)
-
-    def __str__(self):
-        scene = self.scene
-        shown = Shown(scene.box, scene.quantities.names) if scene else Shown()
-        return ENTRIES[self.figure].caption(shown)
-
-
-# The studies that the scenes allow, and their parts.
-ALLOWED = {
-    name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
-}
-PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
-
-
-def of_study(w):
-    """Return the study of a job."""
-    return ALLOWED[w.study]
-
-
-def study_code(w):
-    """Return the fingerprint of the code that makes the table of a study, or a part of the table."""
-    return code(
-        "twodiscs_paper.pipeline.jobs.study",
-        of_study(w).tables[0].__module__,
-    )
-
-
-def figure_files(figure):
-    """Return the files of a figure in all scenes."""
-    return [CONFIGURATION.figures(scene).get(figure, []) for scene in CONFIGURED]
+def study_reads(w):
+    """Return {name: path} of the tables that a study reads."""
+    return CONFIGURATION.study_reads(ALLOWED[w.study])

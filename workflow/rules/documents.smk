@@ -1,6 +1,5 @@
 # Documents from all results: the manuscript, the report, the manifest and the comparison with expected
-# results; and measurements of this machine: a forecast and the speed of the engines.
-from twodiscs_paper.pipeline.results.manifest import is_reproducible
+# results; and the speed of the engines on this machine.
 
 
 rule configuration:
@@ -45,10 +44,10 @@ if MAIN:
                 for path in CONFIGURATION.tables(scene.name).values()
             ],
             studied=CONFIGURATION.studied("tables"),
+            code=code("paper", "documents"),
         output:
             pdf=report(
                 f"{RESULTS}/paper.pdf",
-                caption="../report/paper.rst",
                 category="Manuscript",
                 labels={"document": "manuscript"},
             ),
@@ -62,12 +61,8 @@ if MAIN:
             scenes=CONFIGURATION.described(),
             seed=CONFIGURATION.seed,
             configuration=CONFIGURATION.configuration_hash(),
-            code=code("twodiscs_paper.pipeline.documents.manuscript"),
         script:
             "../scripts/paper.py"
-
-
-# Snakemake's own report is written after a build: profiles/default/config.yaml.
 
 
 report: "../report/workflow.rst"
@@ -77,7 +72,7 @@ rule report:
     """The report: verdict, agreement and key figures, with links to everything else."""
     input:
         results=[
-            rules.check.output,
+            rules.check.output if MEASURED else [],
             [
                 CONFIGURATION.study(name) if name in STUDIES else rules.paper.output
                 for name in CONFIGURATION.shared
@@ -89,6 +84,7 @@ rule report:
         ],
         configuration=rules.configuration.output.json,
         front=source("workflow/report/front.html"),
+        code=code("report", "documents"),
     output:
         html=f"{RESULTS}/report.html",
     log:
@@ -98,13 +94,12 @@ rule report:
     localrule: True
     params:
         scenes=CONFIGURATION.described(),
-        code=code("twodiscs_paper.pipeline.documents.report"),
     script:
         "../scripts/report.py"
 
 
 rule manifest:
-    """The SHA-256 of everything that holds no run times."""
+    """The SHA-256 of everything that holds no run times; `sha256sum --check` compares."""
     input:
         files=[path for path in rules.report.input.results if is_reproducible(path)],
     output:
@@ -115,15 +110,19 @@ rule manifest:
         f"{RESULTS}/benchmarks/manifest.tsv"
     localrule: True
     params:
-        code=code("twodiscs_paper.pipeline.results.manifest"),
+        names=lambda w, input, output: sorted(
+            os.path.relpath(path, os.path.dirname(output.manifest))
+            for path in input.files
+        ),
     shell:
-        "python -P -m twodiscs_paper.pipeline.results.manifest {input.files:q} --output {output.manifest:q} > {log:q} 2>&1"
+        '(cd "$(dirname {output.manifest:q})" && sha256sum {params.names:q}) > {output.manifest:q} 2> {log:q}'
 
 
 rule provenance:
     """The origin of the results: all that differs between two runs of the same configuration."""
     input:
         files=rules.report.input.results,
+        code=code("provenance", "documents"),
     output:
         json=f"{RESULTS}/provenance.json",
     log:
@@ -133,10 +132,8 @@ rule provenance:
     localrule: True
     params:
         sources=os.path.dirname(source("CITATION.cff")) or ".",
-        code=code("twodiscs_paper.pipeline.results.provenance"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.results.provenance {input.files:q} --sources {params.sources:q}"
-        " --output {output.json:q} > {log:q} 2>&1"
+    script:
+        "../scripts/provenance.py"
 
 
 rule explorer:
@@ -159,6 +156,7 @@ rule explorer:
                 "page.js",
             )
         ],
+        code=code("explorer", "physics", "documents"),
     output:
         html=f"{RESULTS}/explorer.html",
     log:
@@ -169,20 +167,8 @@ rule explorer:
     params:
         scenes=CONFIGURATION.described(),
         seed=CONFIGURATION.seed,
-        code=code("twodiscs_paper.pipeline.documents.explorer"),
     script:
         "../scripts/explorer.py"
-
-
-rule audit:
-    """Name every result that is no longer what its job wrote. Without output, it runs on every request."""
-    input:
-        configuration=rules.configuration.output.json,
-    log:
-        f"{RESULTS}/logs/audit.log",
-    localrule: True
-    shell:
-        "python -P -m twodiscs_paper.pipeline.results.audit --configuration {input.configuration:q} 2> {log:q}"
 
 
 rule verify:
@@ -214,29 +200,11 @@ use rule verify as renew with:
         ],
 
 
-rule forecast:
-    """The time of the configuration on this machine; tables of costs are compared with it."""
-    input:
-        configuration=rules.configuration.output.json,
-    output:
-        table=f"{RESULTS}/forecast.csv",
-    log:
-        f"{RESULTS}/logs/forecast.log",
-    localrule: True
-    threads: ALL_CORES
-    shell:
-        "python -P -m twodiscs_paper.pipeline.forecast --configuration @{input.configuration:q} --cores {threads}"
-        " --output {output.table:q} 2> {log:q}"
-
-
-# Costs are compared with a forecast if there is one; a table of costs does not require it.
-FORECAST = rules.forecast.output if exists(rules.forecast.output.table) else []
-
-
 rule benchmark:
     """How fast the engines are on this machine."""
     input:
         scenes=EFFECT_FILES,
+        code=code("benchmark", "physics", "benchmark"),
     output:
         table=f"{RESULTS}/benchmark.csv",
     log:
@@ -245,7 +213,5 @@ rule benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
     threads: ALL_CORES
-    params:
-        code=code("twodiscs_paper.benchmark"),
-    shell:
-        "python -P -m twodiscs_paper.benchmark --scenes {input.scenes:q} --output {output.table:q} > {log:q} 2>&1"
+    script:
+        "../scripts/benchmark.py"

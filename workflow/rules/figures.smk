@@ -6,14 +6,13 @@
 rule figure:
     """A figure of a scene, from its tables."""
     input:
-        tables=lambda w: CONFIGURATION.figure_reads(
-            ENTRIES[w.figure], w.get("scene")
-        ).values(),
+        tables=lambda w: figure_reads(w).values(),
+        code=code("figure", "figures", "physics"),
+        own_code=own_code,
     output:
         pdf=f"{RESULTS}/{{scene}}/figures/{{figure}}.pdf",
         png=report(
             f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
-            caption="../report/figure.rst",
             category=lambda w: ENTRIES[w.figure].category,
             subcategory="{scene}",
             labels=lambda w: ENTRIES[w.figure].labels,
@@ -27,22 +26,20 @@ rule figure:
     localrule: True
     params:
         box=box,
-        radius=radius_of,
-        tables=figure_tables,
-        origin=origin,
-        caption=Caption,
-        options=lambda w: str(ENTRIES[w.figure].options),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.figure {wildcards.figure} {params.box:q} {params.radius}"
-        " --tables {params.tables:q} --origin {params.origin:q} --output {output:q} > {log:q} 2>&1"
+        names=lambda w: [*figure_reads(w)],
+        options=lambda w: ENTRIES[w.figure].options,
+        radius=radius,
+        seed=CONFIGURATION.seed,
+    script:
+        "../scripts/figure.py"
 
 
 use rule figure as shared_figure with:
+    """A figure of a study, from its tables."""
     output:
         pdf=f"{RESULTS}/figures/{{figure}}.pdf",
         png=report(
             f"{RESULTS}/figures/{{figure}}.png",
-            caption="../report/shared_figure.rst",
             category=lambda w: ENTRIES[w.figure].category,
             subcategory="all scenes",
             labels=lambda w: ENTRIES[w.figure].labels,
@@ -57,11 +54,11 @@ use rule figure as shared_figure with:
 
 
 use rule figure as animate with:
+    """The animation of a trajectory."""
     output:
         gif=f"{RESULTS}/{{scene}}/figures/{{figure}}.gif",
         png=report(
             f"{RESULTS}/{{scene}}/figures/{{figure}}.png",
-            caption="../report/figure.rst",
             category=ANIMATION.category,
             subcategory="{scene}",
             labels=ANIMATION.labels,

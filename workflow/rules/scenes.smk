@@ -3,8 +3,23 @@
 # it is the sum of shards, which are jobs, too.
 
 
+rule code:
+    """The checksums of some sources. Jobs have them as an input, so an edit reruns those that run the code."""
+    input:
+        sources=lambda w: CODE[w.group],
+    output:
+        sums=f"{RESULTS}/code/{{group}}.sha256",
+    log:
+        f"{RESULTS}/logs/code/{{group}}.log",
+    localrule: True
+    shell:
+        "sha256sum {input.sources:q} | sed 's|  .*/|  |' > {output.sums:q} 2> {log:q}"
+
+
 rule exact:
     """Exact values at all radii of a scene: the regime, volume, areas, mean times."""
+    input:
+        code=code("table", "physics", "tables"),
     output:
         table=f"{RESULTS}/{{scene}}/{{table}}.csv",
     log:
@@ -17,103 +32,65 @@ rule exact:
     params:
         box=box,
         radii=lambda w: SCENES[w.scene].exact_radii(w.table),
-        code=lambda w: code(
-            "twodiscs_paper.pipeline.jobs.table",
-            "twodiscs.comparison.tables.theory",
-        ),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --radii {params.radii}"
-        " --output {output.table:q} > {log:q} 2>&1"
+    script:
+        "../scripts/table.py"
 
 
 rule monte_carlo:
     """Volume and areas at one radius, by Monte Carlo."""
     input:
-        shards=shards_of("monte_carlo"),
+        shards=shards,
+        code=code("point", "physics"),
     output:
-        point=f"{RESULTS}/{{scene}}/points/monte_carlo/{{radius}}.json",
+        point=f"{RESULTS}/{{scene}}/points/{{stage}}/{{radius}}.json",
     log:
-        f"{RESULTS}/logs/{{scene}}/monte_carlo/{{radius}}.log",
+        f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/monte_carlo/{{radius}}.tsv"
+        f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}.tsv"
+    wildcard_constraints:
+        stage="monte_carlo",
     resources:
-        runtime=minutes("monte_carlo"),
+        runtime=minutes,
     params:
         box=box,
-        work=work_of("monte_carlo"),
-        shards=lambda w, input: braced(input.shards),
-        code=point_code("monte_carlo"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.point monte_carlo {params.box:q} --radius {wildcards.radius}"
-        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
+        work=lambda w: SCENES[w.scene].arguments(w.stage, w.radius),
+    script:
+        "../scripts/point.py"
 
 
-rule dynamics:
+use rule monte_carlo as dynamics with:
     """Mean times at one radius: events counted by molecular dynamics."""
-    input:
-        shards=shards_of("dynamics"),
-    output:
-        point=f"{RESULTS}/{{scene}}/points/dynamics/{{radius}}.json",
-    log:
-        f"{RESULTS}/logs/{{scene}}/dynamics/{{radius}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/dynamics/{{radius}}.tsv"
-    resources:
-        runtime=minutes("dynamics"),
-    params:
-        box=box,
-        work=work_of("dynamics"),
-        shards=lambda w, input: braced(input.shards),
-        code=point_code("dynamics"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.point dynamics {params.box:q} --radius {wildcards.radius}"
-        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
+    wildcard_constraints:
+        stage="dynamics",
 
 
-rule intervals:
+use rule monte_carlo as intervals with:
     """The histogram of intervals between hops at one radius, by molecular dynamics."""
-    input:
-        shards=shards_of("intervals"),
-    output:
-        point=f"{RESULTS}/{{scene}}/points/intervals/{{radius}}.json",
-    log:
-        f"{RESULTS}/logs/{{scene}}/intervals/{{radius}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{scene}}/intervals/{{radius}}.tsv"
-    resources:
-        runtime=minutes("intervals"),
-    params:
-        box=box,
-        work=work_of("intervals"),
-        shards=lambda w, input: braced(input.shards),
-        code=point_code("intervals"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.point intervals {params.box:q} --radius {wildcards.radius}"
-        " {params.work:q} --shards {params.shards} --output {output.point:q} > {log:q} 2>&1"
+    wildcard_constraints:
+        stage="intervals",
 
 
-rule shard:
+use rule monte_carlo as shard with:
     """Some blocks of the work of a point of any stage, which do not depend on the accuracy."""
+    input:
+        code=code("point", "physics"),
     output:
-        shard=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
+        point=f"{RESULTS}/{{scene}}/shards/{{stage}}/{{radius}}/{{part}}-{{first}}-{{stop}}.json",
     log:
         f"{RESULTS}/logs/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.log",
     benchmark:
         f"{RESULTS}/benchmarks/{{scene}}/{{stage}}/{{radius}}_{{part}}-{{first}}-{{stop}}.tsv"
-    resources:
-        runtime=minutes(),
+    wildcard_constraints:
+        stage="|".join(STAGES),
     params:
         box=box,
-        work=lambda w: words(SCENES[w.scene].shard_arguments(w.stage, w.radius)),
-        code=point_code(),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.point {wildcards.stage} {params.box:q} --radius {wildcards.radius}"
-        " {params.work:q} --part {wildcards.part} --blocks {wildcards.first} {wildcards.stop}"
-        " --output {output.shard:q} > {log:q} 2>&1"
+        work=lambda w: SCENES[w.scene].shard_arguments(w.stage, w.radius),
 
 
 rule trajectory:
     """One trajectory, event by event."""
+    input:
+        code=code("table", "physics", "tables"),
     output:
         table=f"{RESULTS}/{{scene}}/trajectory.csv",
     log:
@@ -124,13 +101,8 @@ rule trajectory:
         box=box,
         radius=lambda w: SCENES[w.scene].quantities.trajectory,
         seed=lambda w: SCENES[w.scene].trajectory_seed,
-        code=lambda w: code(
-            "twodiscs_paper.pipeline.jobs.table",
-            "twodiscs.comparison.tables.trajectory",
-        ),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.table trajectory {params.box:q} --radius {params.radius}"
-        " --seed {params.seed} --output {output.table:q} > {log:q} 2>&1"
+    script:
+        "../scripts/table.py"
 
 
 rule table:
@@ -140,14 +112,12 @@ rule table:
         monte_carlo=lambda w: CONFIGURATION.points(w.scene, w.table, "monte_carlo"),
         dynamics=lambda w: CONFIGURATION.points(w.scene, w.table, "dynamics"),
         intervals=lambda w: CONFIGURATION.points(w.scene, w.table, "intervals"),
-        forecast=lambda w: FORECAST if w.table == "cost" else [],
+        code=code("table", "physics", "tables"),
     output:
         table=report(
             f"{RESULTS}/{{scene}}/{{table}}.csv",
-            caption="../report/table.rst",
             category="Tables",
             subcategory="{scene}",
-            labels=lambda w: says(SCENE_TABLES[w.table]),
         ),
     log:
         f"{RESULTS}/logs/{{scene}}/{{table}}.log",
@@ -159,33 +129,27 @@ rule table:
     params:
         box=box,
         areas=lambda w: SCENES[w.scene].quantities.areas,
-        monte_carlo=lambda w, input: braced(input.monte_carlo),
-        dynamics=lambda w, input: braced(input.dynamics),
-        intervals=lambda w, input: braced(input.intervals),
-        code=lambda w: code(
-            "twodiscs_paper.pipeline.jobs.table",
-            SCENE_TABLES[w.table].__module__,
-        ),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.table {wildcards.table} {params.box:q} --areas {params.areas}"
-        " --theory {input.theory:q} --monte_carlo {params.monte_carlo} --dynamics {params.dynamics}"
-        " --intervals {params.intervals} --forecast {input.forecast:q} --output {output.table:q} > {log:q} 2>&1"
+    script:
+        "../scripts/table.py"
+
+
+# The tables with comparisons of simulations: of scenes and of studies.
+MEASURED = [
+    CONFIGURATION.table("check", scene)
+    for scene in CONFIGURED
+    if "check" in SCENES[scene].tables
+] + [
+    CONFIGURATION.table(study.tables[0].name())
+    for study in STUDIES.values()
+    if study.checked and study.name in CONFIGURATION.shared
+]
 
 
 rule check:
     """Do exact theory, Monte Carlo and dynamics agree? If not, it fails and names the comparisons."""
     input:
-        tables=[
-            CONFIGURATION.table("check", scene)
-            for scene in CONFIGURED
-            if "check" in SCENES[scene].tables
-        ],
-        studies=[
-            CONFIGURATION.table(study.tables[0].name())
-            for study in STUDIES.values()
-            if study.due and study.name in CONFIGURATION.shared
-        ],
-        configuration=f"{RESULTS}/configuration.json",
+        tables=MEASURED,
+        code=code("check", "tables", "documents"),
     output:
         passed=f"{RESULTS}/check.passed",
     log:
@@ -193,8 +157,5 @@ rule check:
     benchmark:
         f"{RESULTS}/benchmarks/check.tsv"
     localrule: True
-    params:
-        code=code("twodiscs_paper.pipeline.results.verdict"),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.results.verdict {input.tables:q} --studies {input.studies:q}"
-        " --configuration @{input.configuration:q} --output {output.passed:q} > {log:q} 2>&1"
+    script:
+        "../scripts/check.py"

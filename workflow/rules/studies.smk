@@ -5,14 +5,14 @@
 rule study_table:
     """The table of a study."""
     input:
-        tables=lambda w: CONFIGURATION.study_reads(of_study(w)).values(),
+        tables=lambda w: study_reads(w).values(),
+        code=code("study", "physics", "tables"),
+        own_code=lambda w: sums(w.study),
     output:
         table=report(
             f"{RESULTS}/{{study}}.csv",
-            caption="../report/shared_table.rst",
             category="Tables",
             subcategory="all scenes",
-            labels=lambda w: says(of_study(w).tables[0]),
         ),
     log:
         f"{RESULTS}/logs/{{study}}.log",
@@ -20,22 +20,21 @@ rule study_table:
         f"{RESULTS}/benchmarks/{{study}}.tsv"
     wildcard_constraints:
         study="|".join(ALLOWED),
-    threads: lambda w: ALL_CORES if w.study in of_study(w).timed else 1
+    threads: lambda w: ALL_CORES if w.study in ALLOWED[w.study].timed else 1
     resources:
-        runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
+        runtime=lambda w: cost.study_minutes(ALLOWED[w.study], CONFIGURATION),
     params:
-        parameters=lambda w: json.dumps(of_study(w).parameters(CONFIGURATION)),
-        tables=lambda w, input: assigned(
-            CONFIGURATION.study_reads(of_study(w)), input.tables
-        ),
-        code=study_code,
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --parameters {params.parameters:q}"
-        " --tables {params.tables:q} --output {output.table:q} > {log:q} 2>&1"
+        names=lambda w: [*study_reads(w)],
+        given=lambda w: ALLOWED[w.study].parameters(CONFIGURATION),
+    script:
+        "../scripts/study.py"
 
 
-rule study_part:
+use rule study_table as study_part with:
     """A part of the table of a study that takes long."""
+    input:
+        code=code("study", "physics", "tables"),
+        own_code=lambda w: sums(w.study),
     output:
         table=f"{RESULTS}/parts/{{study}}/{{part}}.csv",
     log:
@@ -45,39 +44,32 @@ rule study_part:
     wildcard_constraints:
         study="|".join(PARTS),
         part="[a-z0-9_-]+",
-    resources:
-        runtime=lambda w: cost.study_minutes(of_study(w), CONFIGURATION),
+    threads: 1
     params:
-        parameters=lambda w: json.dumps(PARTS[w.study][w.part]),
-        code=study_code,
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.study {wildcards.study} --part --parameters {params.parameters:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        names=[],
+        given=lambda w: PARTS[w.study][w.part],
 
 
-rule effects_curves:
+use rule study_table as effects_curves with:
     """The exact curves of the study of effects."""
+    input:
+        code=code("study", "physics", "tables", "effects"),
     output:
         table=report(
             f"{RESULTS}/effects_curves.csv",
-            caption="../report/shared_table.rst",
             category="Tables",
             subcategory="all scenes",
-            labels=says(STUDIES["effects"].tables[2]),
         ),
     log:
         f"{RESULTS}/logs/effects_curves.log",
     benchmark:
         f"{RESULTS}/benchmarks/effects_curves.tsv"
+    threads: 1
+    resources:
+        runtime=cost.study_minutes(STUDIES["effects"], CONFIGURATION),
     params:
-        parameters=json.dumps({"scenes": boxes(CONFIGURATION)}),
-        code=code(
-            "twodiscs_paper.pipeline.jobs.study",
-            "twodiscs_paper.studies.effects.study",
-        ),
-    shell:
-        "python -P -m twodiscs_paper.pipeline.jobs.study effects_curves --parameters {params.parameters:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+        names=[],
+        given={"scenes": boxes(CONFIGURATION)},
 
 
 rule effects_cost:
@@ -86,28 +78,17 @@ rule effects_cost:
         scenes=EFFECT_FILES,
         # Then all kernels are compiled.
         tables=CONFIGURATION.study_reads(STUDIES["effects"]).values(),
+        code=code("benchmark", "physics", "tables", "effects", "benchmark"),
     output:
         table=report(
             f"{RESULTS}/effects_cost.csv",
-            caption="../report/shared_table.rst",
             category="Tables",
             subcategory="all scenes",
-            labels=says(STUDIES["effects"].tables[1]),
         ),
     log:
         f"{RESULTS}/logs/effects_cost.log",
     benchmark:
         f"{RESULTS}/benchmarks/effects_cost.tsv"
     threads: ALL_CORES
-    params:
-        # The benchmarks of many discs are not part of it.
-        code=code(
-            "twodiscs_paper.benchmark",
-            without=(
-                "twodiscs.dynamics.many.kernels",
-                "twodiscs.dynamics.many.lockstep",
-            ),
-        ),
-    shell:
-        "python -P -m twodiscs_paper.benchmark --table effects_cost --scenes {input.scenes:q}"
-        " --output {output.table:q} > {log:q} 2>&1"
+    script:
+        "../scripts/benchmark.py"

@@ -1,11 +1,11 @@
 """The explorer, with the points that are built."""
 
-import sys
 from pathlib import Path
 
 from twodiscs_paper.pipeline.documents.explorer import explorer
+from twodiscs_paper.pipeline.job import start
 
-sys.stderr = open(snakemake.log[0], "w")
+start(snakemake.log[0])
 page = explorer(
     snakemake.input.parts,
     snakemake.input.get("tables", []),

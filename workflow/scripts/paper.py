@@ -1,17 +1,18 @@
 """The manuscript, and the table of the numbers that it prints."""
 
-import sys
 from pathlib import Path
 
 from twodiscs_paper.pipeline.documents.manuscript import PaperNumbers, typeset
+from twodiscs_paper.pipeline.job import start
 
-sys.stderr = open(snakemake.log[0], "w")
+start(snakemake.log[0])
+params = snakemake.params
 numbers = typeset(
     snakemake.input.template,
     snakemake.output.pdf,
-    [scene for scene in snakemake.params.scenes if not scene["effects"]],
+    [scene for scene in params.scenes if not scene["effects"]],
     [Path(path).stem for path in snakemake.input.drawn],
-    snakemake.params.seed,
-    snakemake.params.configuration,
+    params.seed,
+    params.configuration,
 )
 PaperNumbers.write(snakemake.output.numbers, numbers)

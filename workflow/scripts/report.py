@@ -1,11 +1,11 @@
 """The report on all results."""
 
-import sys
 from pathlib import Path
 
 from twodiscs_paper.pipeline.documents.report import contents, page
+from twodiscs_paper.pipeline.job import start
 
-sys.stderr = open(snakemake.log[0], "w")
+start(snakemake.log[0])
 folder = Path(snakemake.output.html).parent
 files = [Path(path).relative_to(folder).as_posix() for path in snakemake.input.results]
 template = Path(snakemake.input.front).read_text(encoding="utf-8")

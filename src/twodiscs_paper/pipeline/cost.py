@@ -8,8 +8,6 @@ reached, usually earlier.
 
 import math
 
-from twodiscs_paper.pipeline.jobs.point import RUNS
-
 #: Events and samples per second of a core, and the largest factor by which effects slow it down.
 EVENTS_PER_SECOND, SAMPLES_PER_SECOND, SLOWER = 1e8, 1e8, 5.0
 
@@ -30,12 +28,23 @@ SOME = 100
 DAY = 86400.0
 
 
-def run_of(scene, stage, radius):
-    """Return the run of the job of a ``SceneRequest`` at a ``radius``.
+def run_of(stage, scene, work):
+    """Return the run of a ``Scene`` by a ``stage``: monte_carlo, dynamics or intervals.
 
-    ``stage`` is monte_carlo, dynamics or intervals.
+    ``work`` is {name: value} of its other arguments. Only the module of the stage is imported.
     """
-    return RUNS[stage](scene.box.scene(radius), **scene.arguments(stage, radius))
+    if stage == "monte_carlo":
+        from twodiscs.sampling.montecarlo import SamplingRun as Run
+    elif stage == "dynamics":
+        from twodiscs.dynamics.counting import CountingRun as Run
+    else:
+        from twodiscs.dynamics.intervals import IntervalRun as Run
+    return Run(scene, **work)
+
+
+def run_at(scene, stage, radius):
+    """Return the run of the job of a ``SceneRequest`` at a ``radius``."""
+    return run_of(stage, scene.box.scene(radius), scene.arguments(stage, radius))
 
 
 def _work(run):
@@ -45,7 +54,7 @@ def _work(run):
 
 def seconds(scene, stage, radius):
     """Return roughly the processor time of a point with its shards, without the start of jobs."""
-    return _seconds(scene, stage, _work(run_of(scene, stage, radius)))
+    return _seconds(scene, stage, _work(run_at(scene, stage, radius)))
 
 
 def _seconds(scene, stage, work):
@@ -120,7 +129,7 @@ def shards(scene, stage, radius):
         return []
     from twodiscs.sampling.blocks.rounds import pieces
 
-    run = run_of(scene, stage, radius)
+    run = run_at(scene, stage, radius)
     if _work(run) <= scene.shard_events:
         return []
     return [

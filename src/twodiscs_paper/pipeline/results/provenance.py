@@ -1,10 +1,5 @@
-"""The origin of results: commit, versions, machine, times.
+"""The origin of results: commit, versions, machine, times."""
 
-    python -m twodiscs_paper.pipeline.results.provenance results/paper.pdf … --sources . \\
-        --output results/provenance.json
-"""
-
-import json
 import os
 import platform
 import subprocess
@@ -12,22 +7,33 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from twodiscs.arguments import Parser, run
-
 #: The packages whose versions are recorded, beside Python.
 PACKAGES = ("snakemake", "numpy", "numba", "scipy", "matplotlib", "typst")
 
+#: Variables by which a hook of git, or its user, names another repository.
+REPOSITORY = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_COMMON_DIR"}
+
 
 def commit(folder):
-    """Return the commit of ``folder``, marked if files differ from it, or "unknown"."""
-    words = ("git", "-C", folder, "describe", "--always", "--abbrev=12", "--exclude=*")
+    """Return the commit of the repository that tracks the files in ``folder``, or "unknown".
+
+    If a tracked file was changed since, " with changes" follows.
+    """
+    environment = {name: value for name, value in os.environ.items() if name not in REPOSITORY}
+
+    def git(*words):
+        command = ("git", "-C", folder, *words)
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=True
+        ).stdout
+
     try:
-        run = subprocess.run(
-            [*words, "--dirty= with changes"], capture_output=True, text=True, check=True
-        )
+        # A folder of packages may lie in the repository of somebody else, who does not track it.
+        git("ls-files", "--error-unmatch", ".")
+        words = ("--always", "--abbrev=12", "--exclude=*", "--dirty= with changes")
+        return git("describe", *words).strip()
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
-    return run.stdout.strip()
 
 
 def versions():
@@ -36,16 +42,20 @@ def versions():
 
 
 def provenance(sources, paths):
-    """Return a dict on the origin of the files at ``paths``, made by the ``sources``."""
-    times = sorted(Path(path).stat().st_mtime for path in paths)
+    """Return a dict on the origin of the files at ``paths``, made by the ``sources``.
+
+    If the commit is unknown, it is None, and so is whether a file was changed since.
+    """
+    known = commit(sources)
+    is_known = known != "unknown"
+    times = [Path(path).stat().st_mtime for path in paths]
     first, last = (
         datetime.fromtimestamp(moment, UTC).isoformat(timespec="seconds")
-        for moment in (times[0], times[-1])
+        for moment in (min(times), max(times))
     )
-    known = commit(sources)
     return {
-        "commit": known.removesuffix(" with changes"),
-        "changed_since_the_commit": known.endswith(" with changes"),
+        "commit": known.removesuffix(" with changes") if is_known else None,
+        "changed_since_the_commit": known.endswith(" with changes") if is_known else None,
         "versions": versions(),
         "machine": {
             "cores": os.cpu_count(),
@@ -55,17 +65,3 @@ def provenance(sources, paths):
         "first_file": first,
         "last_file": last,
     }
-
-
-def main():
-    parser = Parser(prog=__spec__.name, description=__doc__.split("\n")[0])
-    parser.add_argument("files", nargs="+", metavar="FILE", help="the results")
-    parser.add_argument("--sources", required=True, help="the checkout that made the results")
-    parser.add_argument("--output", required=True, type=Path, metavar="FILE")
-    options = parser.parse_args()
-    known = provenance(options.sources, options.files)
-    options.output.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    run(main)

@@ -5,7 +5,6 @@ are √(N/2) times as large, and times are shorter by the same factor.
 """
 
 import math
-from itertools import product
 
 import numpy as np
 
@@ -80,12 +79,6 @@ def rows(events, samples, seed, discs=DISCS, radii=RADII):
         for number in discs:
             scene = Scene(WIDTH_PER_DISC * number, HEIGHT, radius, discs=number)
             yield from _of_scene(scene, events, samples, seed)
-
-
-def due(discs=DISCS, radii=RADII):
-    """Yield the columns that identify each of the ``rows``."""
-    for radius, number, event in product(radii, discs, (*SHELLS, "virial")):
-        yield {"radius": radius, "discs": number, "event": event}
 
 
 def _of_scene(scene, events, samples, seed):

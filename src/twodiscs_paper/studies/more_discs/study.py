@@ -73,13 +73,6 @@ def _parameters(configuration):
     }
 
 
-def _due(configuration):
-    """Yield the columns that identify each row."""
-    from twodiscs_paper.studies.more_discs import measure
-
-    return measure.due()
-
-
 STUDY = Study(
     "more_discs",
     builds="mean times of three to 64 discs",
@@ -95,5 +88,5 @@ STUDY = Study(
         ),
     },
     parameters=_parameters,
-    due=_due,
+    checked=True,
 )

@@ -9,12 +9,11 @@ coefficient D of diffusion along a ring, by the correlations of hops and by disp
 """
 
 import math
-from itertools import pairwise, product
+from itertools import pairwise
 
 import numpy as np
 
 from twodiscs.comparison.measured.transmission import (
-    MOST_MERGED,
     TIMES,
     are_rare,
     box_time,
@@ -585,53 +584,3 @@ PARTS = {
         near_threshold, on_ring, with_friction, in_file, in_long_file, in_the_limit, long_run,
     )
 }  # fmt: skip
-
-
-def due(part, name=None, box=None, hop="horizontal_hop", inertias=(), blocked=None, **_):
-    """Yield columns that identify rows of a ``part``, whose parameters are those of ``rows``.
-
-    Rows that exist for some measured values only are left out, such as κ if the time that ends a
-    cluster could have more than ``MOST_MERGED`` passages.
-    """
-
-    def one(quantity, method, radius, discs=2, inertia=None, event=hop, of=name):
-        return {
-            "scene": of, "event": event, "discs": discs, "radius": radius,
-            "moment_of_inertia": inertia, "quantity": quantity, "method": method,
-        }  # fmt: skip
-
-    def radii(halvings):
-        return [radius_at(box.threshold(hop), n) for n in halvings]
-
-    if part == "near_threshold":
-        for inertia in (None, *inertias):
-            halvings, known = SMOOTH if inertia is None else ROUGH, 0
-            for n in halvings:
-                scene = scene_at(box, hop, n, moment_of_inertia=inertia)
-                yield from [one("correlation", "hops", scene.radius, inertia=inertia)] * len(TIMES)
-                if inertia is None and slope_time(scene, hop)[0] is not None:
-                    yield one("slope", "hops", scene.radius)
-                if quiet_time(scene, hop) * exact.passing_rate(scene, hop) < 0.9 * MOST_MERGED:
-                    yield one("coefficient", "clusters", scene.radius, inertia=inertia)
-                    if inertia is None:
-                        yield one("plateau", "hops", scene.radius)
-                    known += 1
-            if known > 1:
-                yield one("last_exponent", "fit", scene.radius, inertia=inertia)
-    elif part == "on_ring":
-        for radius, inertia in product(radii(RING), (None, ONE_INERTIA)):
-            for kind in (("diffusion", "hops"), ("diffusion", "states"), ("rate", "states")):
-                yield one(*kind, radius, inertia=inertia)
-    elif part == "with_friction":
-        yield from (one("rate", "states", *radii(halvings[:1])) for halvings in KICKED.values())
-    elif part == "in_file":
-        for radius, discs, what in product(radii(RING), FILES, ("rate", "diffusion")):
-            yield one(what, "states", radius, discs)
-    elif part == "in_long_file":
-        for radius in (blocked, *radii(OPEN)):
-            yield one("single_file", "states", radius, LONG_FILE)
-            yield from [one("displacement", "states", radius, LONG_FILE)] * 2 * len(LAGS)
-        rough = one("displacement", "states", blocked, LONG_FILE, ONE_INERTIA)
-        yield from [rough] * len(LAGS)
-    else:
-        yield one("amplitude", "limit", None, event=None)

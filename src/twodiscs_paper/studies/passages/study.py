@@ -13,7 +13,6 @@ from twodiscs.comparison.tables.base import (
     Z,
 )
 from twodiscs.figures.catalogue import DYNAMICS, Entry
-from twodiscs.model.box import Box
 from twodiscs.model.events import HOPS
 from twodiscs_paper.study import AS_ESTIMATE, Study, scaled
 
@@ -129,15 +128,6 @@ def _parts(configuration):
     return parts | {"in_the_limit": {"part": "in_the_limit"} | seed}
 
 
-def _due(configuration):
-    """Yield columns that identify the rows of all parts."""
-    from twodiscs_paper.studies.passages import measure
-
-    for given in _parts(configuration).values():
-        box = given.get("box") and Box(**given["box"])
-        yield from measure.due(**given | {"box": box})
-
-
 STUDY = Study(
     "passages",
     builds="which hops are passages, and diffusion by them",
@@ -171,5 +161,5 @@ STUDY = Study(
         ),
     },
     parts=_parts,
-    due=_due,
+    checked=True,
 )

@@ -3,12 +3,9 @@
 The Snakefile imports this, so it must be quick.
 """
 
-import os
 import shlex
-import shutil
 import signal
 import sys
-from contextlib import suppress
 from datetime import datetime
 from difflib import get_close_matches
 from importlib import metadata
@@ -22,12 +19,9 @@ from twodiscs_paper.configuration.load import ConfigError, check_results, load, 
 
 #: Targets by name, beside the figures and the studies.
 TARGETS = (
-    "all", "check", "paper", "report", "animation", "manifest", "provenance", "audit", "verify",
-    "explorer", "forecast", "benchmark", *FIGURES, *STUDIES,
+    "all", "check", "paper", "report", "animation", "manifest", "provenance", "verify", "renew",
+    "explorer", "benchmark", *FIGURES, *STUDIES,
 )  # fmt: skip
-
-#: Bytes: if the disk has less space, a build may have failed for that reason.
-SPACE = 10**8
 
 #: The path of the workflow of a wheel, below the folder of the installation.
 SHARED = "share/twodiscs/Snakefile"
@@ -54,8 +48,9 @@ def snakefile():
 def command(path, targets, snakefile, cores=None, dry_run=False):
     """Return the words of the command that builds ``targets`` of the configuration at ``path``.
 
-    Without ``targets`` it builds the report. The command uses ``cores`` cores, or all. With
-    ``dry_run`` it counts the jobs and does nothing.
+    It prints the progress, but not each job. Without ``targets`` it builds the report. It uses
+    ``cores`` cores, or all. With ``dry_run`` it counts the jobs and does nothing.
+
     Raises ``InputError`` for a target that is neither a name nor a path, and for ``cores`` that are
     no integer ≥ 1.
     """
@@ -73,32 +68,9 @@ def command(path, targets, snakefile, cores=None, dry_run=False):
         # Snakemake would first look for a profile in this folder.
         profile = snakefile.with_name("profiles") / "default"
         found = ["--snakefile", str(snakefile), "--workflow-profile", str(profile)]
-    words = ["snakemake", *found, "--cores", str(cores), "--no-hooks"]
+    words = ["snakemake", *found, "--cores", str(cores), "--no-hooks", "--quiet", "rules"]
     words += [*(["--dry-run"] if dry_run else []), "--configfile", str(path)]
     return [*words, "--", *(targets or [DEFAULT])]
-
-
-def report_of(words):
-    """Return the path of Snakemake's own report after the command ``words``, or None without it.
-
-    The report is about all built files, so only a build of all targets of the configuration has
-    one. Configuration files are read here as the Snakefile reads them.
-    """
-    from snakemake.cli import get_argument_parser
-
-    name, *arguments = words
-    if Path(name).name not in ("snakemake", "__main__.py"):  # Snakemake as a library
-        return None
-    given, _ = get_argument_parser().parse_known_args(arguments)
-    if given.dryrun or given.touch or not {*given.targets} <= {"all"}:
-        return None
-    if given.default_storage_provider:  # then there is no folder of results to write it to
-        return None
-    results = "results"
-    for path in ("config/config.yaml", *(given.configfile or ())):
-        with suppress(ConfigError):
-            results = read(path).get("results", results)
-    return f"{results}/report-workflow.html"
 
 
 def check_targets(path, targets, configuration):
@@ -121,9 +93,6 @@ def check_targets(path, targets, configuration):
 def build(path, targets, cores=None, dry_run=False):
     """Run ``command`` with these arguments in Snakemake; return its exit status."""
     from snakemake.cli import main as snakemake
-    from snakemake_interface_logger_plugins.registry import LoggerPluginRegistry
-
-    from twodiscs_paper.pipeline.jobs import lines
 
     try:
         configuration = load(read(path))
@@ -136,28 +105,16 @@ def build(path, targets, cores=None, dry_run=False):
     # The Snakefile prints the verdict only if it had something to do; here it is always printed.
     words = command(path, targets, snakefile(), cores, dry_run)
     print(shlex.join(words), flush=True)
-
-    # Snakemake runs in this process, so a signal ends both. Its profile reads sys.argv.
-    def interrupt(*signal_and_frame):
-        lines.INTERRUPTED.set()
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, interrupt)
-    sys.argv = [*words]
-    if dry_run or not sys.stdout.isatty():
-        LoggerPluginRegistry().register_plugin("snakemake_logger_plugin_lines", lines)
-        sys.argv[1:1] = ["--logger", "lines"]
-    folders = [str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)]
-    os.environ["PATH"] = os.pathsep.join(folders)  # jobs find the same python
+    # Snakemake runs in this process. Its profile reads sys.argv, and it cleans up after Ctrl-C.
+    sys.argv = words
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         snakemake()
     except SystemExit as end:
         status = end.code
-    if lines.INTERRUPTED.is_set():
-        print("Interrupted. The same command goes on from here.")
-    elif status == 0 and not dry_run:
+    if status == 0 and not dry_run:
         made = dict(files(configuration, targets))
-        if not targets or {*targets} - {*made, "forecast", "benchmark"}:
+        if not targets or {*targets} - {*made, "benchmark"}:
             print(closing(configuration.results), end="")
         for name, paths in made.items():
             print(f"{name}: {', '.join(paths)}")
@@ -187,17 +144,3 @@ def closing(results):
     if report.exists():
         lines += [f"The report is {report.resolve()}"]
     return "".join(f"{line}\n" for line in lines)
-
-
-def failing(results, targets):
-    """Return a sentence if the disk of a failed build is full, else "".
-
-    If the ``targets`` build anything, the verdict on the old results is removed.
-    """
-    folder = Path(results)
-    if not {*targets} & {"audit", "verify"}:
-        (folder / "check.passed").unlink(missing_ok=True)
-    free = shutil.disk_usage(folder).free if folder.is_dir() else SPACE
-    if free >= SPACE:
-        return ""
-    return f"The disk of {results} has {free / 1e6:.3g} MB left; if it is full, logs are empty\n"

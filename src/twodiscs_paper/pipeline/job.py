@@ -1,0 +1,30 @@
+"""The start of a job: each script of the workflow calls ``start`` after its imports."""
+
+import gc
+import os
+import signal
+import threading
+import time
+
+#: The seconds after which a job notices that Snakemake has ended.
+PERIOD = 0.5
+
+
+def start(log):
+    """Write what this process prints to the file ``log``, and end it with Snakemake.
+
+    Snakemake ends its jobs, but not if it is killed itself. Ctrl-C ends the process without delay,
+    because Python's handler does not interrupt a running kernel.
+    """
+    file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(file, 1)
+    os.dup2(file, 2)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_after, args=(os.getppid(),), daemon=True).start()
+    gc.freeze()  # what is imported stays, so no collection reads it
+
+
+def _end_after(parent):
+    while os.getppid() == parent:
+        time.sleep(PERIOD)
+    os.kill(os.getpid(), signal.SIGTERM)

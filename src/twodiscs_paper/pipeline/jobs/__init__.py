@@ -1,1 +1,0 @@
-"""The jobs of the workflow, one module for each kind of shell line."""

@@ -1,0 +1,183 @@
+"""Scripts of the workflow: the files that they read and write, shards that add up, their errors."""
+
+import json
+import runpy
+from pathlib import Path
+from types import MappingProxyType, SimpleNamespace
+
+import numpy as np
+import pytest
+from factory import BOX, RADII, Laws, scenes
+from snakemake.iocontainers import Namedlist
+
+from twodiscs.comparison.scene_tables import SCENE_TABLES
+from twodiscs.model.checks import InputError
+from twodiscs.points.digests import digest, read_json, write_json
+from twodiscs_paper.catalogue import ENTRIES
+from twodiscs_paper.pipeline import job
+from twodiscs_paper.pipeline.cost import run_of
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "workflow" / "scripts"
+PARAMETERS = BOX.parameters()
+WORK = {
+    "monte_carlo": {
+        "quantities": ["volume", "top_wall_area"], "samples": 3 * 10**6, "shell": 0.1, "seed": 7,
+    },
+    "dynamics": {"target": {"vertical_hop": 0.01, "top_wall": 0.1}, "budget": 10**7, "seed": 7},
+    "intervals": {"event": "vertical_hop", "intervals": 3 << 16, "budget": 10**9, "seed": 7},
+}  # fmt: skip
+
+#: The arguments of a shard: it does not depend on accuracy or budget.
+SHARD = {
+    "monte_carlo": {"samples": 1},
+    "dynamics": {"target": {"vertical_hop": 0.5, "top_wall": 0.5}, "budget": 1},
+    "intervals": {"intervals": 1, "budget": 10**15},
+}
+
+
+#: Neither wildcards nor files.
+NONE = MappingProxyType({})
+
+
+@pytest.fixture
+def run(monkeypatch, tmp_path):
+    """Run a script with inputs, outputs, params and wildcards in a separate folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(job, "start", lambda log: None)
+
+    def run(script, params, wildcards=NONE, files=NONE, **output):
+        snakemake = SimpleNamespace(
+            input=Namedlist(fromdict=files), output=Namedlist(fromdict=output),
+            params=Namedlist(fromdict=params), wildcards=Namedlist(fromdict=wildcards),
+            log=["job.log"],
+        )  # fmt: skip
+        runpy.run_path(str(SCRIPTS / f"{script}.py"), {"snakemake": snakemake})
+
+    return run
+
+
+def point(run, stage, output, shards=()):
+    """Make a point, of ``shards`` if there are any."""
+    params = {"box": PARAMETERS, "work": WORK[stage]}
+    where = {"stage": stage, "radius": "0.2"}
+    run("point", params, where, {"shards": [*shards]}, point=output)
+    return read_json(output)
+
+
+def shards(run, stage, pieces):
+    """Make shards of a point; return their files."""
+    files = []
+    for first, stop in pieces:
+        files.append(f"all-{first}-{stop}.json")
+        where = {"stage": stage, "radius": "0.2", "part": "all", "first": first, "stop": stop}
+        params = {"box": PARAMETERS, "work": WORK[stage] | SHARD[stage]}
+        run("point", params, where, point=files[-1])
+    return files
+
+
+@pytest.mark.parametrize("stage", ["monte_carlo", "intervals"])
+def test_work_of_known_length_gives_the_same_point_in_shards(run, stage):
+    alone = point(run, stage, "alone.json")
+    assert alone["radius"] == 0.2
+    assert point(run, stage, "joined.json", shards(run, stage, [(2, 3), (0, 2)])) == alone
+
+
+def test_counts_are_the_same_in_any_number_of_shards(run):
+    stop = run_of("dynamics", BOX.scene(0.2), WORK["dynamics"]).parts["all"].planned
+    assert stop >= 3
+    one = shards(run, "dynamics", [(0, stop)])
+    some = shards(run, "dynamics", [(i, i + 1) for i in range(stop)][::-1])
+    assert point(run, "dynamics", "a.json", one) == point(run, "dynamics", "b.json", some)
+
+
+def test_the_processor_time_of_a_point_includes_that_of_its_shards(run):
+    files = shards(run, "monte_carlo", [(0, 3)])
+    write_json(files[0], read_json(files[0]), 1000.0)
+    point(run, "monte_carlo", "a.json", files)
+    assert json.loads(Path("a.json").read_text())["seconds"] > 1000
+
+
+def test_a_part_of_a_point_that_is_missing_is_named(run):
+    files = shards(run, "monte_carlo", [(0, 1), (2, 3)])
+    with pytest.raises(InputError):
+        point(run, "monte_carlo", "a.json", files)
+
+
+def test_an_edited_shard_is_refused(run):
+    (file,) = shards(run, "monte_carlo", [(0, 3)])
+    content = json.loads(Path(file).read_text())
+    content["sums"][0][0] += 1
+    Path(file).write_text(json.dumps(content))
+    with pytest.raises(InputError, match=r"all-0-3.json is not what its job wrote; delete it"):
+        point(run, "monte_carlo", "a.json", [file])
+
+
+@pytest.fixture
+def points(run, tmp_path):
+    """The files of the exact values and of fabricated points at some radii."""
+    exact = {"box": PARAMETERS, "radii": [*RADII]}
+    run("table", exact, table="theory.csv")
+    files, rng = {"theory": "theory.csv", "intervals": []}, np.random.default_rng(1)
+    for stage in ("monte_carlo", "dynamics"):
+        samples = {"monte_carlo": {"samples": 10**7}, "dynamics": {}}[stage]
+        files[stage] = [tmp_path / f"{stage}-{scene.radius}.json" for scene in scenes()]
+        for scene, path in zip(scenes(), files[stage], strict=True):
+            getattr(Laws(scene), stage)(rng, **samples).write(path)
+    return files
+
+
+MADE = {"box": PARAMETERS, "areas": ["right_wall", "disc_collision"]}
+
+
+@pytest.mark.parametrize("name", ["volume", "areas", "mean_times", "check"])
+def test_a_table_is_made_of_points(run, points, name):
+    run("table", MADE, files=points, table=f"{name}.csv")
+    rows = SCENE_TABLES[name].read(f"{name}.csv")
+    assert {row["radius"] for row in rows} >= {*RADII}
+
+
+def test_cost_is_the_time_of_the_jobs_and_may_be_missing(run, points):
+    """It stands in the files of the points, beside the digest, and is no part of their content."""
+    took = {0.1: 2.5, 0.2: 4.5}
+    for path in points["dynamics"]:
+        content = read_json(path)
+        write_json(path, content, took.get(content["radius"]))
+        assert read_json(path) == content
+    run("table", MADE, files=points, table="cost.csv")
+    rows = {(r["stage"], r["radius"]): r for r in SCENE_TABLES["cost"].read("cost.csv")}
+    assert rows["dynamics", 0.1]["seconds"] == 2.5
+    assert rows["dynamics", 0.2]["seconds"] == 4.5
+    assert rows["dynamics", 0.3]["seconds"] is None
+    assert rows["monte_carlo", 0.1]["events"] == 10**7
+
+
+def test_an_edited_point_is_refused(run, points):
+    path = points["dynamics"][0]
+    content = json.loads(path.read_text())
+    content["counts"]["vertical_hop"] += 1
+    path.write_text(json.dumps(content))
+    with pytest.raises(InputError, match="is not what its job wrote; delete it"):
+        run("table", MADE, files=points, table="mean_times.csv")
+
+
+@pytest.mark.parametrize("stage", ["dynamics", "intervals"])
+def test_a_point_of_another_stage_is_refused(run, points, stage):
+    files = points | {stage: points["monte_carlo"][:1]}
+    with pytest.raises(InputError, match=f"must be a point of {stage}, but was made"):
+        run("table", MADE, files=files, table="check.csv")
+
+
+def test_a_figure_names_its_code_and_its_tables(run, points, tmp_path):
+    run("table", MADE, files=points, table="volume.csv")
+    Path("sums").write_text("the code\n")
+    params = {
+        "box": PARAMETERS,
+        "names": ["volume"],
+        "options": ENTRIES["volume"].options,
+        "radius": None,
+        "seed": 1,
+    }
+    files = {"tables": ["volume.csv"], "code": ["sums"], "own_code": []}
+    run("figure", params, {"scene": "a", "figure": "volume"}, files, png="a.png", pdf="a.pdf")
+    origin = f"twodiscs: scene a, seed 1, code {digest('sums')[:16]}, tables "
+    assert f"{origin}{digest('volume.csv')[:16]}".encode() in Path("a.png").read_bytes()
