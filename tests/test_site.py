@@ -78,7 +78,7 @@ def test_pages_are_complete(site):
     """Where a browser begins, the margin, the tutorial with its figures, the explorer."""
     assert (site / "index.html").read_bytes() == (site / "README.html").read_bytes()
     assert 'href="docs/recipes.html"' in (site / "index.html").read_text(encoding="utf-8")
-    assert (site / "docs/python.html").read_text(encoding="utf-8").count("pictures/tutorial-") > 1
+    assert (site / "docs/python.html").read_text(encoding="utf-8").count("../tutorial-") > 1
     assert "<iframe" in (site / "docs/explorer.html").read_text(encoding="utf-8")
 
 

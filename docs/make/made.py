@@ -48,10 +48,8 @@ def tutorial(text, site):
 
 def shown(png, name, title, site):
     """Write a picture into the folder of the site; return the line that shows it in a page."""
-    path = Path(site, "docs", "pictures", name)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(png)
-    return f'\n<p><img src="pictures/{name}" alt="{title}" loading="lazy"></p>\n'
+    Path(site, name).write_bytes(png)
+    return f'\n<p><img src="../{name}" alt="{title}" loading="lazy"></p>\n'
 
 
 def reference(text, site):
@@ -76,24 +74,18 @@ def _described(line):
 # Tables -------------------------------------------------------------------------------------------
 
 
-def keys(text, site):
-    """Return the page about the configuration with the tables of all keys."""
-    return text + described_keys()
-
-
 def tables(text, site):
     """Return the page about results with all columns of all tables."""
-    every = TABLES | {"paper_numbers": PaperNumbers}
-    return text + "".join(described_table(name, table) for name, table in every.items())
+    return text + "".join(map(described_table, [*TABLES.values(), PaperNumbers]))
 
 
-def described_table(name, table):
+def described_table(table):
     """Return the description of a table, its columns among it, as Markdown."""
     rows = (
         f"| `{column}` | {kind.unit or '–'} | {_plain(kind.meaning)} |\n"
         for column, kind in table.columns.items()
     )
-    head = f"\n### {name}.csv\n\n{_plain(table.meaning())}\n\n"
+    head = f"\n### {table.name()}.csv\n\n{_plain(table.meaning())}\n\n"
     return head + "| column | unit | meaning |\n|---|---|---|\n" + "".join(rows)
 
 
@@ -171,6 +163,6 @@ PAGES = {
     "docs/python": tutorial,
     "docs/reference": reference,
     "docs/gallery": gallery,
-    "config/README": keys,
+    "config/README": lambda text, site: text + described_keys(),
     "results/README": tables,
 }

@@ -74,7 +74,7 @@ def test_every_table_and_every_column_say_what_they_mean(table):
 def test_every_column_is_described_on_a_line_of_its_own():
     for name, table in EVERY_TABLE.items():
         assert table.name() == name
-        head, *lines = described_table(name, table).strip().splitlines()
+        head, *lines = described_table(table).strip().splitlines()
         assert head == f"### {name}.csv"
         rows = [line for line in lines if line.startswith("|")][2:]
         assert len(rows) == len(table.columns)
