@@ -21,60 +21,25 @@ from twodiscs.dynamics.ensemble import REPLICAS
 from twodiscs.dynamics.intervals import hop_intervals
 from twodiscs.dynamics.many import kernels
 from twodiscs.dynamics.many import lockstep as many
-from twodiscs.model.events import EVENTS, SHELLS, WALLS
+from twodiscs.model.events import EVENTS, SHELLS
 from twodiscs.model.scene import Scene
 from twodiscs.points.estimates import mean_of
 from twodiscs.sampling import montecarlo
 from twodiscs.sampling.separations import draw_constants
 from twodiscs.sampling.starts import states
 from twodiscs.theory.exact import event_rate
-from twodiscs_paper.configuration.load import load, read
 from twodiscs_paper.studies.accuracy_cost import scalar
-
-SCENE = Scene(1.5, 1.0, 0.2)
-REPETITIONS = 7
-
-#: Blocks of one timed run of the lock-step ensemble and of the scalar engine.
-BLOCKS = 200
-
-#: Blocks and repetitions of a quick run.
-QUICK = {"blocks": 40, "repetitions": 5}
-
-
-def timed(work):
-    """Return (result, processor seconds) of ``work()``."""
-    start = time.process_time()
-    result = work()
-    return result, time.process_time() - start
-
-
-def in_turns(variants, repetitions=REPETITIONS):
-    """Return {name: speeds} of {name: function that returns (units, seconds)}."""
-    for work in variants.values():
-        work()
-    speeds = {name: [] for name in variants}
-    for _ in range(repetitions):
-        for name, work in variants.items():
-            units, seconds = work()
-            speeds[name].append(units / seconds)
-    return speeds
-
-
-def medians(speeds):
-    """Return {name: median} of {name: speeds}."""
-    return {name: median(values) for name, values in speeds.items()}
-
-
-def interleaved(variants, repetitions=REPETITIONS):
-    """Return {name: median speed} of {name: function that returns (units, seconds)}."""
-    return medians(in_turns(variants, repetitions))
-
-
-def lockstep(blocks=BLOCKS, scene=SCENE, events=EVENTS):
-    """Count ``events``, by default all, up to a fixed end time, with statistics by replica."""
-    duration = counting.replica_duration(scene)
-    counted, seconds = timed(lambda: counting.run_blocks(scene, events, 1, 0, blocks, duration))
-    return counting.simulated_events(counted[0]), seconds
+from twodiscs_paper.studies.effects.cost import (
+    BLOCKS,
+    SCENE,
+    compared,
+    in_turns,
+    interleaved,
+    lockstep,
+    medians,
+    timed,
+)
+from twodiscs_paper.studies.effects.cost import rows as cost_rows
 
 
 def lockstep_of_many(discs, blocks=BLOCKS // 8):
@@ -119,25 +84,6 @@ def plain_python(replicas=200):
     end = counting.replica_duration(SCENE), SCENE.range_x / 2, SCENE.range_y / 2, 0.4
     counts, seconds = timed(lambda: [scalar.count_replica.py_func(*s, *end) for s in starts])
     return sum(map(scalar.simulated_events, counts)), seconds
-
-
-def with_effects(effects, blocks=BLOCKS, repetitions=REPETITIONS):
-    """Return {variant: events per second} of scenes with ``effects``, {name: {effect: value}}.
-
-    All events of a scene are counted. Variants without effects are ``plain`` and ``plain_walls``,
-    which detects no hops.
-    """
-    scenes = {"plain": SCENE} | {name: replace(SCENE, **some) for name, some in effects.items()}
-    variants = {
-        name: partial(lockstep, blocks, scene, scene.events) for name, scene in scenes.items()
-    }
-    variants["plain_walls"] = partial(lockstep, blocks, SCENE, (*WALLS, "any_wall"))
-    return interleaved(variants, repetitions)
-
-
-def effects_rows(effects, **amount):
-    """Return the rows of effects_cost.csv, with the arguments of ``with_effects``."""
-    return compared("effects", with_effects(effects, **amount), "1/s", "plain")
 
 
 QUANTITIES = ("volume", *(f"{event}_area" for event in EVENTS))
@@ -239,21 +185,6 @@ def two_process_speedup(repetitions=5, blocks=600):
     return median(ratios)
 
 
-def compared(name, values, unit, baseline, larger_is_better=True):
-    """Return the rows of a benchmark from {variant: value}, with ratios to the ``baseline``."""
-    ratios = {variant: value / values[baseline] for variant, value in values.items()}
-    return [
-        {
-            "benchmark": name,
-            "variant": variant,
-            "value": value,
-            "unit": unit,
-            "ratio": ratios[variant] if larger_is_better else 1 / ratios[variant],
-        }
-        for variant, value in values.items()
-    ]
-
-
 #: The engine of two discs, and the kernel of N with two, three, four and eight at half the radius.
 MANY = {"lockstep": partial(lockstep, BLOCKS // 8, replace(SCENE, radius=SCENE.radius / 2))}
 MANY |= {f"discs_{discs}": partial(lockstep_of_many, discs) for discs in (2, 3, 4, 8)}
@@ -288,9 +219,9 @@ def exponent_rows(speeds):
         }  # fmt: skip
 
 
-def benchmarks(effects):
-    """Run everything and return the rows of benchmark.csv; ``effects`` as in ``with_effects``."""
-    rows = effects_rows(effects)
+def benchmarks(scenes):
+    """Run everything and return the rows of benchmark.csv; ``scenes`` as in ``cost.rows``."""
+    rows = cost_rows(scenes)
 
     def add(*arguments, **options):
         rows.extend(compared(*arguments, **options))
@@ -334,9 +265,3 @@ def benchmarks(effects):
          "ratio": speedup}
     )  # fmt: skip
     return rows
-
-
-def effects_of(paths):
-    """Return {name: effects} of the scenes of two discs in the files at ``paths``."""
-    requests = (request for path in paths for request in load(read(path)).scenes)
-    return {r.name: r.box.effects for r in requests if r.box.family == "effects"}

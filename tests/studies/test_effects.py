@@ -26,7 +26,7 @@ from twodiscs.sampling.streams import open_stream
 from twodiscs.theory import exact, tails
 from twodiscs_paper import benchmark
 from twodiscs_paper.configuration.load import load, read
-from twodiscs_paper.studies.effects import figure
+from twodiscs_paper.studies.effects import cost, figure
 from twodiscs_paper.studies.effects import measure as effects
 from twodiscs_paper.studies.effects.study import (
     SCENES,
@@ -284,10 +284,8 @@ def test_costs_are_of_every_scene_and_of_what_is_watched(monkeypatch):
         watched[scene.has_effects, tuple(events)] = scene
         return 2.0 if scene.has_effects else 4.0, 1.0 if events == EVENTS else 0.5
 
-    monkeypatch.setattr(benchmark, "lockstep", lockstep)
-    rows = benchmark.effects_rows(
-        {"torus": {"periodic": "xy"}, "rough": {"moment_of_inertia": 0.5}}
-    )
+    monkeypatch.setattr(cost, "lockstep", lockstep)
+    rows = EffectsCost.rows({}, {name: BOXES[name] for name in ("torus", "rough")})
     assert {row["variant"]: row["ratio"] for row in rows} == {
         "plain": 1.0, "torus": 1.0, "rough": 0.5, "plain_walls": 2.0
     }  # fmt: skip

@@ -59,7 +59,7 @@ def test_edit_of_a_figure_of_a_study_draws_it_again_and_is_named(built):
 def test_edit_of_a_study_measures_it_again(built):
     built.edit("src/twodiscs_paper/studies/tails/measure.py", CODE)
     assert built.jobs() == expected(
-        ("study_table", "study=tails"), ("shared_figure", "figure=tails"), *DOCUMENTS
+        ("study_table", "table=tails"), ("shared_figure", "figure=tails"), *DOCUMENTS
     )
 
 

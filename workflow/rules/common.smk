@@ -1,4 +1,5 @@
 # Shared by all stages: the scenes, the files of the workflow, and the code of the jobs.
+import inspect
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -6,7 +7,13 @@ from pathlib import Path
 import twodiscs
 from twodiscs.comparison.scene_tables import SCENE_TABLES
 from twodiscs.figures.catalogue import ANIMATION, FIGURES
-from twodiscs_paper.catalogue import ENTRIES, STUDIES, STUDY_FIGURES, is_reproducible
+from twodiscs_paper.catalogue import (
+    ENTRIES,
+    STUDIES,
+    STUDY_FIGURES,
+    STUDY_TABLES,
+    is_reproducible,
+)
 from twodiscs_paper.configuration.request import GATHERED, STAGES
 from twodiscs_paper.studies.effects.study import SCENES as EFFECTS
 from twodiscs_paper.studies.effects.study import boxes
@@ -46,6 +53,9 @@ ALLOWED = {
     name: study for name, study in STUDIES.items() if MAIN or not study.about_plain
 }
 PARTS = {name: study.parts(CONFIGURATION) for name, study in ALLOWED.items()}
+
+# The studies by the names of their tables.
+MADE_BY = {table.name(): study for study in ALLOWED.values() for table in study.tables}
 
 if (days := cost.days(CONFIGURATION.scenes)) > 1:
     logger.warning(
@@ -142,5 +152,6 @@ def own_code(w):
 
 
 def study_reads(w):
-    """Return {name: path} of the tables that a study reads."""
-    return CONFIGURATION.study_reads(ALLOWED[w.study])
+    """Return {name: path} of the tables that the function ``rows`` of a table takes, if it takes any."""
+    takes = inspect.signature(STUDY_TABLES[w.table].rows).parameters
+    return CONFIGURATION.study_reads(MADE_BY[w.table]) if "tables" in takes else {}

@@ -203,8 +203,7 @@ use rule verify as renew with:
 rule benchmark:
     """How fast the engines are on this machine."""
     input:
-        scenes=EFFECT_FILES,
-        code=code("benchmark", "physics", "benchmark"),
+        code=code("benchmark", "physics", "benchmark", "effects", "accuracy_cost"),
     output:
         table=f"{RESULTS}/benchmark.csv",
     log:
@@ -213,5 +212,7 @@ rule benchmark:
         f"{RESULTS}/benchmarks/benchmark.tsv"
     localrule: True
     threads: ALL_CORES
+    params:
+        scenes=boxes(CONFIGURATION),
     script:
         "../scripts/benchmark.py"

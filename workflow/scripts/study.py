@@ -1,7 +1,6 @@
 """The table of a study, or a part of it, from parameters and other tables."""
 
 import inspect
-from pathlib import Path
 
 from twodiscs.model.box import Box
 from twodiscs_paper.catalogue import STUDY_TABLES, read_table
@@ -9,13 +8,13 @@ from twodiscs_paper.pipeline.job import start
 
 start(snakemake.log[0])
 is_part = snakemake.wildcards.get("part") is not None
-output = Path(snakemake.output.table)
-table = STUDY_TABLES[snakemake.wildcards.study if is_part else output.stem]
+table = STUDY_TABLES[snakemake.wildcards.table]
 work = table.part if is_part else table.rows
-given = dict(snakemake.params.given)
+taken = inspect.signature(work).parameters
+given = {name: value for name, value in snakemake.params.given.items() if is_part or name in taken}
 if "box" in given:
     given["box"] = Box(**given["box"])
-if "tables" in inspect.signature(work).parameters:
+if "tables" in taken:
     paths = zip(snakemake.params.names, snakemake.input.get("tables", []), strict=True)
     given["tables"] = {name: read_table(path) for name, path in paths}
-table.write(output, work(**given))
+table.write(snakemake.output.table, work(**given))

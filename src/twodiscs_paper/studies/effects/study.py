@@ -100,6 +100,13 @@ class EffectsCost(Table):
         "ratio": NUMBER("how many times better than the baseline of the same run; empty for a fit"),
     }
 
+    @staticmethod
+    def rows(tables, scenes):
+        """Return the rows of ``scenes``; once the ``tables`` are made, all kernels are compiled."""
+        from twodiscs_paper.studies.effects import cost
+
+        return cost.rows(scenes, **cost.QUICK)
+
 
 class Benchmark(EffectsCost):
     """One row per benchmark and variant, all variants of a benchmark measured in one run."""
